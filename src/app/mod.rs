@@ -1,0 +1,1 @@
+//! The shell: window, panels, commands, command line; the only room that knows everyone.

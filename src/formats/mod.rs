@@ -1,0 +1,1 @@
+//! How a scene travels: one file per exchange format.

@@ -1,0 +1,142 @@
+//! What a scene is: plain data. No window, GPU, network, thread or file is known here.
+
+pub mod boxes;
+pub mod classes;
+pub mod grid;
+pub mod layout;
+pub mod pose;
+pub mod raster;
+pub mod rig;
+pub mod sensor_data;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+pub use boxes::{BoxId, SceneBox};
+pub use classes::{BevLayer, Class};
+pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
+pub use layout::{BevLayout, Polyline, PolylineKind};
+pub use pose::Pose;
+pub use rig::{Camera, LidarPattern, SensorRig};
+pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep};
+
+/// Names one state of a scene: two scenes with the same `SceneRev` are equal.
+/// It travels in the snapshot, so undo brings it back. Compare for equality only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SceneRev(u64);
+
+impl SceneRev {
+    /// A revision that no scene of this process carries yet.
+    pub fn fresh() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// The state that a frame's occupancy was last generated, imported or accepted in. What differs
+/// between it and the frame is what the next generation must redraw; all else stays bit-identical.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceFrame {
+    /// Map layers and polylines the occupancy belongs to.
+    pub layout: BevLayout,
+    /// Boxes the occupancy belongs to.
+    pub boxes: BTreeMap<BoxId, SceneBox>,
+    /// The occupancy itself.
+    pub occupancy: VoxelGrid,
+}
+
+/// One instant of a clip. All coordinates are in that instant's ego frame (x forward, y left, z up).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Time since the start of the clip, s.
+    pub time_s: f64,
+    /// Ego pose in the world frame of the clip.
+    pub world_from_ego: Pose,
+    /// Objects; the same id in several frames is one track.
+    pub boxes: BTreeMap<BoxId, SceneBox>,
+    /// Map layers and the polylines they come from.
+    pub layout: BevLayout,
+    /// What is drawn and sensed now: the source with the user's immediate edits, or the last result.
+    pub occupancy: VoxelGrid,
+    /// Voxels the user painted (or removed, painted as free): locked, generation keeps them.
+    pub painted: VoxelPaint,
+    /// See [`SourceFrame`].
+    pub source: Arc<SourceFrame>,
+}
+
+impl Frame {
+    /// A frame whose occupancy is its own source.
+    pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, occupancy: VoxelGrid) -> Self {
+        let source = Arc::new(SourceFrame {
+            layout: layout.clone(),
+            boxes: boxes.clone(),
+            occupancy: occupancy.clone(),
+        });
+        Self {
+            time_s: 0.0,
+            world_from_ego: Pose::IDENTITY,
+            boxes,
+            layout,
+            occupancy,
+            painted: VoxelPaint::new(),
+            source,
+        }
+    }
+
+    /// All 18 BEV channels, one bit per [`BevLayer`] and cell, row-major `[x][y]`, 200 x 200:
+    /// the layout's map layers and the footprints of the boxes.
+    pub fn bev_channels(&self) -> Vec<u32> {
+        raster::bev_channels(&self.layout, self.boxes.values())
+    }
+
+    /// The lowest id not in use.
+    pub fn next_box_id(&self) -> BoxId {
+        BoxId(self.boxes.keys().next_back().map_or(1, |id| id.0 + 1))
+    }
+}
+
+/// A driving scene: a clip of one or more frames, seen by one sensor rig.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Which state this is.
+    pub rev: SceneRev,
+    /// Name shown to the user.
+    pub name: Arc<str>,
+    /// Free text that describes style (time of day, weather); empty when none.
+    pub prompt: Arc<str>,
+    /// Cameras and LiDARs.
+    pub rig: Arc<SensorRig>,
+    /// At least one.
+    pub frames: Vec<Arc<Frame>>,
+    /// Index of the frame being edited.
+    pub current: usize,
+    /// Seed of every random draw made for this scene.
+    pub seed: u64,
+}
+
+impl Scene {
+    /// A clip of a single frame.
+    pub fn single(name: &str, frame: Frame, rig: Arc<SensorRig>, seed: u64) -> Self {
+        Self {
+            rev: SceneRev::fresh(),
+            name: name.into(),
+            prompt: "".into(),
+            rig,
+            frames: vec![Arc::new(frame)],
+            current: 0,
+            seed,
+        }
+    }
+
+    /// The frame being edited.
+    pub fn frame(&self) -> &Arc<Frame> {
+        &self.frames[self.current]
+    }
+
+    /// The frame being edited, copied if it is shared, and a fresh revision.
+    pub fn frame_mut(&mut self) -> &mut Frame {
+        self.rev = SceneRev::fresh();
+        Arc::make_mut(&mut self.frames[self.current])
+    }
+}

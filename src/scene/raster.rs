@@ -1,0 +1,237 @@
+//! Shapes to grid cells: boxes, discs, polygons and lines, in the ego frame.
+
+use glam::{DVec2, DVec3};
+
+use super::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, SceneBox};
+
+/// Cells whose centre may lie in the given ego-frame rectangle, cut to the grid; `None` if none can.
+fn cell_range(min: DVec2, max: DVec2) -> Option<([usize; 2], [usize; 2])> {
+    let lo = GridSpec::to_voxel_units(min.extend(0.0));
+    let hi = GridSpec::to_voxel_units(max.extend(0.0));
+    let n = [GridSpec::NX as f64, GridSpec::NY as f64];
+    let (mut from, mut to) = ([0; 2], [0; 2]);
+    for axis in 0..2 {
+        // Written so that NaN fails too.
+        if !(hi[axis] >= 0.0 && lo[axis] < n[axis] && lo[axis] <= hi[axis]) {
+            return None;
+        }
+        from[axis] = lo[axis].max(0.0) as usize;
+        to[axis] = (hi[axis].min(n[axis] - 1.0)) as usize;
+    }
+    Some((from, to))
+}
+
+fn for_cells(min: DVec2, max: DVec2, mut visit: impl FnMut(usize, usize, DVec2)) {
+    if let Some((from, to)) = cell_range(min, max) {
+        for x in from[0]..=to[0] {
+            for y in from[1]..=to[1] {
+                visit(x, y, GridSpec::center(x, y, 0).truncate());
+            }
+        }
+    }
+}
+
+/// Visits the cells of a box's footprint grown by `margin_m`: those whose centre lies inside, and
+/// always the cell under the box's own centre, so that a box below one cell is not lost.
+/// A box with NaN visits nothing.
+pub fn box_cells(b: &SceneBox, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
+    let reach = b.size_m.truncate() / 2.0 + DVec2::splat(margin_m);
+    let radius = reach.length();
+    let center = b.center_m.truncate();
+    let own = GridSpec::column_at(center.x, center.y);
+    let mut own_seen = false;
+    for_cells(center - radius, center + radius, |x, y, p| {
+        let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z));
+        if local.x.abs() <= reach.x && local.y.abs() <= reach.y {
+            own_seen |= own == Some([x, y]);
+            visit(x, y);
+        }
+    });
+    if let (false, Some([x, y])) = (own_seen, own)
+        && b.yaw_rad.is_finite()
+        && reach.is_finite()
+    {
+        visit(x, y);
+    }
+}
+
+/// Visits the cells whose centre lies in a disc, and the cell under its centre.
+pub fn disc_cells(center_m: DVec2, radius_m: f64, mut visit: impl FnMut(usize, usize)) {
+    let own = GridSpec::column_at(center_m.x, center_m.y);
+    for_cells(center_m - radius_m, center_m + radius_m, |x, y, p| {
+        if p.distance_squared(center_m) <= radius_m * radius_m || own == Some([x, y]) {
+            visit(x, y);
+        }
+    });
+}
+
+/// Visits the cells whose centre lies inside a closed polygon (even-odd rule).
+pub fn polygon_cells(points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
+    if points_m.len() < 3 || points_m.iter().any(|p| !p.is_finite()) {
+        return;
+    }
+    let min = points_m.iter().copied().reduce(DVec2::min).expect("three points");
+    let max = points_m.iter().copied().reduce(DVec2::max).expect("three points");
+    let Some((from, to)) = cell_range(min, max) else {
+        return;
+    };
+    // One scan line per row of cell centres: crossings are sorted, cells between pairs are inside.
+    let mut crossings = Vec::new();
+    for x in from[0]..=to[0] {
+        let line = GridSpec::center(x, 0, 0).x;
+        crossings.clear();
+        for (i, a) in points_m.iter().enumerate() {
+            let b = points_m[(i + 1) % points_m.len()];
+            if (a.x <= line) != (b.x <= line) {
+                crossings.push(a.y + (line - a.x) / (b.x - a.x) * (b.y - a.y));
+            }
+        }
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            let lo = (GridSpec::to_voxel_units(DVec3::new(0.0, pair[0], 0.0)).y - 0.5).ceil();
+            let hi = (GridSpec::to_voxel_units(DVec3::new(0.0, pair[1], 0.0)).y - 0.5).floor();
+            for y in lo.max(0.0) as i64..=hi.min(GridSpec::NY as f64 - 1.0) as i64 {
+                visit(x, y as usize);
+            }
+        }
+    }
+}
+
+/// Visits the cells whose centre lies within `half_width_m` of an open polyline. Zero-length
+/// segments are skipped, vertices that are not finite end their segments.
+pub fn line_cells(points_m: &[DVec2], half_width_m: f64, mut visit: impl FnMut(usize, usize)) {
+    for pair in points_m.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let d = b - a;
+        let length_squared = d.length_squared();
+        if !(length_squared.is_finite() && length_squared > 0.0) {
+            continue;
+        }
+        for_cells(a.min(b) - half_width_m, a.max(b) + half_width_m, |x, y, p| {
+            let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
+            if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
+                visit(x, y);
+            }
+        });
+    }
+}
+
+/// Draws a polyline into the layer of its kind. Lines are one cell wide (half width 0.2 m and a
+/// little, so that a diagonal stays connected), crossings are filled.
+pub fn draw_polyline(layout: &mut BevLayout, line: &Polyline) {
+    const HALF_LINE_M: f64 = 0.21;
+    let mut cells = Vec::new();
+    let layer = match line.kind {
+        PolylineKind::LaneCenter => return,
+        PolylineKind::RoadDivider => BevLayer::RoadDivider,
+        PolylineKind::LaneDivider => BevLayer::LaneDivider,
+        PolylineKind::StopLine => BevLayer::StopLine,
+        PolylineKind::PedCrossing => BevLayer::PedCrossing,
+    };
+    if line.kind == PolylineKind::PedCrossing {
+        polygon_cells(&line.points_m, |x, y| cells.push((x, y)));
+    } else {
+        line_cells(&line.points_m, HALF_LINE_M, |x, y| cells.push((x, y)));
+    }
+    for (x, y) in cells {
+        layout.set(layer, x, y, true);
+    }
+}
+
+/// All 18 channels as bits, `[x][y]`: the layout's map layers and the boxes' footprints.
+pub fn bev_channels<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u32> {
+    let mut cells = layout.cells().to_vec();
+    for b in boxes {
+        if let Some(layer) = BevLayer::of_object(b.class) {
+            box_cells(b, 0.0, |x, y| cells[x * GridSpec::NY + y] |= layer.bit());
+        }
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{BoxId, Class};
+
+    fn car(center: [f64; 3], size: [f64; 3], yaw_rad: f64) -> SceneBox {
+        SceneBox {
+            id: BoxId(1),
+            class: Class::Car,
+            center_m: center.into(),
+            size_m: size.into(),
+            yaw_rad,
+            velocity_mps: DVec2::ZERO,
+        }
+    }
+
+    fn cells(b: &SceneBox) -> Vec<(usize, usize)> {
+        let mut out = Vec::new();
+        box_cells(b, 0.0, |x, y| out.push((x, y)));
+        out
+    }
+
+    /// Row 35 of the extremes table.
+    #[test]
+    fn row_35_box_raster() {
+        for yaw in [0.0, 0.3, 1.0, 2.5] {
+            let b = car([1.0, 2.0, 0.0], [20.0, 10.0, 2.0], yaw);
+            let area = cells(&b).len() as f64 * 0.16;
+            assert!((area - 200.0).abs() < 6.0, "area {area} at yaw {yaw}");
+            let turned = car([1.0, 2.0, 0.0], [20.0, 10.0, 2.0], yaw + std::f64::consts::TAU);
+            assert_eq!(cells(&b), cells(&turned));
+        }
+        // Far turned: the reduction in f64 keeps the heading to 1e-9 rad, so cells agree.
+        let far = car([1.1, 2.1, 0.0], [4.0, 2.0, 2.0], 2e6 * std::f64::consts::PI);
+        assert_eq!(cells(&far), cells(&car([1.1, 2.1, 0.0], [4.0, 2.0, 2.0], 0.0)));
+        assert_eq!(
+            cells(&car([0.1, 0.1, 0.0], [0.0, 0.0, 0.0], 0.0)),
+            vec![(100, 100)]
+        );
+        assert_eq!(
+            cells(&car([0.1, 0.1, 0.0], [0.01, 0.01, 0.1], 0.7)),
+            vec![(100, 100)]
+        );
+        assert_eq!(
+            cells(&car([0.0; 3], [1e6, 1e6, 1e6], 0.5)).len(),
+            GridSpec::COLUMNS
+        );
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert!(cells(&car([bad, 0.0, 0.0], [1.0; 3], 0.0)).is_empty());
+            assert!(cells(&car([0.0; 3], [bad, 1.0, 1.0], 0.0)).is_empty() || bad.is_infinite());
+            assert!(cells(&car([0.0; 3], [1.0; 3], bad)).is_empty());
+        }
+    }
+
+    /// Row 36 of the extremes table.
+    #[test]
+    fn row_36_polyline() {
+        let draw = |points: &[DVec2]| {
+            let mut out = std::collections::BTreeSet::new();
+            line_cells(points, 0.3, |x, y| {
+                out.insert((x, y));
+            });
+            out
+        };
+        let (a, b, c) = (DVec2::new(-3.0, 0.1), DVec2::new(4.0, 2.0), DVec2::new(0.0, -5.0));
+        assert!(draw(&[a]).is_empty());
+        assert_eq!(draw(&[a, a, b, b, b, c]), draw(&[a, b, c]));
+        assert!(!draw(&[a, b, c, a]).is_empty());
+        assert!(draw(&[a, DVec2::NAN, b]).is_empty());
+        let spiral: Vec<DVec2> = (0..100_000)
+            .map(|i| DVec2::from_angle(f64::from(i) * 0.01) * (f64::from(i) * 2e-4))
+            .collect();
+        assert!(!draw(&spiral).is_empty());
+        let mut square = 0;
+        polygon_cells(
+            &[
+                DVec2::new(0.0, 0.0),
+                DVec2::new(4.0, 0.0),
+                DVec2::new(4.0, 4.0),
+                DVec2::new(0.0, 4.0),
+            ],
+            |_, _| square += 1,
+        );
+        assert_eq!(square, 100);
+    }
+}
