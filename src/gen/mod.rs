@@ -1,1 +1,7 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
+
+pub mod inversion;
+pub mod replay;
+pub mod rng;
+pub mod schedule;
+pub mod solver;
