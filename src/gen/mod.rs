@@ -1,6 +1,7 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
 
 pub mod inversion;
+pub mod region;
 pub mod replay;
 pub mod rng;
 pub mod schedule;
