@@ -1,8 +1,11 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
 
+pub mod composite;
 pub mod inversion;
+pub mod job;
 pub mod region;
 pub mod replay;
 pub mod rng;
 pub mod schedule;
 pub mod solver;
+pub mod worker;
