@@ -8,7 +8,8 @@ use std::sync::Arc;
 use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
 use super::job::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage};
 use super::model::{DitCondition, OccModels, Prepared};
-use super::region::{self, CELLS, Region, label_hash};
+use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
+use super::region::{CELLS, Region};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
 use super::schedule::{Schedule, Spacing};
@@ -244,7 +245,7 @@ impl OccPipeline {
                 if view.step == preview_at && view.step > 1 {
                     let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
                     let grid = models.vae.decode_cells(&clean, &region.cells).map_err(GenError::failed)?;
-                    let occupancy = region::composite(before, &grid, &region, &frame.painted);
+                    let occupancy = composite(before, &grid, &region, &frame.painted);
                     ctx.preview(GenResult { key: job.key(), frame: job.scene.current, occupancy, report: report.clone() });
                 }
                 Ok(())
@@ -276,14 +277,14 @@ impl OccPipeline {
         report: &mut GenReport,
     ) -> GenResult {
         let painted = &job.scene.frame().painted;
-        let occupancy = report.timed(Stage::Composite, |_| region::composite(source, generated, region, painted));
+        let occupancy = report.timed(Stage::Composite, |_| composite(source, generated, region, painted));
         report.region_columns = region.column_count();
         report.region_share = region.share();
         report.region_cells = region.cell_count();
         report.tokens = if report.network_calls > 0 { CELLS / 4 } else { 0 };
-        report.untouched_voxels_changed = region::untouched_voxels_changed(source, &occupancy, region, painted);
+        report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
         report.voxels_changed = source.count_different(&occupancy);
-        report.seam_change_share = region::seam_change_share(source, &occupancy, region, 2);
+        report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
         GenResult { key: job.key(), frame: job.scene.current, occupancy, report: std::mem::take(report) }
     }
 }
