@@ -1,1 +1,3 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
+
+pub mod sensors;
