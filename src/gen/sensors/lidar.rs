@@ -99,7 +99,9 @@ fn looked_through(masks: &ColumnMasks, ego: EgoBox) -> ColumnMasks {
         cell(ego.center_m + ego.size_m / 2.0),
     );
     // Casts saturate, so a box of any size covers at most the grid; NaN covers nothing much.
-    let range = |axis: usize, n: usize| low[axis].max(0.0) as usize..(high[axis] + 1.0).max(0.0).min(n as f64) as usize;
+    let range = |axis: usize, n: usize| {
+        low[axis].max(0.0) as usize..(high[axis] + 1.0).max(0.0).min(n as f64) as usize
+    };
     for x in range(0, GridSpec::NX) {
         for y in range(1, GridSpec::NY) {
             for z in range(2, GridSpec::NZ) {
@@ -169,7 +171,8 @@ mod tests {
     fn a_box_of_voxels_returns_every_ray() {
         // The sensor sits inside a closed shell of one voxel.
         let mut grid = VoxelGrid::new();
-        for (x, y, z) in (90..111).flat_map(|x| (90..111).flat_map(move |y| (0..16).map(move |z| (x, y, z)))) {
+        for (x, y, z) in (90..111).flat_map(|x| (90..111).flat_map(move |y| (0..16).map(move |z| (x, y, z))))
+        {
             if [x, y].contains(&90) || [x, y].contains(&110) || z == 0 || z == 15 {
                 grid.set(x, y, z, Class::Manmade.id());
             }
@@ -225,7 +228,8 @@ mod tests {
         }
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.expect("a pool").install(|| sweep(&grid, &pattern(32, 500), None))
+            pool.expect("a pool")
+                .install(|| sweep(&grid, &pattern(32, 500), None))
         };
         assert_eq!(run(1), run(3));
     }

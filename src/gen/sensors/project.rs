@@ -115,7 +115,10 @@ impl Conic {
             compensation: (before / determinant).sqrt(),
             extent_px: [a.max(0.0).sqrt(), c.sqrt()],
         };
-        [a, b, c, conic.along].iter().all(|v| v.is_finite()).then_some(conic)
+        [a, b, c, conic.along]
+            .iter()
+            .all(|v| v.is_finite())
+            .then_some(conic)
     }
 
     /// The matrix itself: xx, xy, yy, 1/px^2.

@@ -123,8 +123,7 @@ impl ColumnMasks {
         mut visit: impl FnMut([usize; 3]),
     ) -> Option<(f64, [usize; 3])> {
         let span = grid_span(origin, direction)?;
-        // Written so that a NaN range ends here too.
-        if !(span.enter <= max_t) {
+        if max_t.is_nan() || span.enter > max_t {
             return None;
         }
         // A voxel entered exactly at the range still counts.
@@ -227,8 +226,8 @@ impl Axis {
 }
 
 /// The part of the ray inside the half-open box of the grid, in voxel units. `None` if there is
-/// none of positive length, or for NaN and a zero direction. A ray parallel to a face is inside if
-/// its origin is at or above the lower plane and below the upper one.
+/// none (a start inside counts, a mere touch does not), or for NaN and a zero direction. A ray
+/// parallel to a face is inside if its origin is at or above the lower plane and below the upper one.
 pub fn grid_span(origin: DVec3, direction: DVec3) -> Option<Span> {
     let mut span = Span {
         enter: 0.0,
@@ -250,8 +249,10 @@ pub fn grid_span(origin: DVec3, direction: DVec3) -> Option<Span> {
         span.enter = span.enter.max(a.min(b));
         span.leave = span.leave.min(a.max(b));
     }
+    // A start on a lower face is inside, even if the ray leaves at once.
+    let starts_inside = (0..3).all(|axis| (0.0..N[axis] as f64).contains(&origin[axis]));
     // Infinity is left only if no axis moved.
-    (span.enter < span.leave && span.leave.is_finite()).then_some(span)
+    ((span.enter < span.leave || starts_inside) && span.leave.is_finite()).then_some(span)
 }
 
 /// Bits of the voxels that are not free.

@@ -184,7 +184,10 @@ mod tests {
         for i in 0..=1_000_000 {
             let x = -(i as f32) * 9e-5;
             let (got, want) = (f64::from(exp(x)), f64::from(x.max(-87.0)).exp());
-            assert!((got / want - 1.0).abs() < 2e-6 * f64::from(1.0 - x / 8.0), "{x}: {got} {want}");
+            assert!(
+                (got / want - 1.0).abs() < 2e-6 * f64::from(1.0 - x / 8.0),
+                "{x}: {got} {want}"
+            );
             assert!(got <= last * (1.0 + 1e-6));
             last = got;
         }

@@ -23,8 +23,14 @@ fn plain_walk(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Opti
             t_next[axis] = t_plane(axis, cell[axis]);
         }
     }
+    // Where the ray leaves the grid; a voxel touched only there is not visited.
+    let last = |axis: usize| if d[axis] > 0.0 { N[axis] as i64 - 1 } else { 0 };
+    let leave = (0..3)
+        .filter(|&a| d[a] != 0.0)
+        .map(|a| t_plane(a, last(a)))
+        .fold(f64::INFINITY, f64::min);
     let mut t_in = 0.0;
-    while (0..3).all(|a| cell[a] >= 0 && cell[a] < N[a] as i64) {
+    while visited.is_empty() || t_in < leave {
         let c = cell.map(|v| v as usize);
         visited.push(c);
         if masks.occupied(c[0], c[1], c[2]) {
@@ -177,7 +183,8 @@ fn exact_span(o: [i128; 3], d: [i128; 3]) -> Option<[(i128, i128); 2]> {
         }
     }
     let leave = leave?;
-    less(enter, leave).then_some([enter, leave])
+    let starts_inside = (0..3).all(|a| o[a] >= 0 && o[a] < N[a] as i128 * 4);
+    (less(enter, leave) || starts_inside).then_some([enter, leave])
 }
 
 #[test]
