@@ -1,1 +1,3 @@
 //! How a scene travels: one file per exchange format.
+
+pub mod opendrive;
