@@ -1,0 +1,1 @@
+//! What lies under the pointer: rays against boxes, voxels and the ground, points against footprints.
