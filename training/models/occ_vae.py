@@ -28,8 +28,15 @@ class VaeConfig:
         return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items()}
 
 
-def group_norm(width):
-    return nn.GroupNorm(width // 16, width, eps=1e-6)
+class ChannelNorm(nn.LayerNorm):
+    """Layer norm over the channels of each cell. Unlike a group norm it does not look at the rest of the map, so
+    encoding and decoding stay local: an edit cannot change a label that is out of reach of the convolutions."""
+
+    def __init__(self, width):
+        super().__init__(width, eps=1e-6)
+
+    def forward(self, x):
+        return super().forward(x.permute(0, 2, 3, 1)).permute(0, 3, 1, 2)
 
 
 class ResBlock(nn.Module):
@@ -37,7 +44,7 @@ class ResBlock(nn.Module):
 
     def __init__(self, width, kernel):
         super().__init__()
-        self.norm = group_norm(width)
+        self.norm = ChannelNorm(width)
         self.conv1 = nn.Conv2d(width, width, kernel, padding=kernel // 2)
         self.conv2 = nn.Conv2d(width, width, 1)
         nn.init.normal_(self.conv2.weight, std=0.3 * width**-0.5)
@@ -66,11 +73,11 @@ class OccVae(nn.Module):
         self.embed = nn.EmbeddingBag(VOXELS * FREE, c.encoder_width, mode="sum")
         nn.init.normal_(self.embed.weight, std=0.1)
         self.encoder = nn.ModuleList(ResBlock(c.encoder_width, k) for k in c.encoder_kernels)
-        self.encoder_norm = group_norm(c.encoder_width)
+        self.encoder_norm = ChannelNorm(c.encoder_width)
         self.encoder_head = nn.Conv2d(c.encoder_width, 2 * c.latent, 1)
         self.decoder_stem = nn.Conv2d(c.latent, c.decoder_width, 1)
         self.decoder = nn.ModuleList(ResBlock(c.decoder_width, k) for k in c.decoder_kernels)
-        self.decoder_norm = group_norm(c.decoder_width)
+        self.decoder_norm = ChannelNorm(c.decoder_width)
         self.decoder_head = nn.Conv2d(c.decoder_width, VOXELS * FEATURES, 1)
         self.class_table = nn.Parameter(torch.randn(CLASSES, FEATURES))
         self.class_bias = nn.Parameter(torch.zeros(CLASSES))
