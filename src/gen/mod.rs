@@ -3,9 +3,11 @@
 pub mod dataset;
 pub mod inversion;
 pub mod metrics;
+pub mod model;
 pub mod region;
 pub mod replay;
 pub mod rng;
 pub mod schedule;
 pub mod solver;
+pub mod weights;
 pub mod world;
