@@ -73,7 +73,7 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     let bytes = std::fs::read(path).with_context(|| format!("read {name}"))?;
     let network = opendrive::read(&bytes).with_context(|| name.to_string())?;
     let (at, lane_heading) = match placement.at_m {
-        Some(at) => network.pose_on_lane_near(at).map_or((at, 0.0), |pose| (at, pose.1)),
+        Some(at) => network.pose_on_lane_near(at).map_or((at, 0.0), |pose| (at, pose.heading_rad)),
         None => network.suggest_pose(),
     };
     let heading = placement.heading_rad.unwrap_or(lane_heading);

@@ -6,6 +6,7 @@ pub mod inversion;
 pub mod job;
 pub mod metrics;
 pub mod model;
+pub mod pipeline;
 pub mod region;
 pub mod replay;
 pub mod rng;
