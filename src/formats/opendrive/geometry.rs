@@ -365,18 +365,22 @@ fn arc_length(v: &[f64; 4], from: f64, to: f64) -> f64 {
     integrate(from, to, 0.0, |u| 1f64.hypot(derivative(v, u)))
 }
 
-/// Knots up to the u where the curve is `length_m` long. Sixty-four pieces of at most `length_m / 64`:
-/// u never exceeds s.
+/// Knots up to the u where the curve is `length_m` long, `length_m / 64` apart: u never exceeds s.
 fn poly3_knots(length_m: f64, v: [f64; 4]) -> Result<Knots, (String, String)> {
     const PIECES: usize = 64;
+    const STEEPEST: f64 = 1e6;
+    let steepest = v[1].abs() + length_m * (2.0 * v[2].abs() + length_m * 3.0 * v[3].abs());
+    if steepest.is_nan() || steepest > STEEPEST {
+        return Err((
+            format!("a slope of at most {STEEPEST:e}"),
+            format!("{steepest:.3e}"),
+        ));
+    }
     let step = length_m / PIECES as f64;
     let mut lengths = vec![0.0];
     let mut total = 0.0;
     for i in 0..PIECES {
         total += arc_length(&v, i as f64 * step, (i + 1) as f64 * step);
-        if !total.is_finite() {
-            return Err(("coefficients of a curve".into(), format!("{v:?}")));
-        }
         lengths.push(total);
         if total > length_m {
             break;

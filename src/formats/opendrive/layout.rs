@@ -7,7 +7,7 @@ use super::lines::{Follower, SectionLines, clipped};
 use super::objects::ObjectKind;
 use super::sampling::{BUDGET, Row, walk};
 use super::xml::{Skipped, count};
-use super::{Road, RoadNetwork};
+use super::{Road, RoadNetwork, tidy};
 use crate::scene::raster::{draw_polyline, polygon_cells};
 use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
 
@@ -70,8 +70,7 @@ impl RoadNetwork {
         if canvas.budget == 0 {
             count(&mut skipped, "roads beyond the drawing budget");
         }
-        canvas.close_gaps();
-        canvas.fill_junction_holes();
+        canvas.pave_gaps();
         canvas.roads_cover_walkways();
         for line in &canvas.lines {
             draw_polyline(&mut canvas.layout, line);
@@ -211,67 +210,15 @@ impl Canvas {
         }
     }
 
-    /// Closing by one cell: joints between roads and cracks in junctions become drivable. Cells on
-    /// which the file puts something else (a median, a kerb) stay what they are.
-    fn close_gaps(&mut self) {
-        let drivable: Vec<bool> = self.drivable().collect();
-        let closed = spread(&spread(&drivable, |near| near.any(|c| c == Some(true))), |near| {
-            near.all(|c| c != Some(false))
-        });
-        for (i, filled) in closed.iter().enumerate() {
-            if *filled && !self.named[i] {
-                self.pave(i);
-            }
-        }
-    }
-
-    fn drivable(&self) -> impl Iterator<Item = bool> {
-        self.layout
-            .cells()
-            .iter()
-            .map(|c| c & BevLayer::DrivableArea.bit() != 0)
-    }
-
-    fn pave(&mut self, cell: usize) {
-        self.layout.set(
-            BevLayer::DrivableArea,
-            cell / GridSpec::NY,
-            cell % GridSpec::NY,
-            true,
-        );
-    }
-
-    /// The small patches that the connecting roads of a junction leave between them are paved as well.
-    fn fill_junction_holes(&mut self) {
-        const LARGEST_CELLS: usize = 60; // 9.6 m2: an island that is meant is larger, or has a lane of its own
-        let drivable: Vec<bool> = self.drivable().collect();
-        let mut seen = drivable.clone();
-        for first in 0..GridSpec::COLUMNS {
-            if seen[first] {
-                continue;
-            }
-            seen[first] = true;
-            let (mut patch, mut at_junction, mut open) = (vec![first], false, false);
-            let mut next = 0;
-            while next < patch.len() {
-                let cell = patch[next];
-                next += 1;
-                open |= self.named[cell];
-                for neighbour in neighbours(cell, &SIDES) {
-                    match neighbour {
-                        None => open = true, // the window cuts it: its size is not known
-                        Some(n) if drivable[n] => at_junction |= self.in_junction[n],
-                        Some(n) if !seen[n] => {
-                            seen[n] = true;
-                            patch.push(n);
-                        }
-                        Some(_) => {}
-                    }
-                }
-            }
-            if at_junction && !open && patch.len() <= LARGEST_CELLS {
-                patch.into_iter().for_each(|cell| self.pave(cell));
-            }
+    /// Joints between roads and cracks in junctions become drivable.
+    fn pave_gaps(&mut self) {
+        let bit = BevLayer::DrivableArea.bit();
+        let mut drivable: Vec<bool> = self.layout.cells().iter().map(|c| c & bit != 0).collect();
+        tidy::close_gaps(&mut drivable, &self.named);
+        tidy::fill_junction_holes(&mut drivable, &self.named, &self.in_junction);
+        for (i, _) in drivable.iter().enumerate().filter(|(_, d)| **d) {
+            self.layout
+                .set(BevLayer::DrivableArea, i / GridSpec::NY, i % GridSpec::NY, true);
         }
     }
 
@@ -285,36 +232,6 @@ impl Canvas {
             }
         }
     }
-}
-
-const SIDES: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
-const AROUND: [(i64, i64); 9] = [
-    (-1, -1),
-    (-1, 0),
-    (-1, 1),
-    (0, -1),
-    (0, 0),
-    (0, 1),
-    (1, -1),
-    (1, 0),
-    (1, 1),
-];
-
-/// The cells next to one; `None` for those outside of the window.
-fn neighbours(cell: usize, steps: &[(i64, i64)]) -> impl Iterator<Item = Option<usize>> {
-    let (x, y) = ((cell / GridSpec::NY) as i64, (cell % GridSpec::NY) as i64);
-    steps.iter().map(move |(dx, dy)| {
-        let (x, y) = (x + dx, y + dy);
-        let inside = (0..GridSpec::NX as i64).contains(&x) && (0..GridSpec::NY as i64).contains(&y);
-        inside.then(|| x as usize * GridSpec::NY + y as usize)
-    })
-}
-
-/// Each cell by a rule over the nine cells around it.
-fn spread(cells: &[bool], rule: impl Fn(&mut dyn Iterator<Item = Option<bool>>) -> bool) -> Vec<bool> {
-    (0..cells.len())
-        .map(|i| rule(&mut neighbours(i, &AROUND).map(|n| n.map(|n| cells[n]))))
-        .collect()
 }
 
 /// The ends of a stop line: across all traffic lanes of one direction.

@@ -76,8 +76,9 @@ impl SectionLines<'_> {
                 match (travel == lane.travel, apart) {
                     (false, false) => add(PolylineKind::RoadDivider, [a, b], false),
                     (false, true) => {
-                        add(PolylineKind::RoadDivider, [a, a], false);
-                        add(PolylineKind::RoadDivider, [b, b], false);
+                        for edge in self.median_edges(a, b) {
+                            add(PolylineKind::RoadDivider, [edge, edge], false);
+                        }
                     }
                     (true, false) if painted(a..=b) => add(PolylineKind::LaneDivider, [a, b], false),
                     (true, false) => {}
@@ -90,6 +91,16 @@ impl SectionLines<'_> {
             }
         }
         tracks
+    }
+
+    /// Between two lane edges with opposite traffic: the edges of what is not paved, else the two themselves.
+    fn median_edges(&self, left: usize, right: usize) -> [usize; 2] {
+        let mut unpaved =
+            (left..right).filter(|i| matches!(self.grounds[*i], Ground::Other | Ground::Walkway));
+        match unpaved.next() {
+            Some(first) => [first, unpaved.next_back().unwrap_or(first) + 1],
+            None => [left, right],
+        }
     }
 }
 

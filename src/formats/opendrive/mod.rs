@@ -10,6 +10,7 @@ mod parse_lanes;
 mod parse_objects;
 mod pose;
 mod sampling;
+mod tidy;
 mod xml;
 
 pub use layout::LayoutImport;

@@ -129,7 +129,7 @@ fn outermost_lane(road: &Road, s_m: f64, travel: Option<Travel>) -> Option<(DVec
     let lanes = section.lanes_left_to_right().enumerate();
     let fits = |(i, lane): &(usize, &Lane)| {
         lane.kind == LaneKind::Driving
-            && row.width(*i) >= NARROWEST_M
+            && (NARROWEST_M..=WIDEST_M).contains(&row.width(*i))
             && travel.is_none_or(|t| t == lane.travel)
     };
     let (i, lane) = lanes

@@ -11,9 +11,9 @@ const STEP_M: f64 = 0.5;
 /// Shortest step along the reference line, m: where a curve is so tight that this is too long, it is not a road.
 const SHORTEST_M: f64 = 0.01;
 
-/// Work that one call may do: cross-sections times lanes, grid cells, corners. About a hundred times what
-/// the densest real window needs; only a file made to be slow ever reaches it.
-pub(super) const BUDGET: usize = 4_000_000;
+/// Work that one call may do: cross-sections times lanes, grid cells, corners. Thirty times what the densest
+/// window of a large town map takes; only a file made to be slow ever reaches it.
+pub(super) const BUDGET: usize = 1_000_000;
 
 /// The edges of all lanes at one place of a road.
 #[derive(Clone, Debug)]
@@ -117,11 +117,10 @@ pub(super) fn walk(
             .map(|p| p.s_m),
     );
     breaks.sort_by(f64::total_cmp);
-    let mut before: Option<Row> = None;
     let mut stack: Vec<(f64, f64)> = Vec::new();
     for ends in breaks.windows(2).filter(|ends| ends[1] - ends[0] > 1e-9) {
         stack.push((ends[0], ends[1]));
-        before = None; // a new record may begin here
+        let mut before: Option<Row> = None; // not over to the next record
         while let Some((from, to)) = stack.pop() {
             *budget = budget.saturating_sub(1);
             if *budget == 0 {
