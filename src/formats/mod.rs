@@ -1,1 +1,4 @@
 //! How a scene travels: one file per exchange format.
+
+pub mod atomic;
+pub mod project;
