@@ -18,7 +18,7 @@ const LARGEST_TEXT: u64 = 256 << 20;
 /// The scene that ships with the program.
 pub fn bundled() -> anyhow::Result<Scene> {
     let bytes = include_bytes!("../../assets/scenes/first_light.loom");
-    Ok(project::from_bytes(bytes).context("the bundled scene")?)
+    project::from_bytes(bytes).context("the bundled scene")
 }
 
 /// A scene from a file, its kind found by content: a `.loom` project or an OpenDRIVE road network.
