@@ -2,6 +2,7 @@
 
 pub mod boxes;
 pub mod classes;
+pub mod draft;
 pub mod grid;
 pub mod layout;
 pub mod pose;

@@ -1,0 +1,99 @@
+//! A layout extruded naively to voxels: ground by class, boxes by a rough profile of their class.
+//! What an edit shows at once, and a condition of the diffusion transformer. Weights were trained
+//! with this very rule: changing it means training again.
+
+use glam::DVec3;
+
+use super::raster::box_cells;
+use super::{BevLayer, BevLayout, Class, GridSpec, SceneBox, VoxelGrid};
+
+/// Class of the ground under a layout cell (bits of [`BevLayer`]): road and car park are driveable
+/// surface, sidewalk and crossings beside the road are sidewalk, all else is terrain.
+pub fn ground_class(cell: u32) -> Class {
+    let has = |layer: BevLayer| cell & layer.bit() != 0;
+    if has(BevLayer::DrivableArea) || has(BevLayer::CarparkArea) {
+        Class::DriveableSurface
+    } else if has(BevLayer::Walkway) || has(BevLayer::PedCrossing) {
+        Class::Sidewalk
+    } else {
+        Class::Terrain
+    }
+}
+
+/// Columns and heights that a box occupies by the rough profile of its class, as
+/// (x, y, number of voxels from bin 0 upward), in the vertical convention of the Occ3D labels:
+/// objects reach down to bin 0, their tops stay where they are.
+pub fn box_columns(b: &SceneBox) -> Vec<(usize, usize, usize)> {
+    let bottom_z = b.center_m.z - b.size_m.z / 2.0;
+    let mut out = Vec::new();
+    box_cells(b, 0.0, |x, y| {
+        let p = GridSpec::center(x, y, 0);
+        let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z));
+        let along = local.x / b.size_m.x; // -0.5 rear to 0.5 front
+        let share = match b.class {
+            // Bonnet and boot are lower than the cabin.
+            Class::Car if !(-0.42..=0.26).contains(&along) => 0.58,
+            // The arm in front of the body.
+            Class::ConstructionVehicle if along > 0.18 => 0.85,
+            Class::Motorcycle | Class::Bicycle if !(-0.25..=0.25).contains(&along) => 0.5,
+            _ => 1.0,
+        };
+        let top_m = bottom_z + share * b.size_m.z;
+        // A layer counts once a sixth of it is filled.
+        let top = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z - 1.0 / 6.0;
+        // A box floating above the ground still shows at least one voxel; NaN shows none.
+        if top.is_finite() {
+            let layers = (top.floor() + 1.0).clamp(1.0, GridSpec::NZ as f64);
+            out.push((x, y, layers as usize));
+        }
+    });
+    out
+}
+
+/// The draft of a whole frame: ground in bin 0 of every column, objects in place of the ground.
+pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> VoxelGrid {
+    let mut grid = VoxelGrid::new();
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            grid.column_mut(x, y)[0] = ground_class(layout.cell(x, y)).id();
+        }
+    }
+    for b in boxes {
+        for (x, y, layers) in box_columns(b) {
+            grid.column_mut(x, y)[..layers].fill(b.class.id());
+        }
+    }
+    grid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::BoxId;
+    use glam::DVec2;
+
+    #[test]
+    fn ground_and_a_car() {
+        let mut layout = BevLayout::default();
+        layout.set(BevLayer::DrivableArea, 100, 100, true);
+        layout.set(BevLayer::Walkway, 100, 101, true);
+        let car = SceneBox {
+            id: BoxId(1),
+            class: Class::Car,
+            center_m: DVec3::new(10.0, 0.0, 0.85),
+            size_m: DVec3::new(4.6, 1.95, 1.7),
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+        };
+        let grid = draft(&layout, [&car].into_iter());
+        assert_eq!(grid.get(100, 100, 0), Class::DriveableSurface.id());
+        assert_eq!(grid.get(100, 101, 0), Class::Sidewalk.id());
+        assert_eq!(grid.get(0, 0, 0), Class::Terrain.id());
+        let columns = box_columns(&car);
+        assert!((44..70).contains(&columns.len()), "{} columns", columns.len());
+        let tallest = columns.iter().map(|c| c.2).max();
+        assert_eq!(tallest, Some(7)); // top at 1.7 m: bin 6 is filled to 0.3 m
+        assert_eq!(grid.get(125, 100, 6), Class::Car.id());
+        assert_eq!(grid.get(125, 100, 7), Class::FREE);
+    }
+}
