@@ -4,4 +4,6 @@ pub mod cli;
 pub mod open;
 pub mod picture;
 
-fn run_window(_: crate::scene::Scene, _: Option<std::path::PathBuf>) -> anyhow::Result<()> { Ok(()) }
+fn run_window(_: crate::scene::Scene, _: Option<std::path::PathBuf>) -> anyhow::Result<()> {
+    Ok(())
+}
