@@ -262,12 +262,14 @@ fn bad_files_are_named() {
     std::fs::create_dir(&weights).expect("writable");
     refused(
         &["generate", &scene, "--weights", &weights, "-o", &out],
-        &["occ_vae.safetensors"],
+        &[".safetensors"],
     );
-    std::fs::write(Path::new(&weights).join("occ_vae.safetensors"), b"not weights").expect("writable");
+    for file in ["occ_vae.safetensors", "occ_dit.safetensors"] {
+        std::fs::write(Path::new(&weights).join(file), b"not weights").expect("writable");
+    }
     refused(
         &["generate", &scene, "--weights", &weights, "-o", &out],
-        &["occ_vae.safetensors"],
+        &[".safetensors"],
     );
     assert!(!Path::new(&out).exists(), "nothing may be written");
 }

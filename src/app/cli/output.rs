@@ -17,14 +17,17 @@ pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
     }
 }
 
-/// An error with its causes on one line.
+/// An error with its causes on one line. A cause that its parent has quoted already is left out.
 pub fn one_line(error: &anyhow::Error) -> String {
-    let text = format!("{error:#}");
-    text.lines()
-        .map(str::trim)
-        .filter(|l| !l.is_empty())
-        .collect::<Vec<_>>()
-        .join("; ")
+    let mut text = String::new();
+    for cause in error.chain() {
+        let lines = cause.to_string();
+        let line = lines.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
+        if !text.contains(&line) {
+            text = if text.is_empty() { line } else { format!("{text}: {line}") };
+        }
+    }
+    text
 }
 
 /// Writes a file beside its final name and renames it: an interrupted command leaves the old file whole.
