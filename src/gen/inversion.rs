@@ -218,16 +218,13 @@ pub fn round_trip_error<D: Denoiser + ?Sized>(
 mod tests {
     use super::*;
     use crate::generation::rng::{Stream, normal_field};
-    use crate::generation::schedule::{Schedule, Spacing};
+    use crate::generation::schedule::Schedule;
+    use crate::generation::solver::Guidance;
     use crate::generation::solver::tests::toy;
-    use crate::generation::solver::{Guidance, Prediction};
 
     fn sampler(n: usize, weight: f64) -> Sampler {
-        Sampler {
-            levels: Schedule::standard().levels(n, Spacing::Trailing).expect("valid"),
-            prediction: Prediction::V,
-            guidance: Guidance { weight, rescale: 0.0 },
-        }
+        let guidance = Guidance { weight, rescale: 0.0 };
+        Sampler::standard(n, guidance).expect("valid")
     }
 
     /// A smooth nonlinear v: data lie near +-0.8 (two-peak Gaussian mixture, exact posterior mean).

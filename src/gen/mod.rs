@@ -1,11 +1,14 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
 
+pub mod composite;
 pub mod dataset;
 pub mod inversion;
+pub mod job;
 pub mod metrics;
 pub mod region;
 pub mod replay;
 pub mod rng;
 pub mod schedule;
 pub mod solver;
+pub mod worker;
 pub mod world;

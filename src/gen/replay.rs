@@ -120,17 +120,13 @@ mod tests {
     use crate::generation::rng::normal_field;
     use crate::generation::schedule::{Schedule, Spacing};
     use crate::generation::solver::tests::toy;
-    use crate::generation::solver::{Branch, Guidance, Prediction};
+    use crate::generation::solver::{Branch, Guidance};
 
     const CELLS: usize = 2500;
     const CHANNELS: usize = 8;
 
     fn sampler() -> Sampler {
-        Sampler {
-            levels: Schedule::standard().levels(5, Spacing::Trailing).expect("valid"),
-            prediction: Prediction::V,
-            guidance: Guidance::NONE,
-        }
+        Sampler::standard(5, Guidance::NONE).expect("valid")
     }
 
     fn source() -> Trajectory {
@@ -288,10 +284,7 @@ mod tests {
             edit(&sampler(), &[true; 7], CHANNELS),
             Err("a state of the trajectory has 20000 values, expected 56".into())
         );
-        let longer = Sampler {
-            levels: Schedule::standard().levels(6, Spacing::Trailing).expect("valid"),
-            ..sampler()
-        };
+        let longer = Sampler::standard(6, Guidance::NONE).expect("valid");
         assert_eq!(
             edit(&longer, &[true; CELLS], CHANNELS),
             Err("the trajectory has 6 values, expected 7".into())

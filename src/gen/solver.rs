@@ -4,7 +4,7 @@
 
 use thiserror::Error;
 
-use super::schedule::{Level, ScheduleError};
+use super::schedule::{Level, Schedule, ScheduleError, Spacing};
 
 /// What a network's output means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -293,6 +293,15 @@ pub struct Sampler {
 }
 
 impl Sampler {
+    /// For this project's networks: the standard schedule, trailing steps, v prediction.
+    pub fn standard(steps: usize, guidance: Guidance) -> Result<Self, ScheduleError> {
+        Ok(Self {
+            levels: Schedule::standard().levels(steps, Spacing::Trailing)?,
+            prediction: Prediction::V,
+            guidance,
+        })
+    }
+
     /// Number of steps.
     pub fn steps(&self) -> usize {
         self.levels.len().saturating_sub(1)
@@ -343,7 +352,7 @@ pub(super) fn check_finite(state: &[f64], step: usize, steps: usize) -> Result<(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::generation::schedule::{Betas, Schedule, Spacing};
+    use crate::generation::schedule::Betas;
 
     /// A closed-form model from two functions of one value and t; counts its calls.
     pub(in crate::generation) struct Toy<C, U> {
@@ -532,11 +541,7 @@ pub(super) mod tests {
                 Ok(vec![0.0])
             }
         }
-        let sampler = Sampler {
-            levels: Schedule::standard().levels(5, Spacing::Trailing).expect("valid"),
-            prediction: Prediction::V,
-            guidance: Guidance::NONE,
-        };
+        let sampler = Sampler::standard(5, Guidance::NONE).expect("valid");
         let error = sampler
             .sample(vec![0.0; 3], &mut Short, |_| Ok(()))
             .expect_err("short");

@@ -132,7 +132,7 @@ impl Solid {
         let (near, far) = match self.shape {
             Shape::Hull { half, top, heading } => {
                 let (o, r2) = (self.local(origin, heading), dir.truncate());
-                let d = DVec3::new(r2.dot(heading), r2.perp_dot(heading) * -1.0, dir.z);
+                let d = DVec3::new(r2.dot(heading), -r2.perp_dot(heading), dir.z);
                 clip_hull(o, d, half, top)?
             }
             Shape::Frustum { bottom, top, half_height } => {

@@ -297,10 +297,13 @@ fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f
     }
 }
 
+/// Calls back with every cell of a shape.
+type Visitor<'a> = &'a dyn Fn(&mut dyn FnMut(usize, usize));
+
 impl Plan {
     fn draw(self) -> BevLayout {
         let mut out = BevLayout::default();
-        let mut paint = |layer: BevLayer, visit: &dyn Fn(&mut dyn FnMut(usize, usize))| {
+        let mut paint = |layer: BevLayer, visit: Visitor<'_>| {
             let mut cells = Vec::new();
             visit(&mut |x, y| cells.push((x, y)));
             for (x, y) in cells {
