@@ -9,6 +9,7 @@ pub mod region;
 pub mod replay;
 pub mod rng;
 pub mod schedule;
+pub mod sensors;
 pub mod solver;
 pub mod worker;
 pub mod world;

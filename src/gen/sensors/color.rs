@@ -1,0 +1,177 @@
+//! Pictures of the maps: render ids and depths as RGBA, depths as 16-bit millimetres.
+
+use crate::scene::sensor_data::{RENDER_IDS, RenderId};
+use crate::scene::{BevLayer, CameraMaps, Class};
+
+/// sRGB colour of pixels on which nothing was drawn.
+pub const SKY: [u8; 3] = [46, 58, 78];
+
+/// sRGB colour of a pixel without a depth.
+pub const NO_DEPTH: [u8; 3] = [14, 14, 18];
+
+/// sRGB colour of a render id: the classes' colours, and those of the painted lines for 17 to 19.
+/// Id 0 is the sky; ids from 20 on are drawn as the class "others".
+pub fn render_id_color(id: RenderId) -> [u8; 3] {
+    match id {
+        0 => SKY,
+        17 => BevLayer::PedCrossing.color(),
+        18 => BevLayer::RoadDivider.color(),
+        19 => BevLayer::LaneDivider.color(),
+        _ => Class::from_id(id).unwrap_or(Class::Others).color(),
+    }
+}
+
+/// The semantic map as RGBA, 4 bytes per pixel, opaque. With `shaded`, far things are dimmed, pixels
+/// beside a nearer one are darkened and slopes in depth give faces a tone, so that shapes can be told apart.
+pub fn semantic_rgba(maps: &CameraMaps, shaded: bool) -> Vec<u8> {
+    let palette: [[u8; 3]; RENDER_IDS] = std::array::from_fn(|id| render_id_color(id as u8));
+    let mut out = Vec::with_capacity(maps.semantic.len() * 4);
+    for (at, &id) in maps.semantic.iter().enumerate() {
+        let rgb = palette
+            .get(id as usize)
+            .copied()
+            .unwrap_or_else(|| render_id_color(id));
+        let tone = if shaded && id != 0 { tone(maps, at) } else { 1.0 };
+        out.extend(rgb.map(|c| (f32::from(c) * tone).min(255.0) as u8));
+        out.push(255);
+    }
+    out
+}
+
+/// Brightness of a pixel from the depths around it, 0.45 to 1.1.
+fn tone(maps: &CameraMaps, at: usize) -> f32 {
+    let d = maps.depth_m[at];
+    if d <= 0.0 {
+        return 1.0;
+    }
+    let (x, y) = (at % maps.width, at / maps.width);
+    // Neighbours outside the image or without depth count as level.
+    let depth = |dx: isize, dy: isize| {
+        let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+        let v = if x < maps.width && y < maps.height {
+            maps.depth_m[y * maps.width + x]
+        } else {
+            d
+        };
+        if v > 0.0 { v } else { d }
+    };
+    let (left, right, up, down) = (depth(-1, 0), depth(1, 0), depth(0, -1), depth(0, 1));
+    let nearest = left.min(right).min(up).min(down);
+    // An outline where a neighbour is nearer by more than a slope would make it.
+    let behind = ((d - nearest) / d - 0.04).clamp(0.0, 0.2) / 0.2;
+    // Faces that turn to the right are lit, those that turn to the left lie in shade.
+    let slope = ((right - left) / d * 4.0).clamp(-1.0, 1.0);
+    let far = 1.0 - 0.35 * (d / 60.0).min(1.0);
+    (far * (1.0 - 0.3 * behind) * (1.0 + 0.12 * slope)).clamp(0.45, 1.1)
+}
+
+/// Depths as RGBA, 4 bytes per pixel, opaque: warm is near, cold is far, even steps in log depth
+/// between `near_m` and `far_m`, beyond which the colour stays. Pixels without a depth (not above 0,
+/// or NaN) get [`NO_DEPTH`].
+pub fn depth_rgba(depth_m: &[f32], near_m: f32, far_m: f32) -> Vec<u8> {
+    let near_m = if near_m > 1e-3 { near_m } else { 1e-3 };
+    let far_m = if far_m > near_m { far_m } else { near_m * 1.001 };
+    let (at_near, at_far) = (near_m.ln(), far_m.ln());
+    let mut out = Vec::with_capacity(depth_m.len() * 4);
+    for &d in depth_m {
+        let rgb = if d > 0.0 {
+            ramp((d.ln() - at_near) / (at_far - at_near))
+        } else {
+            NO_DEPTH
+        };
+        out.extend(rgb);
+        out.push(255);
+    }
+    out
+}
+
+/// A ramp from warm (0) to cold (1) whose lightness falls all the way, so that it also reads without colour.
+pub fn ramp(t: f32) -> [u8; 3] {
+    const STOPS: [[f32; 3]; 7] = [
+        [255.0, 244.0, 196.0],
+        [252.0, 196.0, 94.0],
+        [236.0, 128.0, 76.0],
+        [196.0, 74.0, 106.0],
+        [128.0, 50.0, 134.0],
+        [66.0, 42.0, 124.0],
+        [28.0, 30.0, 72.0],
+    ];
+    // NaN lands on the first stop.
+    let t = if t > 0.0 { t.min(1.0) } else { 0.0 } * (STOPS.len() - 1) as f32;
+    let i = (t as usize).min(STOPS.len() - 2);
+    let f = t - i as f32;
+    std::array::from_fn(|c| (STOPS[i][c] + (STOPS[i + 1][c] - STOPS[i][c]) * f).round() as u8)
+}
+
+/// Depth in whole millimetres for a 16-bit picture, as in common RGB-D data: 0 where there is none
+/// (not above 0, or NaN), 65,535 for that many millimetres and more.
+pub fn depth_mm(depth_m: &[f32]) -> Vec<u16> {
+    let mm = |&d: &f32| if d > 0.0 { (d * 1000.0).round() as u16 } else { 0 };
+    depth_m.iter().map(mm).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_have_their_own_colours() {
+        let all: std::collections::HashSet<_> = (0..RENDER_IDS as u8).map(render_id_color).collect();
+        assert_eq!(all.len(), RENDER_IDS);
+        assert_eq!(render_id_color(4), Class::Car.color());
+        assert_eq!(render_id_color(200), Class::Others.color());
+    }
+
+    #[test]
+    fn pictures_have_four_bytes_a_pixel_and_bear_anything() {
+        let maps = CameraMaps {
+            camera: "TEST".into(),
+            width: 4,
+            height: 2,
+            semantic: vec![0, 4, 4, 11, 19, 255, 1, 2],
+            depth_m: vec![-1.0, 5.0, 5.1, f32::NAN, 0.0, 1e9, f32::INFINITY, 1e-20],
+            coverage: vec![1.0; 8],
+        };
+        let flat = semantic_rgba(&maps, false);
+        assert_eq!(flat.len(), 32);
+        assert_eq!(flat[..3], SKY);
+        assert_eq!(flat[4..7], Class::Car.color());
+        let shaded = semantic_rgba(&maps, true);
+        assert_eq!(shaded[..3], SKY);
+        assert!(shaded.chunks(4).all(|p| p[3] == 255));
+        let depth = depth_rgba(&maps.depth_m, 1.0, 60.0);
+        assert_eq!(depth[..3], NO_DEPTH);
+        assert_eq!(depth[12..15], NO_DEPTH);
+        assert_eq!(depth[20..23], ramp(1.0));
+        assert_eq!(depth_rgba(&maps.depth_m, f32::NAN, 0.0).len(), 32);
+    }
+
+    #[test]
+    fn ramp_darkens_with_distance() {
+        let luma = |t: f32| {
+            let [r, g, b] = ramp(t).map(f32::from);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        for i in 0..200 {
+            let t = i as f32 / 200.0;
+            assert!(luma(t) > luma(t + 0.02) - 0.01 && luma(t) - luma(t + 0.005) < 6.0);
+        }
+        assert_eq!(ramp(f32::NAN), ramp(0.0));
+    }
+
+    #[test]
+    fn millimetres_saturate() {
+        let got = depth_mm(&[
+            -1.0,
+            0.0,
+            0.0004,
+            0.0006,
+            1.2345,
+            65.535,
+            65.6,
+            f32::INFINITY,
+            f32::NAN,
+        ]);
+        assert_eq!(got, vec![0, 0, 0, 1, 1235, 65535, 65535, 65535, 0]);
+    }
+}

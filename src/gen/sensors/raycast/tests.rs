@@ -1,0 +1,240 @@
+//! Rows 45 and 46 of the extremes table, and the upkeep of the masks.
+
+use super::*;
+
+/// The oracle of row 45: a plain three-axis walk, voxel by voxel, after the reference's script.
+/// Returns the voxels visited (the last one is the hit if the flag is set) and the distance.
+fn plain_walk(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Option<f64>) {
+    let mut visited = Vec::new();
+    let mut cell = [0i64; 3];
+    let (mut step, mut t_next) = ([0i64; 3], [f64::INFINITY; 3]);
+    let t_plane = |axis: usize, cell: i64| {
+        let side = if d[axis] > 0.0 {
+            (cell + 1) as f64 - o[axis]
+        } else {
+            o[axis] - cell as f64
+        };
+        side * (1.0 / d[axis].abs())
+    };
+    for axis in 0..3 {
+        cell[axis] = o[axis].floor() as i64;
+        if d[axis] != 0.0 {
+            step[axis] = d[axis].signum() as i64;
+            t_next[axis] = t_plane(axis, cell[axis]);
+        }
+    }
+    // Where the ray leaves the grid; a voxel touched only there is not visited.
+    let last = |axis: usize| if d[axis] > 0.0 { N[axis] as i64 - 1 } else { 0 };
+    let leave = (0..3)
+        .filter(|&a| d[a] != 0.0)
+        .map(|a| t_plane(a, last(a)))
+        .fold(f64::INFINITY, f64::min);
+    let mut t_in = 0.0;
+    while visited.is_empty() || t_in < leave {
+        let c = cell.map(|v| v as usize);
+        visited.push(c);
+        if masks.occupied(c[0], c[1], c[2]) {
+            return (visited, Some(t_in));
+        }
+        let mut axis = 0;
+        for a in 1..3 {
+            if t_next[a] < t_next[axis] {
+                axis = a;
+            }
+        }
+        t_in = t_next[axis];
+        cell[axis] += step[axis];
+        t_next[axis] = t_plane(axis, cell[axis]);
+    }
+    (visited, None)
+}
+
+/// A repeatable scatter of numbers in 0..1.
+fn scatter(i: u64) -> f64 {
+    let mut v = i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((v ^ (v >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn scattered_voxels(count: u64) -> ColumnMasks {
+    let mut masks = ColumnMasks::from_grid(&VoxelGrid::new());
+    for i in 0..count {
+        let v = [0, 1, 2].map(|a| (scatter(i * 3 + a) * N[a as usize] as f64) as usize);
+        masks.set(v[0], v[1], v[2], true);
+    }
+    masks
+}
+
+fn walk_of(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Option<f64>) {
+    let mut visited = Vec::new();
+    let hit = masks.walk(o, d, f64::INFINITY, |v| visited.push(v));
+    (visited, hit.map(|h| h.0))
+}
+
+#[test]
+fn row_45_dda_equals_the_plain_walk() {
+    let masks = scattered_voxels(3000);
+    let empty = ColumnMasks::from_grid(&VoxelGrid::new());
+    let mut rays = Vec::new();
+    for i in 0..4000 {
+        let at = |k: u64| scatter(1_000_000 + i * 8 + k);
+        let o = DVec3::new(at(0) * 200.0, at(1) * 200.0, at(2) * 16.0);
+        let d = DVec3::new(at(3) - 0.5, at(4) - 0.5, (at(5) - 0.5) * 0.3);
+        rays.push((o, d.normalize()));
+        // On faces, edges and corners.
+        rays.push((o.floor(), d.normalize()));
+    }
+    // Parallel to axes and through edges and corners: ratios of two keep f64 exact.
+    let parts = [0.0, -0.0, 1.0, -1.0, 2.0, -0.5];
+    for x in parts {
+        for y in parts {
+            for z in parts {
+                for o in [
+                    DVec3::new(100.0, 100.0, 8.0),
+                    DVec3::new(100.5, 99.5, 7.5),
+                    DVec3::new(3.25, 0.0, 0.0),
+                    DVec3::new(199.75, 199.0, 15.0),
+                ] {
+                    if DVec3::new(x, y, z) != DVec3::ZERO {
+                        rays.push((o, DVec3::new(x, y, z)));
+                    }
+                }
+            }
+        }
+    }
+    for (o, d) in rays {
+        for masks in [&masks, &empty] {
+            let (got, want) = (walk_of(masks, o, d), plain_walk(masks, o, d));
+            assert_eq!(got, want, "origin {o}, direction {d}");
+            assert!(got.0.len() <= 416, "{} voxels from {o} along {d}", got.0.len());
+        }
+    }
+}
+
+#[test]
+fn row_45_dda_extremes() {
+    let mut masks = ColumnMasks::from_grid(&VoxelGrid::new());
+    masks.set(100, 100, 4, true);
+    let cast = |o: [f64; 3], d: [f64; 3]| masks.cast_in_voxels(o.into(), d.into(), 1e9);
+    let hit = |t: f64| Some((t, [100, 100, 4]));
+    // Inside, on a face, grazing along a face from either side, through an edge and a corner.
+    assert_eq!(cast([100.5, 100.5, 4.5], [1.0, 0.0, 0.0]), hit(0.0));
+    assert_eq!(cast([100.0, 100.0, 4.0], [0.0, 0.0, 1.0]), hit(0.0));
+    assert_eq!(cast([0.5, 100.0, 4.0], [1.0, -0.0, 0.0]), hit(99.5));
+    assert_eq!(cast([0.5, 101.0, 4.5], [1.0, 0.0, 0.0]), None);
+    assert_eq!(cast([0.5, 100.5, 5.0], [1.0, 0.0, -0.0]), None);
+    assert_eq!(cast([98.0, 98.0, 4.5], [1.0, 1.0, 0.0]), hit(2.0));
+    assert_eq!(cast([98.0, 98.0, 2.0], [1.0, 1.0, 1.0]), hit(2.0));
+    // From far away, from above, from below; pointing away; parallel and outside.
+    let (t, voxel) = cast([-1e6, 100.5, 4.5], [1.0, 0.0, 0.0]).expect("straight on");
+    assert_eq!((t, voxel), (1_000_100.0, [100, 100, 4]));
+    let far = DVec3::new(-1e6, -1e6, 1e5);
+    let d = (DVec3::new(100.4, 100.3, 4.6) - far).normalize();
+    let (t, voxel) = masks.cast_in_voxels(far, d, 1e9).expect("far ray");
+    assert_eq!(voxel, [100, 100, 4]);
+    let p = far + d * t;
+    assert!(
+        (p - DVec3::new(100.4, 100.3, 4.6)).abs().max_element() < 0.7,
+        "{p}"
+    );
+    assert_eq!(cast([100.5, 100.5, 1e6], [0.0, 0.0, -1.0]), hit(999_995.0));
+    assert_eq!(cast([100.5, 100.5, -1e6], [0.0, 0.0, 1.0]), hit(1_000_004.0));
+    assert_eq!(cast([100.5, 100.5, 1e6], [0.0, 0.0, 1.0]), None);
+    assert_eq!(cast([100.5, 300.0, 4.5], [1.0, 0.0, 0.0]), None);
+    // Not numbers, no direction, and components too small to matter.
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert_eq!(cast([bad, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+        assert_eq!(cast([0.5, 0.5, 0.5], [1.0, bad, 0.0]), None);
+    }
+    assert_eq!(cast([100.5, 100.5, 4.5], [0.0, -0.0, 0.0]), None);
+    assert_eq!(cast([0.5, 100.0, 4.0], [1.0, -1e-310, 1e-310]), hit(99.5));
+    // The range is a limit, and counts itself.
+    let limited = |max_t| masks.cast_in_voxels([90.0, 100.5, 4.5].into(), DVec3::X, max_t);
+    assert_eq!(limited(10.0), hit(10.0));
+    assert_eq!(limited(9.999_999), None);
+    assert_eq!(limited(-1.0), None);
+    assert_eq!(limited(f64::NAN), None);
+}
+
+/// The slab test in exact integers: origins and directions are quarters, so every entry and exit
+/// is a ratio of small integers.
+fn exact_span(o: [i128; 3], d: [i128; 3]) -> Option<[(i128, i128); 2]> {
+    let (mut enter, mut leave) = ((0i128, 1i128), None::<(i128, i128)>);
+    let less = |a: (i128, i128), b: (i128, i128)| a.0 * b.1 < b.0 * a.1; // denominators > 0
+    for axis in 0..3 {
+        let n = N[axis] as i128 * 4;
+        if d[axis] == 0 {
+            if o[axis] < 0 || o[axis] >= n {
+                return None;
+            }
+            continue;
+        }
+        let ratio = |plane: i128| ((plane - o[axis]) * d[axis].signum(), d[axis].abs());
+        let (mut a, mut b) = (ratio(0), ratio(n));
+        if less(b, a) {
+            (a, b) = (b, a);
+        }
+        if less(enter, a) {
+            enter = a;
+        }
+        if leave.is_none_or(|l| less(b, l)) {
+            leave = Some(b);
+        }
+    }
+    let leave = leave?;
+    let starts_inside = (0..3).all(|a| o[a] >= 0 && o[a] < N[a] as i128 * 4);
+    (less(enter, leave) || starts_inside).then_some([enter, leave])
+}
+
+#[test]
+fn row_46_slab_equals_rational_oracle() {
+    let coordinates = [-400i128, -1, 0, 1, 37, 63, 64, 65, 799, 800, 801, 4000];
+    let (mut inside, mut outside) = (0, 0);
+    for x in coordinates {
+        for y in coordinates {
+            for z in coordinates {
+                // Powers of two keep each quotient exact in f64.
+                for direction in 0..7i128.pow(3) {
+                    let part = |k: u32| [0, 1, -1, 4, -4, 16, -2][(direction / 7i128.pow(k) % 7) as usize];
+                    let (o, d) = ([x, y, z], [part(0), part(1), part(2)]);
+                    let quarters = |v: [i128; 3]| DVec3::from_array(v.map(|v| v as f64 / 4.0));
+                    let got = grid_span(quarters(o), quarters(d));
+                    match exact_span(o, d) {
+                        Some([enter, leave]) => {
+                            let span = got.unwrap_or_else(|| panic!("missed: {o:?} {d:?}"));
+                            assert_eq!(span.enter, enter.0 as f64 / enter.1 as f64, "{o:?} {d:?}");
+                            assert_eq!(span.leave, leave.0 as f64 / leave.1 as f64, "{o:?} {d:?}");
+                            inside += 1;
+                        }
+                        None => {
+                            assert_eq!(got, None, "{o:?} {d:?}");
+                            outside += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(inside > 10_000 && outside > 10_000, "{inside} {outside}");
+    // -0.0 is 0, on the plane itself too.
+    let along = |y| grid_span(DVec3::new(0.0, y, 8.0), DVec3::new(1.0, -0.0, 0.0));
+    assert!(along(0.0).is_some() && along(-0.0).is_some());
+    assert!(along(200.0).is_none());
+}
+
+#[test]
+fn update_follows_changed_bricks() {
+    let mut grid = VoxelGrid::new();
+    let before = grid.clone();
+    let mut masks = ColumnMasks::from_grid(&grid);
+    for (x, y, z) in [(0, 0, 0), (199, 199, 15), (17, 130, 3), (17, 130, 9)] {
+        grid.set(x, y, z, Class::Others.id());
+    }
+    masks.update(&grid, &grid.changed_bricks(&before));
+    assert_eq!(masks, ColumnMasks::from_grid(&grid));
+    assert_eq!(masks.column(17, 130), 1 << 3 | 1 << 9);
+    masks.update(&before, &[0, 168, 10_000]);
+    assert_eq!(masks.column(0, 0), 0);
+    assert_eq!(masks.column(199, 199), 0);
+}

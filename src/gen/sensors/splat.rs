@@ -1,0 +1,317 @@
+//! Camera maps by Gaussian splatting on the CPU: semantics, depth and coverage, after UniScene
+//! (arXiv 2412.05435) equations 3 and 4 and 13 to 18.
+
+use rayon::prelude::*;
+
+pub use super::cloud::{Gaussian, GaussianCloud};
+use super::order::depth_order;
+use super::project::{Conic, View};
+use super::tile::{Limits, Splat, TILE, Tile, heaviest};
+use crate::scene::sensor_data::RENDER_IDS;
+use crate::scene::{Camera, CameraMaps, SensorRig};
+
+/// Size at which the editor shows a camera: a quarter of the nuScenes images.
+pub const VIEW_SIZE: [u32; 2] = [400, 225];
+/// Size while the user drags.
+pub const PREVIEW_SIZE: [u32; 2] = [240, 135];
+
+/// Constants of the renderer; the default is the papers' (and the reference data's).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplatOptions {
+    /// Gaussians whose centre is not beyond this depth are dropped, m. The rasteriser behind the
+    /// papers uses 0.2 whatever its caller asks for.
+    pub near_m: f64,
+    /// Gaussians beyond this depth are dropped, m.
+    pub far_m: f64,
+    /// Added to the variance along both image axes, px^2.
+    pub low_pass_px2: f64,
+    /// Largest alpha of one splat, at most 0.999.
+    pub alpha_max: f32,
+    /// Alphas below this are skipped.
+    pub alpha_min: f32,
+    /// A pixel with less light left takes no more splats.
+    pub t_stop: f32,
+    /// How far off the axis the Jacobian is taken, in units of half the image.
+    pub jacobian_clamp: f64,
+    /// Multiply opacity by sqrt(det / det'), see [`Conic::compensation`].
+    pub compensate_opacity: bool,
+    /// [`CameraMaps::semantic`] is 0 where coverage is below this. 0.10 in the paper.
+    pub min_coverage: f32,
+}
+
+impl Default for SplatOptions {
+    fn default() -> Self {
+        Self {
+            near_m: 0.2,
+            far_m: 200.0,
+            low_pass_px2: 0.3,
+            alpha_max: 0.99,
+            alpha_min: 1.0 / 255.0,
+            t_stop: 1e-4,
+            jacobian_clamp: 1.3,
+            compensate_opacity: false,
+            min_coverage: 0.10,
+        }
+    }
+}
+
+/// Everything the renderer knows about the pixels of one camera, row-major, `height * width` each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawMaps {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Sum of weights, 0 to 1.
+    pub coverage: Vec<f32>,
+    /// Sum of weight times depth in m, not normalised (equation 17).
+    pub expected_m: Vec<f32>,
+    /// Expected depth over coverage in m; -1 where coverage is below 1e-3.
+    pub normalised_m: Vec<f32>,
+    /// Depth in m of the first Gaussian after which less than half the light is left; -1 if none.
+    pub median_m: Vec<f32>,
+    /// Heaviest render id (equation 18), the lowest on a tie; -1 where nothing was drawn.
+    pub label: Vec<i16>,
+    /// Weight of the heaviest id minus that of the second.
+    pub margin: Vec<f32>,
+    /// Light that was left.
+    pub transmittance: Vec<f32>,
+}
+
+/// Below this coverage a normalised depth says nothing.
+const MIN_DEPTH_COVERAGE: f32 = 1e-3;
+
+/// Renders one camera at `width` x `height` pixels (0 gives empty maps).
+pub fn render(
+    cloud: &GaussianCloud,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+    options: &SplatOptions,
+) -> CameraMaps {
+    let raw = render_raw(cloud, camera, width, height, options);
+    let visible = |(&label, &coverage): (&i16, &f32)| {
+        if coverage < options.min_coverage {
+            0
+        } else {
+            label.max(0) as u8
+        }
+    };
+    CameraMaps {
+        camera: camera.name.clone(),
+        width: raw.width,
+        height: raw.height,
+        semantic: raw.label.iter().zip(&raw.coverage).map(visible).collect(),
+        depth_m: raw.normalised_m,
+        coverage: raw.coverage,
+    }
+}
+
+/// Renders every camera of a rig, in the rig's order.
+pub fn render_rig(
+    cloud: &GaussianCloud,
+    rig: &SensorRig,
+    width: u32,
+    height: u32,
+    options: &SplatOptions,
+) -> Vec<CameraMaps> {
+    let cameras = rig.cameras.par_iter();
+    cameras
+        .map(|c| render(cloud, c, width, height, options))
+        .collect()
+}
+
+/// Renders one camera and returns all that was computed. The result does not depend on the number
+/// of threads.
+pub fn render_raw(
+    cloud: &GaussianCloud,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+    options: &SplatOptions,
+) -> RawMaps {
+    let (w, h) = (width as usize, height as usize);
+    let mut maps = RawMaps::empty(w, h);
+    if w == 0 || h == 0 {
+        return maps;
+    }
+    let splats = project_all(cloud, camera, width, height, options);
+    let bins = Bins::new(&splats, w, h);
+    let limits = Limits {
+        alpha_min: options.alpha_min,
+        alpha_max: options.alpha_max.clamp(0.0, 0.999),
+        t_stop: options.t_stop,
+    };
+    // A job is a row of tiles, which owns whole rows of each map.
+    let rows = TILE * w;
+    let jobs = (
+        maps.coverage.par_chunks_mut(rows),
+        maps.expected_m.par_chunks_mut(rows),
+        maps.normalised_m.par_chunks_mut(rows),
+        maps.median_m.par_chunks_mut(rows),
+        maps.label.par_chunks_mut(rows),
+        maps.margin.par_chunks_mut(rows),
+        maps.transmittance.par_chunks_mut(rows),
+    );
+    jobs.into_par_iter().enumerate().for_each(
+        |(tile_y, (coverage, expected, normalised, median, label, margin, transmittance))| {
+            let y0 = tile_y * TILE;
+            let rows = TILE.min(h - y0);
+            let mut tile = Tile::new(0, 0);
+            for tile_x in 0..w.div_ceil(TILE) {
+                let list = bins.list(tile_x, tile_y);
+                if list.is_empty() {
+                    continue;
+                }
+                let x0 = tile_x * TILE;
+                let columns = TILE.min(w - x0);
+                tile.reset(columns, rows);
+                tile.blend(list.iter().map(|&s| &splats[s as usize].0), [x0, y0], limits);
+                for row in 0..rows {
+                    for column in 0..columns {
+                        let at = row * w + x0 + column;
+                        let weights = tile.weights.iter().map(|rows| rows[row][column]);
+                        let covered: f32 = weights.clone().sum();
+                        coverage[at] = covered;
+                        expected[at] = tile.expected_m[row][column];
+                        if covered >= MIN_DEPTH_COVERAGE {
+                            normalised[at] = tile.expected_m[row][column] / covered;
+                        }
+                        median[at] = tile.median_m[row][column];
+                        if let Some((id, lead)) = heaviest(weights) {
+                            label[at] = i16::from(id);
+                            margin[at] = lead;
+                        }
+                        transmittance[at] = tile.transmittance[row][column];
+                    }
+                }
+            }
+        },
+    );
+    maps
+}
+
+impl RawMaps {
+    /// Maps on which nothing was drawn.
+    fn empty(width: usize, height: usize) -> Self {
+        let n = width * height;
+        RawMaps {
+            width,
+            height,
+            coverage: vec![0.0; n],
+            expected_m: vec![0.0; n],
+            normalised_m: vec![-1.0; n],
+            median_m: vec![-1.0; n],
+            label: vec![-1; n],
+            margin: vec![0.0; n],
+            transmittance: vec![1.0; n],
+        }
+    }
+}
+
+/// Pixels that a splat may touch: first and one past the last, x then y.
+type Bounds = [[u16; 2]; 2];
+
+/// Splats that may touch the image, near to far, equal depths in the cloud's order.
+fn project_all(
+    cloud: &GaussianCloud,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+    options: &SplatOptions,
+) -> Vec<(Splat, Bounds)> {
+    let view = View::new(camera, width, height, options.jacobian_clamp);
+    let size = [width, height];
+    let one = |g: &Gaussian| -> Option<(Splat, Bounds)> {
+        let position = glam::Vec3::from(g.position_m).as_dvec3();
+        let footprint = view.project(position, f64::from(g.std_m), options.near_m, options.far_m)?;
+        let conic = Conic::new(footprint.covariance_px2, options.low_pass_px2)?;
+        let mut opacity = g.opacity.clamp(0.0, 1.0);
+        if options.compensate_opacity {
+            opacity *= conic.compensation as f32;
+        }
+        // Not above 0 also drops NaN.
+        if !(opacity > 0.0 && opacity >= options.alpha_min) || usize::from(g.id) >= RENDER_IDS {
+            return None;
+        }
+        let min_exponent = (options.alpha_min / opacity).ln(); // -inf without a threshold
+        // Where the exponent meets the threshold; a hair more, since alpha is rounded.
+        let reach = (-2.0 * f64::from(min_exponent)).sqrt() + 1e-3;
+        let mut bounds = [[0; 2]; 2];
+        for axis in 0..2 {
+            let (mean, half) = (footprint.mean_px[axis], reach * conic.extent_px[axis]);
+            let limit = f64::from(size[axis].min(u32::from(u16::MAX)));
+            // Pixel i is sampled at i + 1/2.
+            let first = (mean - half - 0.5).ceil().clamp(0.0, limit);
+            let end = ((mean + half - 0.5).floor() + 1.0).clamp(0.0, limit);
+            if first >= end {
+                return None;
+            }
+            bounds[axis] = [first as u16, end as u16];
+        }
+        let splat = Splat {
+            mean_px: footprint.mean_px.map(|v| v as f32),
+            along: (-0.5 * conic.along) as f32,
+            shear: conic.shear as f32,
+            across: (-0.5 * conic.across) as f32,
+            opacity,
+            min_exponent,
+            depth_m: footprint.depth_m as f32,
+            id: g.id,
+        };
+        Some((splat, bounds))
+    };
+    let splats: Vec<(Splat, Bounds)> = cloud.gaussians().par_iter().filter_map(one).collect();
+    let depths: Vec<f32> = splats.iter().map(|(s, _)| s.depth_m).collect();
+    depth_order(&depths)
+        .into_iter()
+        .map(|i| splats[i as usize])
+        .collect()
+}
+
+/// For each tile the splats that may touch it, near to far.
+struct Bins {
+    tiles_x: usize,
+    starts: Vec<u32>,
+    splats: Vec<u32>,
+}
+
+impl Bins {
+    fn new(splats: &[(Splat, Bounds)], width: usize, height: usize) -> Bins {
+        let (tiles_x, tiles_y) = (width.div_ceil(TILE), height.div_ceil(TILE));
+        let tiles = |&[x, y]: &Bounds| {
+            let range = |[first, end]: [u16; 2]| usize::from(first) / TILE..usize::from(end).div_ceil(TILE);
+            range(y).flat_map(move |ty| range(x).map(move |tx| ty * tiles_x + tx))
+        };
+        let mut starts = vec![0u32; tiles_x * tiles_y + 1];
+        for (_, bounds) in splats {
+            for tile in tiles(bounds) {
+                starts[tile + 1] += 1;
+            }
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut lists = vec![0; *starts.last().expect("one more than tiles") as usize];
+        for (index, (_, bounds)) in splats.iter().enumerate() {
+            for tile in tiles(bounds) {
+                lists[next[tile] as usize] = index as u32;
+                next[tile] += 1;
+            }
+        }
+        Bins {
+            tiles_x,
+            starts,
+            splats: lists,
+        }
+    }
+
+    fn list(&self, tile_x: usize, tile_y: usize) -> &[u32] {
+        let tile = tile_y * self.tiles_x + tile_x;
+        &self.splats[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests;
