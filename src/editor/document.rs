@@ -224,3 +224,7 @@ impl Document {
         self.at = self.steps.len() - 1;
     }
 }
+
+#[cfg(test)]
+#[path = "document_tests.rs"]
+mod tests;

@@ -324,3 +324,7 @@ fn check_voxels(cells: &[[usize; 3]]) -> Result<(), EditError> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+#[path = "edit_tests.rs"]
+mod tests;

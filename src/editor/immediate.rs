@@ -36,8 +36,8 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
         for z in 0..GridSpec::NZ {
             let inside = GridSpec::center(x, y, z).z <= top_m;
             if inside && column[z] == class && painted[z] == NOT_PAINTED {
-                column[z] = Class::FREE;
-                if z == 0 {
+                column[z] = background(frame.source.occupancy.get(x, y, z));
+                if z == 0 && column[z] == Class::FREE {
                     emptied.push([x, y]);
                 }
             }
@@ -47,6 +47,15 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
         }
     });
     refill_ground(frame, &emptied);
+}
+
+/// What comes back where an object leaves: walls and plants that it was put on top of. Objects do
+/// not, their boxes may have gone since, and the ground follows the layout of today.
+fn background(source_label: u8) -> u8 {
+    match Class::from_id(source_label) {
+        Some(Class::Others | Class::Manmade | Class::Vegetation) => source_label,
+        _ => Class::FREE,
+    }
 }
 
 /// Stamps the voxels of a box in the rough profile of its class, in place of what was there.
