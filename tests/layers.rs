@@ -41,21 +41,35 @@ fn violations(room: &str, name: &str, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let code = line.split("//").next().unwrap_or("");
-        let at = |what: &str| format!("{name}:{}: {room} must not know {what}: {}", number + 1, line.trim());
+        let at = |what: &str| {
+            format!(
+                "{name}:{}: {room} must not know {what}: {}",
+                number + 1,
+                line.trim()
+            )
+        };
         for other in ROOMS {
             let path = format!("crate::{other}");
-            let named = code.match_indices(&path).any(|(i, _)| {
-                !code[i + path.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_')
-            });
+            let named = code
+                .match_indices(&path)
+                .any(|(i, _)| !code[i + path.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_'));
             if named && !may_know(room).contains(&other) {
                 found.push(at(other));
             }
         }
-        for library in ["egui", "eframe", "rfd", "egui_wgpu", "wgpu", "candle_core", "candle_nn"] {
+        for library in [
+            "egui",
+            "eframe",
+            "rfd",
+            "egui_wgpu",
+            "wgpu",
+            "candle_core",
+            "candle_nn",
+        ] {
             let path = format!("{library}::");
-            let named = code.match_indices(&path).any(|(i, _)| {
-                !code[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_')
-            });
+            let named = code
+                .match_indices(&path)
+                .any(|(i, _)| !code[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_'));
             if named && !may_use_library(room, library) {
                 found.push(at(library));
             }
@@ -73,7 +87,11 @@ fn arrows_run_one_way() {
     let mut found = Vec::new();
     for file in files {
         let inner = file.strip_prefix(&src).expect("inside src");
-        let Some(folder) = inner.components().next().filter(|_| inner.components().count() > 1) else {
+        let Some(folder) = inner
+            .components()
+            .next()
+            .filter(|_| inner.components().count() > 1)
+        else {
             continue; // lib.rs and main.rs are the front door
         };
         let folder = folder.as_os_str().to_string_lossy();
@@ -86,7 +104,13 @@ fn arrows_run_one_way() {
 
 #[test]
 fn a_wrong_arrow_is_seen() {
-    assert_eq!(violations("scene", "a.rs", "use crate::editor::Document;").len(), 1);
+    assert_eq!(
+        violations("scene", "a.rs", "use crate::editor::Document;").len(),
+        1
+    );
     assert_eq!(violations("editor", "a.rs", "let x = wgpu::Device;").len(), 1);
-    assert_eq!(violations("editor", "a.rs", "use crate::scene::Scene; // crate::app").len(), 0);
+    assert_eq!(
+        violations("editor", "a.rs", "use crate::scene::Scene; // crate::app").len(),
+        0
+    );
 }

@@ -28,6 +28,10 @@ pub enum Command {
     JumpTo(usize),
     /// Chooses a box, or none.
     Select(Option<BoxId>),
+    /// Chooses the next (1) or previous (-1) box by id.
+    SelectNext(i32),
+    /// Ends what is in hand: a drag, an enlarged camera, the selection, the tool.
+    Escape,
     /// Puts a new box of typical size on the ground, and chooses it.
     AddBox {
         /// One of the ten object classes.

@@ -78,7 +78,15 @@ impl Icon {
             Icon::Cursor => closed(&[(4.0, 2.0), (4.0, 13.0), (7.0, 10.3), (11.5, 10.3)]),
             Icon::Brush => {
                 line(&[(13.5, 2.5), (7.5, 8.5)]);
-                closed(&[(7.6, 8.4), (5.0, 9.2), (3.8, 11.2), (2.5, 13.5), (5.4, 12.9), (7.4, 11.6), (8.6, 9.5)]);
+                closed(&[
+                    (7.6, 8.4),
+                    (5.0, 9.2),
+                    (3.8, 11.2),
+                    (2.5, 13.5),
+                    (5.4, 12.9),
+                    (7.4, 11.6),
+                    (8.6, 9.5),
+                ]);
             }
             Icon::AddBox => {
                 closed(&[(2.5, 5.0), (10.5, 5.0), (10.5, 13.0), (2.5, 13.0)]);
@@ -87,7 +95,14 @@ impl Icon {
                 line(&[(6.0, 2.5), (13.0, 2.5), (13.0, 9.5)]);
             }
             Icon::Voxel => {
-                closed(&[(8.0, 1.8), (13.5, 4.8), (13.5, 11.2), (8.0, 14.2), (2.5, 11.2), (2.5, 4.8)]);
+                closed(&[
+                    (8.0, 1.8),
+                    (13.5, 4.8),
+                    (13.5, 11.2),
+                    (8.0, 14.2),
+                    (2.5, 11.2),
+                    (2.5, 4.8),
+                ]);
                 line(&[(2.5, 4.8), (8.0, 7.9), (13.5, 4.8)]);
                 line(&[(8.0, 7.9), (8.0, 14.2)]);
             }
@@ -105,12 +120,22 @@ impl Icon {
             }
             Icon::Play => solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)]),
             Icon::Stop => solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)]),
-            Icon::Live => closed(&[(9.2, 1.8), (3.6, 9.0), (7.4, 9.0), (6.6, 14.2), (12.4, 6.8), (8.4, 6.8)]),
+            Icon::Live => closed(&[
+                (9.2, 1.8),
+                (3.6, 9.0),
+                (7.4, 9.0),
+                (6.6, 14.2),
+                (12.4, 6.8),
+                (8.4, 6.8),
+            ]),
             Icon::Eye | Icon::EyeOff => {
                 let lid = |sign: f32| {
                     let points = (0..=10).map(|i| {
                         let t = i as f32 / 10.0;
-                        at(1.8 + 12.4 * t, 8.0 + sign * 4.6 * (std::f32::consts::PI * t).sin())
+                        at(
+                            1.8 + 12.4 * t,
+                            8.0 + sign * 4.6 * (std::f32::consts::PI * t).sin(),
+                        )
                     });
                     painter.add(Shape::line(points.collect(), stroke));
                 };
@@ -155,7 +180,16 @@ impl Icon {
                 line(&[(5.9, 6.4), (10.0, 10.4)]);
             }
             Icon::Camera => {
-                closed(&[(2.0, 5.0), (5.0, 5.0), (6.2, 3.2), (9.8, 3.2), (11.0, 5.0), (14.0, 5.0), (14.0, 12.8), (2.0, 12.8)]);
+                closed(&[
+                    (2.0, 5.0),
+                    (5.0, 5.0),
+                    (6.2, 3.2),
+                    (9.8, 3.2),
+                    (11.0, 5.0),
+                    (14.0, 5.0),
+                    (14.0, 12.8),
+                    (2.0, 12.8),
+                ]);
                 painter.circle_stroke(at(8.0, 8.8), 2.4 * scale, stroke);
             }
         }
@@ -205,7 +239,8 @@ pub fn tip(ui: &mut Ui, name: &str, hint: &str) {
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect) {
     if response.has_focus() {
         let stroke = Stroke::new(1.0, theme::ACCENT);
-        ui.painter().rect_stroke(rect, theme::RADIUS, stroke, egui::StrokeKind::Inside);
+        ui.painter()
+            .rect_stroke(rect, theme::RADIUS, stroke, egui::StrokeKind::Inside);
     }
 }
 
@@ -214,7 +249,8 @@ pub fn swatch(ui: &Ui, center: Pos2, size: f32, color: Color32) {
     let rect = Rect::from_center_size(center, Vec2::splat(size));
     ui.painter().rect_filled(rect, 3.0, color);
     let edge = Stroke::new(1.0, Color32::from_white_alpha(28));
-    ui.painter().rect_stroke(rect, 3.0, edge, egui::StrokeKind::Inside);
+    ui.painter()
+        .rect_stroke(rect, 3.0, edge, egui::StrokeKind::Inside);
 }
 
 /// A row of a list: a swatch, a name, something weak on the right. Chosen rows are filled.
@@ -236,9 +272,16 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());
     let name_at = pos2(rect.left() + 28.0, rect.center().y);
-    ui.painter().text(name_at, egui::Align2::LEFT_CENTER, name, body, text);
+    ui.painter()
+        .text(name_at, egui::Align2::LEFT_CENTER, name, body, text);
     let right_at = pos2(rect.right() - 8.0, rect.center().y);
-    ui.painter().text(right_at, egui::Align2::RIGHT_CENTER, right, small, theme::TEXT_WEAK);
+    ui.painter().text(
+        right_at,
+        egui::Align2::RIGHT_CENTER,
+        right,
+        small,
+        theme::TEXT_WEAK,
+    );
     focus_ring(ui, &response, rect);
     response
 }
@@ -246,7 +289,10 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
 /// Choices side by side, one of them chosen; true if it changed.
 pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T, &str, &str)]) -> bool {
     let before = *chosen;
-    let frame = egui::Frame::new().fill(theme::WELL).corner_radius(theme::RADIUS).inner_margin(2);
+    let frame = egui::Frame::new()
+        .fill(theme::WELL)
+        .corner_radius(theme::RADIUS)
+        .inner_margin(2);
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.y = theme::ROW - 4.0;
@@ -254,9 +300,17 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
         ui.horizontal(|ui| {
             for (value, name, hint) in choices {
                 let on = *chosen == *value;
-                let text = egui::RichText::new(*name).color(if on { theme::TEXT_STRONG } else { theme::TEXT_WEAK });
-                let fill = if on { theme::FIELD_ACTIVE } else { Color32::TRANSPARENT };
-                let button = egui::Button::new(text).fill(fill).corner_radius(3).selected(false);
+                let text =
+                    egui::RichText::new(*name).color(if on { theme::TEXT_STRONG } else { theme::TEXT_WEAK });
+                let fill = if on {
+                    theme::FIELD_ACTIVE
+                } else {
+                    Color32::TRANSPARENT
+                };
+                let button = egui::Button::new(text)
+                    .fill(fill)
+                    .corner_radius(3)
+                    .selected(false);
                 let response = ui.add(button);
                 response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, *name));
                 if response.on_hover_ui(|ui| tip(ui, name, hint)).clicked() {
@@ -271,6 +325,10 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
 /// Title of a section of a panel.
 pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(6.0);
-    ui.label(egui::RichText::new(title.to_uppercase()).small().color(theme::TEXT_WEAK));
+    ui.label(
+        egui::RichText::new(title.to_uppercase())
+            .small()
+            .color(theme::TEXT_WEAK),
+    );
     ui.add_space(2.0);
 }

@@ -108,7 +108,10 @@ impl Live {
             return Advice::Cancel;
         }
         let params = self.params_for(scene, false);
-        let key = JobKey { rev: scene.rev, params };
+        let key = JobKey {
+            rev: scene.rev,
+            params,
+        };
         if !self.on || touched.is_empty || self.asked.is_some_and(|k| k.rev == key.rev) {
             return Advice::Rest;
         }
@@ -203,7 +206,14 @@ mod tests {
     }
 
     fn submit(live: &mut Live, scene: &Scene, params: GenParams, now_s: f64, id: u64) {
-        live.submitted(JobId(id), JobKey { rev: scene.rev, params }, now_s);
+        live.submitted(
+            JobId(id),
+            JobKey {
+                rev: scene.rev,
+                params,
+            },
+            now_s,
+        );
     }
 
     #[test]
@@ -250,7 +260,9 @@ mod tests {
         let (mut live, mut scene) = (Live::new(GenParams::default()), scene());
         let before = scene.clone();
         paint(&mut scene, 40);
-        let Advice::Submit(params) = live.advise(&scene, false, 1.0) else { panic!() };
+        let Advice::Submit(params) = live.advise(&scene, false, 1.0) else {
+            panic!()
+        };
         submit(&mut live, &scene, params, 1.0, 1);
         // Undone: the state before needs nothing.
         assert_eq!(live.advise(&before, false, 1.1), Advice::Cancel);

@@ -22,7 +22,7 @@ struct Request {
 /// News from the thread.
 enum News {
     Lidar(SceneRev, LidarSweep),
-    Cameras(SceneRev, bool, Vec<CameraMaps>),
+    Cameras(SceneRev, Vec<CameraMaps>),
 }
 
 /// The newest of what was sensed, and the thread that senses.
@@ -58,7 +58,10 @@ impl Sensing {
 
     /// Asks for a scene, unless it was asked for already. A preview has smaller pictures.
     pub fn ask(&mut self, scene: &Arc<Scene>, preview: bool) {
-        if self.asked.is_some_and(|(rev, was_preview)| rev == scene.rev && (!was_preview || preview)) {
+        if self
+            .asked
+            .is_some_and(|(rev, was_preview)| rev == scene.rev && (!was_preview || preview))
+        {
             return;
         }
         self.asked = Some((scene.rev, preview));
@@ -75,7 +78,7 @@ impl Sensing {
             self.version += 1;
             match news {
                 News::Lidar(rev, sweep) => self.lidar = Some((rev, Arc::new(sweep))),
-                News::Cameras(rev, _, maps) => self.cameras = Some((rev, Arc::new(maps))),
+                News::Cameras(rev, maps) => self.cameras = Some((rev, Arc::new(maps))),
             }
         }
     }
@@ -146,7 +149,7 @@ fn sense(request: &Request, requests: &Receiver<Request>, tell: impl Fn(News)) {
         }
         maps.push(splat::render(&cloud, camera, width, height, &options));
     }
-    tell(News::Cameras(scene.rev, *preview, maps));
+    tell(News::Cameras(scene.rev, maps));
 }
 
 #[cfg(test)]

@@ -207,7 +207,10 @@ mod tests {
 
     #[test]
     fn the_brush_steps_through_its_sizes_and_stays_in_range() {
-        let mut ui = UiState { tool: Tool::Brush, ..UiState::default() };
+        let mut ui = UiState {
+            tool: Tool::Brush,
+            ..UiState::default()
+        };
         for _ in 0..30 {
             ui.step_brush(1);
         }

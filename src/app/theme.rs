@@ -16,8 +16,6 @@ pub const FIELD: Color32 = Color32::from_rgb(42, 46, 54);
 pub const FIELD_HOVER: Color32 = Color32::from_rgb(53, 58, 68);
 /// The same while pressed.
 pub const FIELD_ACTIVE: Color32 = Color32::from_rgb(62, 68, 80);
-/// Thin lines between surfaces.
-pub const LINE: Color32 = Color32::from_rgb(15, 16, 19);
 /// Text that matters.
 pub const TEXT: Color32 = Color32::from_rgb(214, 218, 225);
 /// Titles and chosen things.
@@ -136,20 +134,24 @@ pub fn class_color(class: Class) -> Color32 {
 
 /// Frame of a side panel.
 pub fn panel_frame() -> egui::Frame {
-    egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(12, 10))
+    egui::Frame::new()
+        .fill(PANEL)
+        .inner_margin(Margin::symmetric(12, 10))
 }
 
 /// Frame of a bar.
 pub fn bar_frame() -> egui::Frame {
-    egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(10, 4))
+    egui::Frame::new()
+        .fill(PANEL)
+        .inner_margin(Margin::symmetric(10, 4))
 }
 
 /// First letter large: `driveable surface` becomes `Driveable surface`.
 pub fn sentence(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]
@@ -168,7 +170,11 @@ mod tests {
         let luminance = |c: Color32| {
             let linear = |v: u8| {
                 let v = f64::from(v) / 255.0;
-                if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+                if v <= 0.04045 {
+                    v / 12.92
+                } else {
+                    ((v + 0.055) / 1.055).powf(2.4)
+                }
             };
             0.2126 * linear(c.r()) + 0.7152 * linear(c.g()) + 0.0722 * linear(c.b())
         };

@@ -60,7 +60,10 @@ pub fn write_occupancy(
     progress: impl Fn(usize) -> bool + Sync,
 ) -> std::io::Result<DatasetReport> {
     std::fs::create_dir_all(dir)?;
-    let mut report = DatasetReport { frames, ..Default::default() };
+    let mut report = DatasetReport {
+        frames,
+        ..Default::default()
+    };
     let done = AtomicUsize::new(0);
     for (shard, first) in (0..frames).step_by(SHARD_FRAMES).enumerate() {
         let path = dir.join(format!("shard_{shard:05}.safetensors"));
@@ -92,7 +95,10 @@ fn write_shard(path: &PathBuf, frames: &[OccupancyFrame]) -> std::io::Result<u64
     };
     let voxels = vec![frames.len(), GridSpec::NX, GridSpec::NY, GridSpec::NZ];
     let (dense, labels, draft) = (grids(|f| &f.dense), grids(|f| &f.labels), grids(|f| &f.draft));
-    let bev: Vec<u8> = frames.iter().flat_map(|f| f.bev.iter().flat_map(|b| b.to_le_bytes())).collect();
+    let bev: Vec<u8> = frames
+        .iter()
+        .flat_map(|f| f.bev.iter().flat_map(|b| b.to_le_bytes()))
+        .collect();
     let view = |dtype, shape: &[usize], data| TensorView::new(dtype, shape.to_vec(), data);
     let tensors = [
         ("dense", view(Dtype::U8, &voxels, &dense)),

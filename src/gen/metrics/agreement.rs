@@ -23,9 +23,16 @@ pub struct AgreementCount {
 impl AgreementCount {
     /// Counts one frame: the layout and boxes of `frame` against `occupancy`.
     pub fn add(&mut self, frame: &Frame, occupancy: &VoxelGrid) {
-        let object_bits: u32 = Class::OBJECTS.iter().filter_map(|c| BevLayer::of_object(*c)).map(BevLayer::bit).sum();
+        let object_bits: u32 = Class::OBJECTS
+            .iter()
+            .filter_map(|c| BevLayer::of_object(*c))
+            .map(BevLayer::bit)
+            .sum();
         let vehicles = Class::OBJECTS.iter().filter(|c| c.is_vehicle());
-        let vehicle_bits: u32 = vehicles.filter_map(|c| BevLayer::of_object(*c)).map(BevLayer::bit).sum();
+        let vehicle_bits: u32 = vehicles
+            .filter_map(|c| BevLayer::of_object(*c))
+            .map(BevLayer::bit)
+            .sum();
         let road_bits = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         for (c, cell) in frame.bev_channels().into_iter().enumerate() {
             let column = occupancy.column(c / GridSpec::NY, c % GridSpec::NY);
@@ -38,14 +45,21 @@ impl AgreementCount {
                 let found = holds(|c| c == Class::DriveableSurface);
                 count(|s| &mut s.drivable, cell & road_bits != 0, found);
             }
-            count(|s| &mut s.vehicles, cell & vehicle_bits != 0, holds(Class::is_vehicle));
+            count(
+                |s| &mut s.vehicles,
+                cell & vehicle_bits != 0,
+                holds(Class::is_vehicle),
+            );
         }
     }
 
     /// The ratios.
     pub fn iou(&self) -> LayoutAgreement {
         let ratio = |[both, either]: [u64; 2]| (either > 0).then(|| both as f64 / either as f64);
-        LayoutAgreement { drivable: ratio(self.drivable), vehicles: ratio(self.vehicles) }
+        LayoutAgreement {
+            drivable: ratio(self.drivable),
+            vehicles: ratio(self.vehicles),
+        }
     }
 }
 

@@ -11,7 +11,9 @@ pub struct Confusion {
 
 impl Default for Confusion {
     fn default() -> Self {
-        Self { counts: vec![0; Class::COUNT * Class::COUNT] }
+        Self {
+            counts: vec![0; Class::COUNT * Class::COUNT],
+        }
     }
 }
 
@@ -29,7 +31,10 @@ impl Confusion {
 
     /// Adds another count.
     pub fn merge(&mut self, other: &Confusion) {
-        self.counts.iter_mut().zip(&other.counts).for_each(|(a, b)| *a += b);
+        self.counts
+            .iter_mut()
+            .zip(&other.counts)
+            .for_each(|(a, b)| *a += b);
     }
 
     /// IoU of occupied against free space; `None` if nothing is occupied in either.
@@ -59,7 +64,10 @@ impl Confusion {
     /// Mean IoU over the classes present in the truth, free excluded, and how many they were.
     pub fn mean_iou(&self) -> (Option<f64>, usize) {
         let in_truth = |c: &Class| (0..Class::COUNT).any(|p| self.counts[*c as usize * Class::COUNT + p] > 0);
-        let present = Class::ALL.into_iter().filter(|c| *c != Class::Free).filter(in_truth);
+        let present = Class::ALL
+            .into_iter()
+            .filter(|c| *c != Class::Free)
+            .filter(in_truth);
         let ious: Vec<f64> = present.filter_map(|c| self.class_iou(c)).collect();
         let n = ious.len();
         ((n > 0).then(|| ious.iter().sum::<f64>() / n as f64), n)

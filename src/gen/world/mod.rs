@@ -61,7 +61,14 @@ impl World {
             }
         }
         let ground = ground_classes(&layout, seed);
-        Self { layout, boxes, solids, bins, ground, seed }
+        Self {
+            layout,
+            boxes,
+            solids,
+            bins,
+            ground,
+            seed,
+        }
     }
 
     /// The world of `seed` on a varied template with ordinary traffic.
@@ -83,7 +90,9 @@ impl World {
 
     /// Height of the ground at a point of the ego frame, m.
     pub fn ground_height(&self, p: DVec2) -> f64 {
-        let Some([x, y]) = GridSpec::column_at(p.x, p.y) else { return 0.0 };
+        let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+            return 0.0;
+        };
         match self.ground_class(x, y) {
             Class::Sidewalk => 0.17 + 0.06 * noise(self.seed, p.x / 14.0, p.y / 14.0),
             Class::Terrain => 0.08 + 0.1 * noise(self.seed, p.x / 9.0, p.y / 9.0),
@@ -102,7 +111,13 @@ impl World {
         let (mut x, mut y) = (to_bin(origin.x).floor() as i64, to_bin(origin.y).floor() as i64);
         let edge = |cell: i64, d: f64| (cell + i64::from(d > 0.0)) as f64 * BIN_M - 40.0;
         let inv = DVec2::new(1.0 / dir.x, 1.0 / dir.y);
-        let next = |cell: i64, o: f64, d: f64, inv: f64| if d == 0.0 { f64::INFINITY } else { (edge(cell, d) - o) * inv };
+        let next = |cell: i64, o: f64, d: f64, inv: f64| {
+            if d == 0.0 {
+                f64::INFINITY
+            } else {
+                (edge(cell, d) - o) * inv
+            }
+        };
         for _ in 0..2 * BINS + 2 {
             if !(0..BINS as i64).contains(&x) || !(0..BINS as i64).contains(&y) {
                 break;
@@ -113,7 +128,10 @@ impl World {
                     && t < best
                 {
                     best = t;
-                    hit = Some(Hit { range_m: t, class: s.class });
+                    hit = Some(Hit {
+                        range_m: t,
+                        class: s.class,
+                    });
                 }
             }
             let (tx, ty) = (next(x, origin.x, dir.x, inv.x), next(y, origin.y, dir.y, inv.y));
@@ -141,7 +159,10 @@ impl World {
         }
         let p = origin + dir * t;
         let [x, y] = GridSpec::column_at(p.x, p.y)?;
-        (t > 0.0).then(|| Hit { range_m: t, class: self.ground_class(x, y) })
+        (t > 0.0).then(|| Hit {
+            range_m: t,
+            class: self.ground_class(x, y),
+        })
     }
 }
 
@@ -153,15 +174,17 @@ fn ground_classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
     let paved = draw.chance(0.15);
     let mut out = Vec::with_capacity(GridSpec::COLUMNS);
     for (c, &cell) in layout.cells().iter().enumerate() {
-        out.push(if has(cell, BevLayer::DrivableArea) || has(cell, BevLayer::CarparkArea) {
-            Class::DriveableSurface
-        } else if has(cell, BevLayer::Walkway) || has(cell, BevLayer::PedCrossing) {
-            Class::Sidewalk
-        } else if paved && to_road[c] < 8.0 {
-            Class::OtherFlat
-        } else {
-            Class::Terrain
-        });
+        out.push(
+            if has(cell, BevLayer::DrivableArea) || has(cell, BevLayer::CarparkArea) {
+                Class::DriveableSurface
+            } else if has(cell, BevLayer::Walkway) || has(cell, BevLayer::PedCrossing) {
+                Class::Sidewalk
+            } else if paved && to_road[c] < 8.0 {
+                Class::OtherFlat
+            } else {
+                Class::Terrain
+            },
+        );
     }
     out
 }
@@ -177,9 +200,20 @@ mod tests {
         let mut draw = draw::Draw::new(1, "test rays");
         let mut hits = 0;
         for _ in 0..4000 {
-            let origin = DVec3::new(draw.range(-30.0, 30.0), draw.range(-30.0, 30.0), draw.range(0.5, 3.0));
-            let dir = DVec3::new(draw.range(-1.0, 1.0), draw.range(-1.0, 1.0), draw.range(-0.3, 0.3)).normalize();
-            let mut best = world.cast_ground(origin, dir).map_or(70.0, |h| h.range_m.min(70.0));
+            let origin = DVec3::new(
+                draw.range(-30.0, 30.0),
+                draw.range(-30.0, 30.0),
+                draw.range(0.5, 3.0),
+            );
+            let dir = DVec3::new(
+                draw.range(-1.0, 1.0),
+                draw.range(-1.0, 1.0),
+                draw.range(-0.3, 0.3),
+            )
+            .normalize();
+            let mut best = world
+                .cast_ground(origin, dir)
+                .map_or(70.0, |h| h.range_m.min(70.0));
             for s in world.solids() {
                 best = s.enter(origin, dir, best).map_or(best, |t| t.min(best));
             }
@@ -222,7 +256,10 @@ mod tests {
                     }
                 }
             }
-            assert!(inside * 10 > n * 9, "{class:?}: {inside} of {n} points inside the box");
+            assert!(
+                inside * 10 > n * 9,
+                "{class:?}: {inside} of {n} points inside the box"
+            );
         }
     }
 }

@@ -23,13 +23,25 @@ impl Parts<'_> {
     fn block(&mut self, at: [f64; 3], size: [f64; 3], taper: [f64; 2]) {
         let s = self.b.size_m * DVec3::from_array(size);
         let base = self.base(at[0], at[1], at[2]);
-        self.out.push(Solid::tapered(self.b.class, base, s, DVec2::from_array(taper), self.b.heading()));
+        self.out.push(Solid::tapered(
+            self.b.class,
+            base,
+            s,
+            DVec2::from_array(taper),
+            self.b.heading(),
+        ));
     }
 
     /// An upright frustum; height as a fraction, radii in m.
     fn round(&mut self, at: [f64; 3], height: f64, bottom: f64, top: f64) {
         let base = self.base(at[0], at[1], at[2]);
-        self.out.push(Solid::frustum(self.b.class, base, height * self.b.size_m.z, bottom, top));
+        self.out.push(Solid::frustum(
+            self.b.class,
+            base,
+            height * self.b.size_m.z,
+            bottom,
+            top,
+        ));
     }
 }
 
@@ -60,7 +72,11 @@ pub fn object(b: &SceneBox, seed: u64, out: &mut Vec<Solid>) {
         }
         Class::Truck => {
             let cab = draw.range(0.24, 0.34);
-            p.block([0.5 - cab / 2.0, 0.0, 0.12], [cab, 1.0, draw.range(0.62, 0.85)], [0.9, 0.95]);
+            p.block(
+                [0.5 - cab / 2.0, 0.0, 0.12],
+                [cab, 1.0, draw.range(0.62, 0.85)],
+                [0.9, 0.95],
+            );
             p.block([-cab / 2.0, 0.0, 0.12], [1.0 - cab, 0.9, 0.2], [1.0, 1.0]);
             p.block([-cab / 2.0 - 0.01, 0.0, 0.3], [0.98 - cab, 1.0, 0.7], [1.0, 1.0]);
             for x in [-0.34, -0.2, 0.36] {
@@ -101,7 +117,12 @@ pub fn object(b: &SceneBox, seed: u64, out: &mut Vec<Solid>) {
         }
         Class::Pedestrian => {
             for y in [-0.17, 0.17] {
-                p.round([draw.range(-0.15, 0.15), y, 0.0], 0.48, width * 0.16, width * 0.18);
+                p.round(
+                    [draw.range(-0.15, 0.15), y, 0.0],
+                    0.48,
+                    width * 0.16,
+                    width * 0.18,
+                );
             }
             p.round([0.0, 0.0, 0.46], 0.4, width * 0.4, width * 0.45);
             p.round([0.0, 0.0, 0.86], 0.14, width * 0.18, width * 0.16);

@@ -11,7 +11,9 @@ use crate::scene::{BevLayer, BevLayout, BoxId, Class, GridSpec, PolylineKind, Sc
 /// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
 pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
     let (nx, ny) = (GridSpec::NX as i64, GridSpec::NY as i64);
-    let mut d: Vec<f32> = (0..GridSpec::COLUMNS).map(|c| if set(c) { 0.0 } else { 255.0 }).collect();
+    let mut d: Vec<f32> = (0..GridSpec::COLUMNS)
+        .map(|c| if set(c) { 0.0 } else { 255.0 })
+        .collect();
     let mut relax = |x: i64, y: i64, steps: [(i64, i64, f32); 4]| {
         let mut best = d[(x * ny + y) as usize];
         for (dx, dy, w) in steps {
@@ -24,7 +26,11 @@ pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
     };
     for x in 0..nx {
         for y in 0..ny {
-            relax(x, y, [(-1, 0, 1.0), (0, -1, 1.0), (-1, -1, 1.414), (-1, 1, 1.414)]);
+            relax(
+                x,
+                y,
+                [(-1, 0, 1.0), (0, -1, 1.0), (-1, -1, 1.414), (-1, 1, 1.414)],
+            );
         }
     }
     for x in (0..nx).rev() {
@@ -79,7 +85,8 @@ impl Site<'_> {
     /// True if a disc of `radius_m` is clear of paved ground by `gap_m` and of boxes.
     fn clear(&self, p: DVec2, radius_m: f64, gap_m: f64) -> bool {
         let cells = |m: f64| (m / GridSpec::VOXEL_M) as f32;
-        self.at(&self.to_paved, p) > cells(radius_m + gap_m) && self.at(&self.to_box, p) > cells(radius_m + 0.4)
+        self.at(&self.to_paved, p) > cells(radius_m + gap_m)
+            && self.at(&self.to_box, p) > cells(radius_m + 0.4)
     }
 
     fn buildings(&mut self, city: f64) {
@@ -90,8 +97,14 @@ impl Site<'_> {
         for _ in 0..tries {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
             let size = DVec2::new(draw.range(6.0, 18.0), draw.range(6.0, 14.0));
-            let height = if draw.chance(0.3) { draw.range(2.8, 4.6) } else { draw.range(5.0, 14.0) };
-            let Some(axis) = self.away_from_road(p) else { continue };
+            let height = if draw.chance(0.3) {
+                draw.range(2.8, 4.6)
+            } else {
+                draw.range(5.0, 14.0)
+            };
+            let Some(axis) = self.away_from_road(p) else {
+                continue;
+            };
             // The facade looks at the road; the half depth must fit behind the setback.
             let room = f64::from(self.at(&self.to_paved, p)) * GridSpec::VOXEL_M;
             let half_depth = size.y / 2.0;
@@ -104,24 +117,39 @@ impl Site<'_> {
             }
             let footprint = |u: f64, v: f64| p + axis.perp() * (u * size.x / 2.0) + axis * (v * half_depth);
             let corners = [(-1.0, -1.0), (1.0, -1.0), (0.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
-            if corners.iter().any(|&(u, v)| !self.clear(footprint(u, v), 0.0, 0.8)) {
+            if corners
+                .iter()
+                .any(|&(u, v)| !self.clear(footprint(u, v), 0.0, 0.8))
+            {
                 continue;
             }
             placed.push((p, radius));
             let base = p.extend(0.0);
             let body = DVec3::new(size.x, size.y, height);
-            self.out.push(Solid::block(Class::Manmade, base, body, axis.perp()));
+            self.out
+                .push(Solid::block(Class::Manmade, base, body, axis.perp()));
             if height < 7.0 && draw.chance(0.6) {
                 // A pitched roof over the eaves.
                 let eaves = DVec3::new(size.x + 0.6, size.y + 0.6, draw.range(1.2, 2.5));
                 let roof = base + DVec3::Z * height;
-                self.out.push(Solid::tapered(Class::Manmade, roof, eaves, DVec2::new(0.9, 0.05), axis.perp()));
+                self.out.push(Solid::tapered(
+                    Class::Manmade,
+                    roof,
+                    eaves,
+                    DVec2::new(0.9, 0.05),
+                    axis.perp(),
+                ));
             }
             if draw.chance(0.4) {
                 // A porch or canopy towards the road.
                 let front = p - axis * (half_depth + 0.6);
                 let canopy = DVec3::new(draw.range(2.0, 4.0), 1.4, 0.3);
-                self.out.push(Solid::block(Class::Manmade, front.extend(2.6), canopy, axis.perp()));
+                self.out.push(Solid::block(
+                    Class::Manmade,
+                    front.extend(2.6),
+                    canopy,
+                    axis.perp(),
+                ));
             }
         }
     }
@@ -138,7 +166,10 @@ impl Site<'_> {
         self.out.iter().any(|s| {
             let r = s.reach();
             s.class == Class::Manmade
-                && (p - s.center.truncate()).abs().cmple(r.truncate() + DVec2::splat(margin)).all()
+                && (p - s.center.truncate())
+                    .abs()
+                    .cmple(r.truncate() + DVec2::splat(margin))
+                    .all()
         })
     }
 
@@ -147,12 +178,24 @@ impl Site<'_> {
         let crown = draw.range(1.2, 2.8);
         let base = p.extend(0.0);
         let radius = draw.range(0.14, 0.3);
-        self.out.push(Solid::frustum(Class::Vegetation, base, trunk + crown, radius, radius * 0.6));
+        self.out.push(Solid::frustum(
+            Class::Vegetation,
+            base,
+            trunk + crown,
+            radius,
+            radius * 0.6,
+        ));
         for _ in 0..2 + draw.below(3) {
-            let off = DVec3::new(draw.range(-0.8, 0.8), draw.range(-0.8, 0.8), draw.range(-0.3, 0.9));
+            let off = DVec3::new(
+                draw.range(-0.8, 0.8),
+                draw.range(-0.8, 0.8),
+                draw.range(-0.3, 0.9),
+            );
             let middle = base + DVec3::Z * (trunk + crown * 0.75) + off * (crown * 0.6);
-            let radii = DVec3::new(1.0, draw.range(0.85, 1.15), draw.range(0.7, 1.1)) * (crown * draw.range(0.6, 0.95));
-            self.out.push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.45));
+            let radii = DVec3::new(1.0, draw.range(0.85, 1.15), draw.range(0.7, 1.1))
+                * (crown * draw.range(0.6, 0.95));
+            self.out
+                .push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.45));
         }
     }
 
@@ -188,14 +231,20 @@ impl Site<'_> {
         let mut draw = Draw::new(self.seed, "hedges");
         for _ in 0..14 {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
-            let Some(axis) = self.away_from_road(p) else { continue };
+            let Some(axis) = self.away_from_road(p) else {
+                continue;
+            };
             let room = self.at(&self.to_paved, p);
             if !(2.0..14.0).contains(&room) {
                 continue;
             }
             let along = axis.perp();
             let is_hedge = draw.chance(0.4 + 0.4 * green);
-            let height = if is_hedge { draw.range(0.7, 1.6) } else { draw.range(0.8, 2.2) };
+            let height = if is_hedge {
+                draw.range(0.7, 1.6)
+            } else {
+                draw.range(0.8, 2.2)
+            };
             for i in 0..4 + draw.below(9) {
                 let q = p + along * (i as f64 * 1.2);
                 if !self.clear(q, 0.5, 0.0) || self.inside_solid(q, 0.5) {
@@ -203,10 +252,12 @@ impl Site<'_> {
                 }
                 if is_hedge {
                     let radii = DVec3::new(0.9, 0.9, height);
-                    self.out.push(Solid::ellipsoid(Class::Vegetation, q.extend(0.0), radii, 0.2));
+                    self.out
+                        .push(Solid::ellipsoid(Class::Vegetation, q.extend(0.0), radii, 0.2));
                 } else {
                     let size = DVec3::new(1.25, 0.25, height);
-                    self.out.push(Solid::block(Class::Manmade, q.extend(0.0), size, along));
+                    self.out
+                        .push(Solid::block(Class::Manmade, q.extend(0.0), size, along));
                 }
             }
         }
@@ -216,7 +267,10 @@ impl Site<'_> {
         let mut draw = Draw::new(self.seed, "poles");
         let spacing = draw.range(12.0, 25.0);
         let mut stood: Vec<DVec2> = Vec::new();
-        let lanes = layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+        let lanes = layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter);
         let near_lane: Vec<DVec2> = lanes.flat_map(|l| l.points_m.iter().copied()).collect();
         for c in (0..GridSpec::COLUMNS).step_by(3) {
             if !(1.2..2.5).contains(&self.to_road[c]) || self.to_box[c] < 2.0 {
@@ -227,14 +281,18 @@ impl Site<'_> {
                 continue;
             }
             stood.push(p);
-            let lane = near_lane.iter().copied().min_by(|a, b| a.distance(p).total_cmp(&b.distance(p)));
+            let lane = near_lane
+                .iter()
+                .copied()
+                .min_by(|a, b| a.distance(p).total_cmp(&b.distance(p)));
             let toward = lane.map_or(DVec2::X, |l| (l - p).normalize_or(DVec2::X));
             let base = p.extend(0.0);
             match draw.weighted(&[0.45, 0.3, 0.15, 0.1]) {
                 0 => {
                     // Street lamp with an arm over the road.
                     let height = draw.range(4.6, 7.0);
-                    self.out.push(Solid::frustum(Class::Manmade, base, height, 0.12, 0.08));
+                    self.out
+                        .push(Solid::frustum(Class::Manmade, base, height, 0.12, 0.08));
                     let arm = DVec3::new(1.8, 0.2, 0.2);
                     let middle = (p + toward * 0.8).extend(height - 0.2);
                     self.out.push(Solid::block(Class::Manmade, middle, arm, toward));
@@ -242,19 +300,27 @@ impl Site<'_> {
                 1 => {
                     // Sign.
                     let height = draw.range(2.2, 3.0);
-                    self.out.push(Solid::frustum(Class::Manmade, base, height, 0.05, 0.05));
+                    self.out
+                        .push(Solid::frustum(Class::Manmade, base, height, 0.05, 0.05));
                     let plate = DVec3::new(0.1, 0.7, 0.7);
-                    self.out.push(Solid::block(Class::Manmade, p.extend(height - 0.6), plate, toward.perp()));
+                    self.out.push(Solid::block(
+                        Class::Manmade,
+                        p.extend(height - 0.6),
+                        plate,
+                        toward.perp(),
+                    ));
                 }
                 2 => {
                     // Bench or shelter.
                     let size = DVec3::new(1.8, 0.6, draw.range(0.5, 2.4));
-                    self.out.push(Solid::block(Class::Manmade, base, size, toward.perp()));
+                    self.out
+                        .push(Solid::block(Class::Manmade, base, size, toward.perp()));
                 }
                 _ => {
                     // Bin, box or bag: what nuScenes calls "others".
                     let height = draw.range(0.6, 1.1);
-                    self.out.push(Solid::frustum(Class::Others, base, height, 0.4, 0.4));
+                    self.out
+                        .push(Solid::frustum(Class::Others, base, height, 0.4, 0.4));
                 }
             }
         }

@@ -61,19 +61,38 @@ impl Solid {
         let half = size / 2.0;
         let (center, top) = (base + DVec3::Z * half.z, half.truncate() * taper);
         let shape = Shape::Hull { half, top, heading };
-        Self { shape, center, class, porosity: 0.0 }
+        Self {
+            shape,
+            center,
+            class,
+            porosity: 0.0,
+        }
     }
 
     /// A cylinder or cone standing on `base`.
     pub fn frustum(class: Class, base: DVec3, height: f64, bottom: f64, top: f64) -> Self {
         let half_height = height / 2.0;
-        let shape = Shape::Frustum { bottom, top, half_height };
-        Self { shape, center: base + DVec3::Z * half_height, class, porosity: 0.0 }
+        let shape = Shape::Frustum {
+            bottom,
+            top,
+            half_height,
+        };
+        Self {
+            shape,
+            center: base + DVec3::Z * half_height,
+            class,
+            porosity: 0.0,
+        }
     }
 
     /// An ellipsoid around `center`.
     pub fn ellipsoid(class: Class, center: DVec3, radii: DVec3, porosity: f64) -> Self {
-        Self { shape: Shape::Ellipsoid { radii }, center, class, porosity }
+        Self {
+            shape: Shape::Ellipsoid { radii },
+            center,
+            class,
+            porosity,
+        }
     }
 
     /// Half extents of the axis-aligned box around it, m.
@@ -84,7 +103,11 @@ impl Solid {
                 let h = heading.abs();
                 DVec3::new(wide.x * h.x + wide.y * h.y, wide.x * h.y + wide.y * h.x, half.z)
             }
-            Shape::Frustum { bottom, top, half_height } => {
+            Shape::Frustum {
+                bottom,
+                top,
+                half_height,
+            } => {
                 let r = bottom.max(top);
                 DVec3::new(r, r, half_height)
             }
@@ -94,7 +117,11 @@ impl Solid {
 
     fn local(&self, p: DVec3, heading: DVec2) -> DVec3 {
         let d = p - self.center;
-        DVec3::new(d.x * heading.x + d.y * heading.y, d.y * heading.x - d.x * heading.y, d.z)
+        DVec3::new(
+            d.x * heading.x + d.y * heading.y,
+            d.y * heading.x - d.x * heading.y,
+            d.z,
+        )
     }
 
     fn is_pore(&self, p: DVec3) -> bool {
@@ -115,7 +142,11 @@ impl Solid {
                 let wide = half.truncate().lerp(top, t);
                 q.z.abs() <= half.z && q.x.abs() <= wide.x && q.y.abs() <= wide.y
             }
-            Shape::Frustum { bottom, top, half_height } => {
+            Shape::Frustum {
+                bottom,
+                top,
+                half_height,
+            } => {
                 let q = p - self.center;
                 let t = (q.z + half_height) / (2.0 * half_height).max(1e-9);
                 let r = bottom + (top - bottom) * t;
@@ -135,9 +166,11 @@ impl Solid {
                 let d = DVec3::new(r2.dot(heading), -r2.perp_dot(heading), dir.z);
                 clip_hull(o, d, half, top)?
             }
-            Shape::Frustum { bottom, top, half_height } => {
-                clip_frustum(origin - self.center, dir, bottom, top, half_height)?
-            }
+            Shape::Frustum {
+                bottom,
+                top,
+                half_height,
+            } => clip_frustum(origin - self.center, dir, bottom, top, half_height)?,
             Shape::Ellipsoid { radii } => {
                 let (o, d) = ((origin - self.center) / radii, dir / radii);
                 roots(d.length_squared(), o.dot(d), o.length_squared() - 1.0)?
@@ -247,7 +280,13 @@ mod tests {
         let base = DVec3::new(1.0, 2.0, 0.2);
         let solids = [
             Solid::block(Class::Car, base, DVec3::new(4.0, 2.0, 1.5), heading),
-            Solid::tapered(Class::Car, base, DVec3::new(4.0, 2.0, 1.5), DVec2::new(0.5, 0.8), heading),
+            Solid::tapered(
+                Class::Car,
+                base,
+                DVec3::new(4.0, 2.0, 1.5),
+                DVec2::new(0.5, 0.8),
+                heading,
+            ),
             Solid::frustum(Class::TrafficCone, base, 1.5, 0.8, 0.1),
             Solid::frustum(Class::Manmade, base, 3.0, 0.4, 0.4),
             Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
@@ -256,13 +295,24 @@ mod tests {
         let mut hits = 0;
         for solid in solids {
             for _ in 0..2000 {
-                let origin = DVec3::new(draw.range(-9.0, 9.0), draw.range(-9.0, 9.0), draw.range(-1.0, 5.0));
-                let aim = solid.center + DVec3::new(draw.range(-2.0, 2.0), draw.range(-2.0, 2.0), draw.range(-1.0, 1.0));
+                let origin = DVec3::new(
+                    draw.range(-9.0, 9.0),
+                    draw.range(-9.0, 9.0),
+                    draw.range(-1.0, 5.0),
+                );
+                let aim = solid.center
+                    + DVec3::new(
+                        draw.range(-2.0, 2.0),
+                        draw.range(-2.0, 2.0),
+                        draw.range(-1.0, 1.0),
+                    );
                 let dir = (aim - origin).normalize_or(DVec3::X);
                 if solid.contains(origin) {
                     continue;
                 }
-                let marched = (0..20_000).map(|i| f64::from(i) * 1e-3).find(|t| solid.contains(origin + dir * *t));
+                let marched = (0..20_000)
+                    .map(|i| f64::from(i) * 1e-3)
+                    .find(|t| solid.contains(origin + dir * *t));
                 match (solid.enter(origin, dir, 20.0), marched) {
                     (Some(t), Some(m)) => {
                         hits += 1;

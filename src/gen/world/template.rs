@@ -7,8 +7,16 @@ use crate::scene::raster::{draw_polyline, line_cells, polygon_cells};
 use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
 
 /// Names that [`layout`] knows.
-pub const TEMPLATES: [&str; 8] =
-    ["straight", "curve", "t-junction", "intersection", "roundabout", "highway", "parking", "suburb"];
+pub const TEMPLATES: [&str; 8] = [
+    "straight",
+    "curve",
+    "t-junction",
+    "intersection",
+    "roundabout",
+    "highway",
+    "parking",
+    "suburb",
+];
 
 /// One street: an axis with lanes on both sides.
 #[derive(Clone, Debug)]
@@ -71,8 +79,16 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
     let mut draw = Draw::new(seed, name);
     let mut plan = Plan::default();
     let lane_m = draw.range(3.1, 3.8);
-    let walk_m = if draw.chance(0.85) { draw.range(1.6, 4.0) } else { 0.0 };
-    let parking_m = if draw.chance(0.4) { draw.range(2.1, 2.6) } else { 0.0 };
+    let walk_m = if draw.chance(0.85) {
+        draw.range(1.6, 4.0)
+    } else {
+        0.0
+    };
+    let parking_m = if draw.chance(0.4) {
+        draw.range(2.1, 2.6)
+    } else {
+        0.0
+    };
     let lanes = 1 + draw.weighted(&[0.6, 0.4]);
     let street = |axis: Vec<DVec2>| Street {
         axis,
@@ -148,7 +164,8 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
             let radius = draw.range(9.0, 14.0);
             let center = DVec2::new(draw.range(18.0, 26.0), y);
             let ring_width = draw.range(5.5, 7.5);
-            let arms = [0.0, 1.0, 2.0, 3.0].map(|k: f64| k * std::f64::consts::FRAC_PI_2 + std::f64::consts::PI);
+            let arms =
+                [0.0, 1.0, 2.0, 3.0].map(|k: f64| k * std::f64::consts::FRAC_PI_2 + std::f64::consts::PI);
             for (k, angle) in arms.into_iter().enumerate() {
                 if k > 0 && draw.chance(0.15) {
                     continue;
@@ -180,7 +197,10 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
             let (a, b) = (own * lane_m + gap / 2.0, DVec2::new(far, 0.0));
             let bend = draw.range(-0.15, 0.15);
             let line = |offset: f64| -> Vec<DVec2> {
-                straight(-b, b).into_iter().map(|p| DVec2::new(p.x, offset + bend * p.x * p.x / 160.0)).collect()
+                straight(-b, b)
+                    .into_iter()
+                    .map(|p| DVec2::new(p.x, offset + bend * p.x * p.x / 160.0))
+                    .collect()
             };
             let lanes = |axis, forward, backward| Street {
                 axis,
@@ -204,7 +224,12 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
             let (x0, x1) = (draw.range(-34.0, -15.0), draw.range(12.0, 34.0));
             let deep = draw.range(16.0, 24.0);
             let corner = |x, depth: f64| DVec2::new(x, edge + side * depth);
-            plan.lots.push(vec![corner(x0, 0.0), corner(x1, 0.0), corner(x1, deep), corner(x0, deep)]);
+            plan.lots.push(vec![
+                corner(x0, 0.0),
+                corner(x1, 0.0),
+                corner(x1, deep),
+                corner(x0, deep),
+            ]);
             let gate = draw.range(x0 + 4.0, x1 - 8.0);
             let inner = y + side * (lanes as f64 * lane_m - 0.5);
             plan.aprons.push(vec![
@@ -228,7 +253,12 @@ pub fn any_layout(seed: u64) -> BevLayout {
     if draw.chance(0.3) {
         return plain;
     }
-    transform(&plain, draw.range(-12.0, 12.0), draw.range(-6.0, 6.0), draw.range(-3.2, 3.2))
+    transform(
+        &plain,
+        draw.range(-12.0, 12.0),
+        draw.range(-6.0, 6.0),
+        draw.range(-3.2, 3.2),
+    )
 }
 
 /// The layout seen from a pose inside it: shifted by metres, then turned by rad. Cells that come
@@ -259,15 +289,24 @@ fn transform(layout: &BevLayout, dx: f64, dy: f64, yaw: f64) -> BevLayout {
 
 /// A crossing over a street at distance `at` along x from the ego.
 fn crossing(plan: &mut Plan, s: &Street, at: f64, width: f64) {
-    let Some(i) = s.axis.iter().position(|p| p.x > at) else { return };
+    let Some(i) = s.axis.iter().position(|p| p.x > at) else {
+        return;
+    };
     let d = (s.axis[(i + 1).min(s.axis.len() - 1)] - s.axis[i - 1]).normalize_or(DVec2::X);
-    let (l, r) = (s.axis[i] + d.perp() * s.left_m(), s.axis[i] - d.perp() * s.right_m());
+    let (l, r) = (
+        s.axis[i] + d.perp() * s.left_m(),
+        s.axis[i] - d.perp() * s.right_m(),
+    );
     plan.crossings.push(vec![l, r, r + d * width, l + d * width]);
 }
 
 /// Rounds the corners, clears the lane lines and puts crossings on the arms of a junction.
 fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f64, across: DVec2) {
-    let widest = plan.streets.iter().map(|s| s.left_m().max(s.right_m())).fold(0.0, f64::max);
+    let widest = plan
+        .streets
+        .iter()
+        .map(|s| s.left_m().max(s.right_m()))
+        .fold(0.0, f64::max);
     let parking = plan.streets[0].parking_m;
     let radius = widest + parking + 3.5;
     plan.junctions.push((center, radius));
@@ -279,20 +318,31 @@ fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f
     for pair in corner_arms.windows(2) {
         // A triangle between neighbouring arms, rounding the corner.
         let reach = widest + 3.5;
-        plan.aprons.push(vec![center, center + pair[0] * reach, center + pair[1] * reach]);
+        plan.aprons
+            .push(vec![center, center + pair[0] * reach, center + pair[1] * reach]);
     }
     let with_crossings = draw.chance(0.75);
-    let arms: Vec<(DVec2, usize)> = [(DVec2::X, 0), (-DVec2::X, 0), (across * side, 1), (-across * side, 1)]
-        .into_iter()
-        .take(if both { 4 } else { 3 })
-        .collect();
+    let arms: Vec<(DVec2, usize)> = [
+        (DVec2::X, 0),
+        (-DVec2::X, 0),
+        (across * side, 1),
+        (-across * side, 1),
+    ]
+    .into_iter()
+    .take(if both { 4 } else { 3 })
+    .collect();
     for (d, street) in arms {
         if with_crossings && draw.chance(0.85) {
             let s = &plan.streets[street];
             let half = s.left_m().max(s.right_m());
             let start = center + d * (radius - 0.5);
             let n = d.perp() * half;
-            plan.crossings.push(vec![start + n, start - n, start - n + d * 3.0, start + n + d * 3.0]);
+            plan.crossings.push(vec![
+                start + n,
+                start - n,
+                start - n + d * 3.0,
+                start + n + d * 3.0,
+            ]);
         }
     }
 }
@@ -319,7 +369,9 @@ impl Plan {
                 paint(BevLayer::Walkway, &|f| line_cells(&line, reach, f));
             }
             if s.parking_m > 0.0 {
-                paint(BevLayer::CarparkArea, &|f| line_cells(&line, half + s.parking_m, f));
+                paint(BevLayer::CarparkArea, &|f| {
+                    line_cells(&line, half + s.parking_m, f)
+                });
             }
             paint(BevLayer::DrivableArea, &|f| line_cells(&line, half, f));
         }
@@ -361,7 +413,10 @@ impl Plan {
             let keep = |p: &DVec2| p.abs().max_element() < 45.0 && (!clip || clear(p));
             for run in points.split(|p| !keep(p)) {
                 if run.len() > 1 {
-                    lines.push(Polyline { kind, points_m: run.to_vec() });
+                    lines.push(Polyline {
+                        kind,
+                        points_m: run.to_vec(),
+                    });
                 }
             }
         };
@@ -384,7 +439,10 @@ impl Plan {
             }
         }
         for points_m in &self.crossings {
-            lines.push(Polyline { kind: PolylineKind::PedCrossing, points_m: points_m.clone() });
+            lines.push(Polyline {
+                kind: PolylineKind::PedCrossing,
+                points_m: points_m.clone(),
+            });
         }
         lines
     }

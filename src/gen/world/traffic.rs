@@ -22,9 +22,17 @@ pub struct TrafficSpec {
 
 impl TrafficSpec {
     /// An ordinary street.
-    pub const NORMAL: Self = Self { vehicles: 1.0, people: 1.0, works: 1.0 };
+    pub const NORMAL: Self = Self {
+        vehicles: 1.0,
+        people: 1.0,
+        works: 1.0,
+    };
     /// Nothing at all.
-    pub const EMPTY: Self = Self { vehicles: 0.0, people: 0.0, works: 0.0 };
+    pub const EMPTY: Self = Self {
+        vehicles: 0.0,
+        people: 0.0,
+        works: 0.0,
+    };
 }
 
 struct Placer<'a> {
@@ -65,7 +73,14 @@ impl Placer<'_> {
     }
 
     /// Adds the box unless it leaves the grid, overlaps another or `on` refuses a cell of it.
-    fn try_add(&mut self, class: Class, at: DVec2, yaw_rad: f64, speed: f64, on: impl Fn(u32) -> bool) -> bool {
+    fn try_add(
+        &mut self,
+        class: Class,
+        at: DVec2,
+        yaw_rad: f64,
+        speed: f64,
+        on: impl Fn(u32) -> bool,
+    ) -> bool {
         let typical = DVec3::from_array(class.typical_size_m().expect("an object class"));
         let draw = &mut self.draw;
         let spread = if class.is_vehicle() { 0.1 } else { 0.12 };
@@ -107,7 +122,11 @@ impl Placer<'_> {
         }
         let layout = self.layout;
         let busy = self.draw.range(0.2, 1.0) * amount;
-        for lane in layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter) {
+        for lane in layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter)
+        {
             // Gaps of 7 m in a queue up to 60 m on an empty road.
             let gap = 6.5 + self.draw.range(4.0, 40.0) / busy.max(0.05);
             let mut next = self.draw.range(0.0, gap);
@@ -125,7 +144,11 @@ impl Placer<'_> {
                         Class::ConstructionVehicle,
                     ][self.draw.weighted(&[0.74, 0.09, 0.05, 0.03, 0.04, 0.03, 0.02])];
                     let at = pair[0] + d * (next - along) + d.perp() * self.draw.range(-0.4, 0.4);
-                    let speed = if self.draw.chance(0.3) { 0.0 } else { self.draw.range(2.0, 14.0) };
+                    let speed = if self.draw.chance(0.3) {
+                        0.0
+                    } else {
+                        self.draw.range(2.0, 14.0)
+                    };
                     let yaw = d.to_angle() + self.draw.range(-0.03, 0.03);
                     let road = BevLayer::DrivableArea.bit();
                     self.try_add(class, at, yaw, speed, |cell| cell & road != 0);
@@ -141,7 +164,11 @@ impl Placer<'_> {
         // Along lanes: beside the outermost lane where a parking strip runs.
         let share = self.draw.range(0.2, 0.9) * amount;
         let layout = self.layout;
-        for lane in layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter) {
+        for lane in layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter)
+        {
             for side in [-1.0, 1.0] {
                 let strip = offset_line(&lane.points_m, side * 3.2);
                 let mut left = self.draw.range(0.0, 6.0);
@@ -151,7 +178,11 @@ impl Placer<'_> {
                         left = 5.6;
                         let d = (pair[1] - pair[0]).normalize_or(DVec2::X);
                         if self.draw.chance(share) {
-                            let class = if self.draw.chance(0.93) { Class::Car } else { Class::Truck };
+                            let class = if self.draw.chance(0.93) {
+                                Class::Car
+                            } else {
+                                Class::Truck
+                            };
                             self.try_add(class, pair[0], d.to_angle(), 0.0, |cell| cell & lot != 0);
                         }
                     }
@@ -159,7 +190,9 @@ impl Placer<'_> {
             }
         }
         // In car parks: rows of places at right angles to the nearest road.
-        let cells: Vec<usize> = (0..GridSpec::COLUMNS).filter(|&c| layout.cells()[c] & lot != 0).collect();
+        let cells: Vec<usize> = (0..GridSpec::COLUMNS)
+            .filter(|&c| layout.cells()[c] & lot != 0)
+            .collect();
         for _ in 0..(cells.len() as f64 * 0.012 * amount) as usize {
             let c = cells[self.draw.below(cells.len())];
             let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
@@ -181,12 +214,26 @@ impl Placer<'_> {
         let start = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
         let yaw = self.heading_near(start).unwrap_or(0.0);
         let d = DVec2::from_angle(yaw);
-        let class = if self.draw.chance(0.5) { Class::Barrier } else { Class::TrafficCone };
+        let class = if self.draw.chance(0.5) {
+            Class::Barrier
+        } else {
+            Class::TrafficCone
+        };
         let step = if class == Class::Barrier { 2.9 } else { 2.2 };
         for i in 0..3 + self.draw.below(9) {
-            let turn = if class == Class::Barrier { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+            let turn = if class == Class::Barrier {
+                std::f64::consts::FRAC_PI_2
+            } else {
+                0.0
+            };
             let jitter = self.draw.range(-0.15, 0.15);
-            self.try_add(class, start + d * (i as f64 * step) + d.perp() * jitter, yaw + turn, 0.0, |_| true);
+            self.try_add(
+                class,
+                start + d * (i as f64 * step) + d.perp() * jitter,
+                yaw + turn,
+                0.0,
+                |_| true,
+            );
         }
         if self.draw.chance(0.5) {
             let side = if self.draw.chance(0.5) { 3.5 } else { -3.5 };
@@ -210,20 +257,32 @@ impl Placer<'_> {
             let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
             let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
             let yaw = self.draw.range(-3.1, 3.1);
-            let speed = if self.draw.chance(0.6) { self.draw.range(0.6, 1.8) } else { 0.0 };
-            let class = [Class::Pedestrian, Class::Bicycle, Class::Motorcycle][self.draw.weighted(&[0.86, 0.08, 0.06])];
+            let speed = if self.draw.chance(0.6) {
+                self.draw.range(0.6, 1.8)
+            } else {
+                0.0
+            };
+            let class = [Class::Pedestrian, Class::Bicycle, Class::Motorcycle]
+                [self.draw.weighted(&[0.86, 0.08, 0.06])];
             self.try_add(class, p + jitter, yaw, speed, |cell| cell & walk != 0);
         }
     }
 
     fn cells_with(&self, bits: u32) -> Vec<usize> {
-        (0..GridSpec::COLUMNS).filter(|&c| self.layout.cells()[c] & bits != 0).collect()
+        (0..GridSpec::COLUMNS)
+            .filter(|&c| self.layout.cells()[c] & bits != 0)
+            .collect()
     }
 
     fn heading_near(&self, p: DVec2) -> Option<f64> {
-        let lanes = self.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+        let lanes = self
+            .layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter);
         let segments = lanes.flat_map(|l| l.points_m.windows(2));
-        let nearest = segments.min_by(|a, b| a[0].distance_squared(p).total_cmp(&b[0].distance_squared(p)))?;
+        let nearest =
+            segments.min_by(|a, b| a[0].distance_squared(p).total_cmp(&b[0].distance_squared(p)))?;
         Some((nearest[1] - nearest[0]).to_angle())
     }
 }
@@ -251,7 +310,10 @@ mod tests {
                 });
             }
         }
-        assert!((90..1100).contains(&cars), "{cars} cars in 30 frames, real: 3 to 37 a frame");
+        assert!(
+            (90..1100).contains(&cars),
+            "{cars} cars in 30 frames, real: 3 to 37 a frame"
+        );
         assert!(place(&template::any_layout(1), 1, &TrafficSpec::EMPTY).is_empty());
     }
 }

@@ -33,7 +33,9 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
         let (lo, hi) = (s.center - s.reach(), s.center + s.reach());
         let (lo, hi) = (GridSpec::to_voxel_units(lo), GridSpec::to_voxel_units(hi));
         let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
-        let span = |axis: usize| (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize);
+        let span = |axis: usize| {
+            (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize)
+        };
         let thin = s.reach().min_element() < GridSpec::VOXEL_M * 0.75;
         let needed = if thin { 1 } else { 9 };
         for x in span(0) {
@@ -67,8 +69,15 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
             }
             let p = GridSpec::center(x, y, 0).truncate();
             let height = world.ground_height(p);
-            let bin = GridSpec::to_voxel_units(DVec3::new(p.x, p.y, height)).z.floor().clamp(0.0, 15.0);
-            finish_column(&mut column, Some((bin as usize, world.ground_class(x, y).id())), vertical);
+            let bin = GridSpec::to_voxel_units(DVec3::new(p.x, p.y, height))
+                .z
+                .floor()
+                .clamp(0.0, 15.0);
+            finish_column(
+                &mut column,
+                Some((bin as usize, world.ground_class(x, y).id())),
+                vertical,
+            );
             grid.column_mut(x, y).copy_from_slice(&column);
         }
     }
@@ -119,13 +128,24 @@ pub struct Drive {
 
 impl Default for Drive {
     fn default() -> Self {
-        Self { sweeps: 24, step_m: 1.8, dropout: 0.08, range_noise_m: 0.02 }
+        Self {
+            sweeps: 24,
+            step_m: 1.8,
+            dropout: 0.08,
+            range_noise_m: 0.02,
+        }
     }
 }
 
 /// Labels as a data set has them: sweeps of `pattern` from poses along the road through the ego,
 /// accumulated; the majority class of the hits in a voxel wins.
-pub fn labels(world: &World, pattern: &LidarPattern, drive: &Drive, vertical: Vertical, seed: u64) -> VoxelGrid {
+pub fn labels(
+    world: &World,
+    pattern: &LidarPattern,
+    drive: &Drive,
+    vertical: Vertical,
+    seed: u64,
+) -> VoxelGrid {
     let mut poses = drive_poses(world, drive);
     let stray = 0.0015; // hits that land a voxel beside their surface: speckle
     let mount = pattern.ego_from_sensor();
@@ -142,11 +162,14 @@ pub fn labels(world: &World, pattern: &LidarPattern, drive: &Drive, vertical: Ve
                 let (sin_el, cos_el) = elevation.to_radians().sin_cos();
                 for _ in 0..columns {
                     let (sin_az, cos_az) = (draw.unit() * std::f64::consts::TAU).sin_cos();
-                    let dir = world_from_sensor.rotation * DVec3::new(cos_el * cos_az, cos_el * sin_az, sin_el);
+                    let dir =
+                        world_from_sensor.rotation * DVec3::new(cos_el * cos_az, cos_el * sin_az, sin_el);
                     if draw.chance(drive.dropout) {
                         continue;
                     }
-                    let Some(hit) = world.cast(origin, dir, 70.0) else { continue };
+                    let Some(hit) = world.cast(origin, dir, 70.0) else {
+                        continue;
+                    };
                     let noise = (draw.unit() + draw.unit() + draw.unit() - 1.5) * 2.0 * drive.range_noise_m;
                     let mut p = origin + dir * (hit.range_m + noise + 0.03);
                     if draw.chance(stray) {
@@ -184,14 +207,19 @@ pub fn labels(world: &World, pattern: &LidarPattern, drive: &Drive, vertical: Ve
             }
         }
         finish_column(&mut column, ground, vertical);
-        grid.column_mut(c / GridSpec::NY, c % GridSpec::NY).copy_from_slice(&column);
+        grid.column_mut(c / GridSpec::NY, c % GridSpec::NY)
+            .copy_from_slice(&column);
     }
     grid
 }
 
 /// Poses of the labelling drive: along the lane nearest to the ego, as far as it stays in the grid.
 fn drive_poses(world: &World, drive: &Drive) -> Vec<(DVec2, f64)> {
-    let lanes = world.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+    let lanes = world
+        .layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter);
     let nearest = |line: &Polyline| {
         let distances = line.points_m.iter().map(|p| p.length_squared());
         distances.fold(f64::INFINITY, f64::min)
@@ -202,11 +230,16 @@ fn drive_poses(world: &World, drive: &Drive) -> Vec<(DVec2, f64)> {
     // Every metre of the lane, then the ones nearest to the ego at the wanted spacing.
     let mut fine = Vec::new();
     for pair in points.windows(2) {
-        let (d, length) = ((pair[1] - pair[0]).normalize_or(DVec2::X), pair[0].distance(pair[1]));
+        let (d, length) = (
+            (pair[1] - pair[0]).normalize_or(DVec2::X),
+            pair[0].distance(pair[1]),
+        );
         fine.extend((0..length.ceil() as usize).map(|i| (pair[0] + d * i as f64, d.to_angle())));
     }
     fine.retain(|(p, _)| p.abs().max_element() < 39.0);
-    let start = (0..fine.len()).min_by(|a, b| fine[*a].0.length().total_cmp(&fine[*b].0.length())).unwrap_or(0);
+    let start = (0..fine.len())
+        .min_by(|a, b| fine[*a].0.length().total_cmp(&fine[*b].0.length()))
+        .unwrap_or(0);
     let half = drive.sweeps as f64 / 2.0;
     (0..drive.sweeps)
         .filter_map(|i| {
@@ -228,7 +261,10 @@ mod tests {
             let grid = complete(&world, vertical);
             let road = grid.iter_set().filter(|v| v.3 == Class::DriveableSurface.id());
             let (at, all) = road.fold((0, 0), |(at, all), v| (at + usize::from(v.2 == bin), all + 1));
-            assert!(all > 2000 && at == all, "{vertical:?}: {at} of {all} road voxels in bin {bin}");
+            assert!(
+                all > 2000 && at == all,
+                "{vertical:?}: {at} of {all} road voxels in bin {bin}"
+            );
         }
     }
 
@@ -237,7 +273,11 @@ mod tests {
         let world = World::random(4);
         let full = complete(&world, Vertical::Occ3d);
         let pattern = &SensorRig::default().lidars[0];
-        let drive = Drive { sweeps: 6, step_m: 6.0, ..Drive::default() };
+        let drive = Drive {
+            sweeps: 6,
+            step_m: 6.0,
+            ..Drive::default()
+        };
         let seen = labels(&world, pattern, &drive, Vertical::Occ3d, 9);
         assert_eq!(seen, labels(&world, pattern, &drive, Vertical::Occ3d, 9));
         assert!(seen.count_set() < full.count_set() && seen.count_set() > 5000);
