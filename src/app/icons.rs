@@ -40,8 +40,6 @@ pub enum Icon {
     Swap,
     /// Cross.
     Close,
-    /// Rubber.
-    Erase,
     /// Camera.
     Camera,
 }
@@ -175,10 +173,6 @@ impl Icon {
                 line(&[(4.0, 4.0), (12.0, 12.0)]);
                 line(&[(12.0, 4.0), (4.0, 12.0)]);
             }
-            Icon::Erase => {
-                closed(&[(9.4, 2.6), (13.6, 6.8), (7.4, 13.0), (5.2, 13.0), (2.4, 10.2)]);
-                line(&[(5.9, 6.4), (10.0, 10.4)]);
-            }
             Icon::Camera => {
                 closed(&[
                     (2.0, 5.0),
@@ -297,7 +291,8 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.y = theme::ROW - 4.0;
         ui.spacing_mut().button_padding = vec2(8.0, 1.0);
-        ui.horizontal(|ui| {
+        // From left to right also where the bar is laid out from the right.
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             for (value, name, hint) in choices {
                 let on = *chosen == *value;
                 let text =
