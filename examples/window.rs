@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use sceneloom::app::{AppConfig, run_window};
+use sceneloom::app::{AppConfig, run_window_with};
 use sceneloom::generation::composite::{composite, untouched_voxels_changed};
 use sceneloom::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode, Stage,
@@ -54,11 +54,13 @@ fn world(seed: u64) -> Scene {
 
 fn main() -> anyhow::Result<()> {
     let seed = std::env::args().nth(1).map_or(Ok(7), |s| s.parse())?;
-    run_window(AppConfig {
+    run_window_with(AppConfig {
         scene: world(seed),
         path: None,
         build_pipeline: Box::new(|| Ok(Box::new(StandIn))),
         params: GenParams::default(),
+        full_params: GenParams { region: RegionMode::Full, ..GenParams::default() },
+        warm_up: false,
         open: Arc::new(|path| anyhow::bail!("this example opens nothing, not {}", path.display())),
         save: Arc::new(|_, path| anyhow::bail!("this example saves nothing, not {}", path.display())),
         new_scene: Arc::new(move || Ok(world(seed + 1))),

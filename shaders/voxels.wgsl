@@ -62,14 +62,14 @@ fn fs_main(in: Surface) -> @location(0) vec4<f32> {
     base *= 0.95 + 0.012 * cell.z;
     var lit = base * lighting(in.normal, reached);
     let footprint = pixel_m(in.p) / VOXEL_M;
-    if footprint < 0.3 {
+    if footprint < 0.24 {
         var u = cell.xy;
         if abs(in.normal.x) > 0.5 {
             u = cell.yz;
         } else if abs(in.normal.y) > 0.5 {
             u = cell.xz;
         }
-        let strength = (1.0 - smoothstep(0.1, 0.3, footprint)) * mix(0.22, 0.11, in.color.a);
+        let strength = (1.0 - smoothstep(0.04, 0.24, footprint)) * mix(0.22, 0.11, in.color.a);
         lit *= 1.0 - frame.toggles.x * strength * edge(u, max(0.06, 1.5 * footprint));
     }
     return vec4<f32>(with_fog(encode(lit), in.p, in.clip.y), 1.0);

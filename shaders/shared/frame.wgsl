@@ -62,13 +62,15 @@ fn light_at(p: vec3<f32>) -> vec2<f32> {
     return textureSampleLevel(light_volume, light_sampler, cell / vec3<f32>(202.0, 202.0, 18.0), 0.0).xy;
 }
 
-// Light on a surface of normal n: cool sky from above, warm sun, a little from the ground.
+// Light on a surface of normal n: cool sky from above, warm sun, a little from the ground and from
+// where the viewer is, so that a side in shade is never dull.
 fn lighting(n: vec3<f32>, reached: vec2<f32>) -> vec3<f32> {
     let sky = mix(vec3<f32>(0.30, 0.30, 0.32), vec3<f32>(0.46, 0.50, 0.56), 0.5 + 0.5 * n.z);
     // The two horizontal axes differ a little, so that corners show even in shade.
     let side = 1.0 + 0.10 * (abs(n.x) - abs(n.y));
-    let sun = vec3<f32>(0.70, 0.66, 0.58) * max(dot(n, frame.sun.xyz), 0.0);
-    return sky * side * mix(1.0, reached.x, 0.88) + sun * reached.y;
+    let sun = vec3<f32>(0.66, 0.62, 0.54) * max(dot(n, frame.sun.xyz), 0.0);
+    let fill = 0.13 * max(-dot(n, frame.forward.xyz), 0.0);
+    return (sky * side + fill) * mix(1.0, reached.x, 0.88) + sun * reached.y;
 }
 
 // Far things lean toward the background: depth one can see.

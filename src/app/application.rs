@@ -10,7 +10,7 @@ use egui::{Rect, Ui};
 
 use crate::editor::Document;
 use crate::generation::job::{
-    GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Pipeline, RegionMode, UpdateGate,
+    GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Pipeline, UpdateGate,
 };
 use crate::generation::worker::GenWorker;
 use crate::scene::{Scene, SceneRev};
@@ -19,7 +19,7 @@ use super::canvas::{Canvas, CanvasInput};
 use super::command::Command;
 use super::file_dialogs::FileDialogs;
 use super::keys;
-use super::live::{Advice, Live};
+use super::live::{Advice, Live, Purpose};
 use super::panels::cameras::{CameraStrip, CamerasInput};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::layers::layers_ui;
@@ -50,8 +50,12 @@ pub struct AppConfig {
     pub path: Option<PathBuf>,
     /// Makes the pipeline.
     pub build_pipeline: BuildPipeline,
-    /// How to generate.
+    /// How to generate what was edited.
     pub params: GenParams,
+    /// How to generate everything.
+    pub full_params: GenParams,
+    /// Send a job that edits nothing when a scene was opened, so that the pipeline can get ready.
+    pub warm_up: bool,
     /// Opens files.
     pub open: OpenScene,
     /// Saves files.
@@ -122,6 +126,7 @@ pub struct SceneloomApp {
     title: String,
     center: Rect,
     passes: u32,
+    unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
 }
 
 impl SceneloomApp {
@@ -143,7 +148,7 @@ impl SceneloomApp {
             state: UiState::default(),
             canvas: Canvas::default(),
             view3d: View3d::new(render_state),
-            live: Live::new(config.params),
+            live: Live::new(config.params, config.full_params, config.warm_up),
             receipt: None,
             toasts: Toasts::default(),
             path: config.path,
@@ -163,6 +168,7 @@ impl SceneloomApp {
             title: String::new(),
             center: Rect::NOTHING,
             passes: 0,
+            unsettled: None,
         })
     }
 
@@ -224,7 +230,7 @@ impl SceneloomApp {
                 ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
             }
             Advice::Cancel => self.worker.cancel(),
-            Advice::Submit(params) => self.submit(scene, params),
+            Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
         let dragging = self.document.is_dragging();
         self.sensing.ask(&self.shown_scene(), dragging);
@@ -256,7 +262,13 @@ impl SceneloomApp {
             JobUpdate::Finished(result) => {
                 let now_s = self.now_s();
                 if let Some(running) = self.live.ended(event.id) {
-                    let full = running.key.params.region == RegionMode::Full;
+                    let full = running.purpose == Purpose::Full;
+                    if running.purpose == Purpose::WarmUp {
+                        let calls = result.report.network_calls;
+                        let took_s = now_s - running.submitted_s;
+                        self.toasts.log(format!("Ready to edit after {took_s:.1} s, {calls} network calls"), now_s);
+                        return;
+                    }
                     if !full {
                         self.live.took(now_s - running.submitted_s);
                     }
@@ -397,7 +409,9 @@ impl SceneloomApp {
             .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
-        let unsettled = !self.live.look(&settled, now_s).is_empty;
+        let touched = self.live.look(&settled, now_s);
+        self.unsettled = touched.bounds;
+        let unsettled = !touched.is_empty;
         let status = StatusInput {
             running: self.live.running.as_ref(),
             now_s,
@@ -470,9 +484,11 @@ impl SceneloomApp {
             Pane::Bev => {
                 panes::bev_header(ui, &mut self.state, commands);
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let input = CanvasInput {
+                                let input = CanvasInput {
                     scene,
                     lidar: self.sensing.lidar().map(|l| &**l),
+                    unsettled: self.unsettled,
+                    generating: self.live.running.is_some(),
                 };
                 self.canvas.show(ui, &input, &mut self.state, commands)
             }

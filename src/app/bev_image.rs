@@ -34,11 +34,21 @@ pub fn layers(layout: &BevLayout, shown: u32, opacity: f32) -> ColorImage {
         let cell = layout.cell(x, y) & shown;
         let top = DRAW_ORDER.iter().rev().find(|l| cell & l.bit() != 0);
         top.map_or(Color32::TRANSPARENT, |layer| {
-            let [r, g, b] = layer.color();
+            let mut color = layer.color();
+            if is_divider(*layer) {
+                // Half of the road shows through: a divider is a line, its cells are four times as wide.
+                let under = BevLayer::DrivableArea.color();
+                color = std::array::from_fn(|i| ((u16::from(color[i]) + u16::from(under[i])) / 2) as u8);
+            }
+            let [r, g, b] = color;
             Color32::from_rgba_unmultiplied(r, g, b, alpha)
         })
     };
     ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+}
+
+fn is_divider(layer: BevLayer) -> bool {
+    matches!(layer, BevLayer::RoadDivider | BevLayer::LaneDivider)
 }
 
 /// The highest voxel of each column by class, brighter the higher it is.
@@ -65,12 +75,12 @@ mod tests {
     fn forward_is_up_and_left_is_left() {
         let mut layout = BevLayout::default();
         layout.set(BevLayer::DrivableArea, 199, 199, true); // far ahead, far left
-        layout.set(BevLayer::LaneDivider, 199, 199, true);
+        layout.set(BevLayer::Walkway, 199, 199, true);
         let image = layers(&layout, 0xff, 1.0);
-        let [r, g, b] = BevLayer::LaneDivider.color();
+        let [r, g, b] = BevLayer::Walkway.color();
         assert_eq!(image.pixels[0], Color32::from_rgb(r, g, b));
         assert_eq!(image.pixels[1], Color32::TRANSPARENT);
-        let without = layers(&layout, !BevLayer::LaneDivider.bit(), 1.0);
+        let without = layers(&layout, !BevLayer::Walkway.bit(), 1.0);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
         let mut grid = VoxelGrid::new();

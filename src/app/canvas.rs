@@ -68,6 +68,10 @@ pub struct CanvasInput<'a> {
     pub scene: &'a Scene,
     /// The newest sweep.
     pub lidar: Option<&'a LidarSweep>,
+    /// Lowest and highest column that is still to be generated, both included.
+    pub unsettled: Option<([usize; 2], [usize; 2])>,
+    /// A job is on its way.
+    pub generating: bool,
 }
 
 const SCALE: std::ops::RangeInclusive<f64> = 2.0..=120.0;
@@ -200,7 +204,7 @@ impl Canvas {
             StrokeKind::Outside,
         );
         if state.show_lines && state.underlay != Underlay::Occupancy {
-            draw_lines(ui, map, scene);
+            draw_lines(&painter.with_clip_rect(painter.clip_rect().intersect(grid)), map, scene);
         }
         if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
             draw_points(ui, map, sweep, state);
@@ -209,6 +213,7 @@ impl Canvas {
         if state.show_boxes {
             draw_boxes(ui, map, response, input.scene, state);
         }
+        draw_unsettled(ui, map, input);
         self.draw_tool(ui, response, map, scene, state);
         draw_scale_bar(ui, map);
     }
@@ -305,15 +310,14 @@ fn draw_grid(ui: &Ui, map: &ScreenMap, grid: Rect) {
     }
 }
 
-fn draw_lines(ui: &Ui, map: &ScreenMap, scene: &Scene) {
-    let painter = ui.painter();
+fn draw_lines(painter: &egui::Painter, map: &ScreenMap, scene: &Scene) {
     for line in scene.frame().layout.polylines.iter() {
         let mut points: Vec<Pos2> = line.points_m.iter().map(|p| map.to_screen(*p)).collect();
         match line.kind {
             PolylineKind::LaneCenter => {
                 let stroke = Stroke::new(1.0, Color32::from_rgba_unmultiplied(120, 190, 255, 90));
                 painter.extend(Shape::dashed_line(&points, stroke, 5.0, 5.0));
-                draw_direction(ui, &points, stroke.color);
+                draw_direction(painter, &points, stroke.color);
             }
             PolylineKind::RoadDivider => {
                 painter.line(
@@ -342,7 +346,7 @@ fn draw_lines(ui: &Ui, map: &ScreenMap, scene: &Scene) {
 }
 
 /// A small arrow head half way along a lane.
-fn draw_direction(ui: &Ui, points: &[Pos2], color: Color32) {
+fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
     let Some(pair) = points.get(points.len() / 2..).and_then(|p| p.first_chunk::<2>()) else {
         return;
     };
@@ -354,8 +358,7 @@ fn draw_direction(ui: &Ui, points: &[Pos2], color: Color32) {
     let tip = pair[0] + along * 4.0;
     let wings = [tip - along * 6.0 + side * 3.0, tip - along * 6.0 - side * 3.0];
     let head = vec![tip, wings[0], wings[1]];
-    ui.painter().add(Shape::convex_polygon(
-        head,
+    painter.add(Shape::convex_polygon(head,
         color.gamma_multiply(1.6),
         Stroke::NONE,
     ));
@@ -469,6 +472,19 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
             StrokeKind::Outside,
         );
     }
+}
+
+/// A dashed frame around what is still to be generated.
+fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
+    let Some((low, high)) = input.unsettled else { return };
+    let color = if input.generating { theme::ACCENT } else { theme::WARN };
+    let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
+    let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+    let rect = map.rect_of(corner(low) - half, corner(high) + half).expand(2.0);
+    ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
+    let [a, b, c, d] = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
+    let stroke = Stroke::new(1.3, color);
+    ui.painter().extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
 }
 
 fn draw_scale_bar(ui: &Ui, map: &ScreenMap) {

@@ -13,6 +13,8 @@ const QUICK_S: f64 = 1.5;
 const GRACE_S: f64 = 0.25;
 /// Longest wait after the oldest edit that is not generated yet, s.
 const LONGEST_WAIT_S: f64 = 3.0;
+/// Quiet time before the worker gets ready, s.
+const WARM_UP_AFTER_S: f64 = 0.6;
 /// Runs that the mean is taken of.
 const REMEMBERED: usize = 10;
 
@@ -25,6 +27,8 @@ pub enum Advice {
     Wait(f64),
     /// Submit the scene with these parameters.
     Submit(GenParams),
+    /// Submit it although nothing was edited: the worker gets ready for the first edit.
+    WarmUp(GenParams),
     /// Stop what runs: its result would be of no use.
     Cancel,
 }
@@ -36,6 +40,19 @@ pub struct Touched {
     pub is_empty: bool,
     /// Extent along x and y, m.
     pub extent_m: [f64; 2],
+    /// Lowest and highest column along x and y, both included.
+    pub bounds: Option<([usize; 2], [usize; 2])>,
+}
+
+/// What a job is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Redraws what was edited.
+    Edit,
+    /// Draws everything.
+    Full,
+    /// Gets the worker ready; its result is what is there already.
+    WarmUp,
 }
 
 /// A job on its way.
@@ -45,6 +62,8 @@ pub struct Running {
     pub id: JobId,
     /// What was asked for.
     pub key: JobKey,
+    /// What for.
+    pub purpose: Purpose,
     /// When, s.
     pub submitted_s: f64,
     /// When the edit was made that it answers, s.
@@ -62,6 +81,8 @@ pub struct Live {
     pub on: bool,
     /// How to generate what was edited.
     pub params: GenParams,
+    /// How to generate everything.
+    pub full_params: GenParams,
     /// The job on its way.
     pub running: Option<Running>,
     seen: Option<(SceneRev, Touched)>,
@@ -69,14 +90,19 @@ pub struct Live {
     oldest_edit_s: Option<f64>,
     asked: Option<JobKey>,
     recent_s: VecDeque<f64>,
+    cold: bool,
+    warm_up: bool,
 }
 
 impl Live {
-    /// Switched on; nothing seen yet.
-    pub fn new(params: GenParams) -> Self {
+    /// Switched on; nothing seen yet. With `warm_up` the worker is to get ready while nothing is edited.
+    pub fn new(params: GenParams, full_params: GenParams, warm_up: bool) -> Self {
         Self {
             on: true,
             params,
+            full_params,
+            cold: warm_up,
+            warm_up,
             running: None,
             seen: None,
             last_edit_s: f64::NEG_INFINITY,
@@ -88,11 +114,11 @@ impl Live {
 
     /// Parameters for all of a scene, or for what was edited in it.
     pub fn params_for(&self, scene: &Scene, full: bool) -> GenParams {
-        GenParams {
-            seed: scene.seed,
-            region: if full { RegionMode::Full } else { RegionMode::Auto },
-            ..self.params
-        }
+        let (params, region) = match full {
+            true => (self.full_params, RegionMode::Full),
+            false => (self.params, RegionMode::Auto),
+        };
+        GenParams { seed: scene.seed, region, ..params }
     }
 
     /// What the state shown asks for. `scene` is the settled one; `now_s` never runs backward.
@@ -103,6 +129,7 @@ impl Live {
         let touched = self.look(scene, now_s);
         if let Some(running) = &self.running
             && running.key.rev != scene.rev
+            && running.purpose != Purpose::WarmUp
             && (touched.is_empty || !self.on)
         {
             return Advice::Cancel;
@@ -112,6 +139,10 @@ impl Live {
             rev: scene.rev,
             params,
         };
+        if self.on && touched.is_empty && self.cold && self.running.is_none() {
+            let ready_s = self.last_edit_s + WARM_UP_AFTER_S;
+            return if now_s < ready_s { Advice::Wait(ready_s - now_s) } else { Advice::WarmUp(params) };
+        }
         if !self.on || touched.is_empty || self.asked.is_some_and(|k| k.rev == key.rev) {
             return Advice::Rest;
         }
@@ -134,6 +165,7 @@ impl Live {
         let touched = Touched {
             is_empty: region.is_empty(),
             extent_m: region.extent_m(),
+            bounds: region.bounds,
         };
         self.seen = Some((scene.rev, touched));
         self.last_edit_s = now_s;
@@ -143,15 +175,19 @@ impl Live {
     /// Notes that a job was submitted.
     pub fn submitted(&mut self, id: JobId, key: JobKey, now_s: f64) {
         let full = key.params.region == RegionMode::Full;
-        let extent_m = match self.seen {
-            Some((_, touched)) if !full => touched.extent_m,
-            _ => [80.0; 2],
+        let (purpose, extent_m) = match self.seen {
+            Some((_, touched)) if !full && touched.is_empty => (Purpose::WarmUp, [0.0; 2]),
+            Some((_, touched)) if !full => (Purpose::Edit, touched.extent_m),
+            _ => (Purpose::Full, [80.0; 2]),
         };
+        // A source that was drawn anew has to be inverted before it can be edited.
+        self.cold = self.warm_up && purpose == Purpose::Full;
         self.asked = Some(key);
         self.oldest_edit_s = None;
         self.running = Some(Running {
             id,
             key,
+            purpose,
             submitted_s: now_s,
             edited_s: if full { now_s } else { self.last_edit_s.max(0.0) },
             progress: None,
@@ -180,6 +216,7 @@ impl Live {
     /// Forgets everything about the last document; the pace stays.
     pub fn reset(&mut self) {
         (self.seen, self.asked, self.oldest_edit_s) = (None, None, None);
+        self.cold = self.warm_up;
     }
 
     fn grace_s(&self) -> f64 {
@@ -218,7 +255,7 @@ mod tests {
 
     #[test]
     fn an_edit_is_generated_once_and_not_while_dragging() {
-        let (mut live, mut scene) = (Live::new(GenParams::default()), scene());
+        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
         assert_eq!(live.advise(&scene, false, 0.0), Advice::Rest);
         paint(&mut scene, 40);
         assert_eq!(live.advise(&scene, true, 1.0), Advice::Rest);
@@ -237,7 +274,7 @@ mod tests {
 
     #[test]
     fn slow_runs_get_a_grace_that_ends() {
-        let (mut live, mut scene) = (Live::new(GenParams::default()), scene());
+        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
         (0..3).for_each(|_| live.took(4.0));
         live.advise(&scene, false, 0.0);
         let mut now_s = 10.0;
@@ -257,7 +294,7 @@ mod tests {
 
     #[test]
     fn what_became_useless_is_cancelled() {
-        let (mut live, mut scene) = (Live::new(GenParams::default()), scene());
+        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
         let before = scene.clone();
         paint(&mut scene, 40);
         let Advice::Submit(params) = live.advise(&scene, false, 1.0) else {
@@ -272,11 +309,31 @@ mod tests {
 
     #[test]
     fn off_means_off() {
-        let (mut live, mut scene) = (Live::new(GenParams::default()), scene());
+        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
         live.on = false;
         paint(&mut scene, 40);
         assert_eq!(live.advise(&scene, false, 1.0), Advice::Rest);
         live.on = true;
         assert!(matches!(live.advise(&scene, false, 1.1), Advice::Submit(_)));
+    }
+
+    #[test]
+    fn the_worker_gets_ready_once_and_an_edit_comes_first() {
+        let mut scene = scene();
+        let mut live = Live::new(GenParams::default(), GenParams::default(), true);
+        assert!(matches!(live.advise(&scene, false, 0.0), Advice::Wait(_)));
+        let Advice::WarmUp(params) = live.advise(&scene, false, 1.0) else { panic!() };
+        submit(&mut live, &scene, params, 1.0, 1);
+        assert_eq!(live.running.as_ref().map(|r| r.purpose), Some(Purpose::WarmUp));
+        assert_eq!(live.advise(&scene, false, 2.0), Advice::Rest);
+        paint(&mut scene, 40);
+        assert!(matches!(live.advise(&scene, false, 2.1), Advice::Submit(_)));
+        // Drawn anew: the source is another one.
+        let full = live.params_for(&scene, true);
+        submit(&mut live, &scene, full, 3.0, 2);
+        live.ended(JobId(2));
+        let settled = self::scene();
+        assert!(matches!(live.advise(&settled, false, 4.0), Advice::Wait(_)));
+        assert!(matches!(live.advise(&settled, false, 5.0), Advice::WarmUp(_)));
     }
 }

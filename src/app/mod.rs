@@ -4,27 +4,68 @@ pub mod application;
 mod bev_image;
 pub mod canvas;
 pub mod canvas_tools;
+pub mod cli;
 pub mod command;
 mod execute;
 mod file_dialogs;
 mod icons;
 mod keys;
 pub mod live;
+pub mod open;
 pub mod panels;
+pub mod picture;
+mod pipeline;
 pub mod sensing;
 pub mod state;
 mod theme;
 pub mod view3d;
 mod view3d_tools;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use application::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
 pub use command::Command;
 
+use crate::formats::project;
+use crate::generation::job::GenParams;
+use crate::scene::Scene;
+
+/// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
+/// `.loom` is saved back. Errors as [`run_window_with`].
+pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
+    run_window_with(AppConfig {
+        scene,
+        path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
+        build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
+        params: GenParams::default(),
+        full_params: cli::full_params(),
+        warm_up: true,
+        open: Arc::new(open::scene),
+        save: Arc::new(|scene, path| {
+            project::save(path, scene)?;
+            Ok(())
+        }),
+        new_scene: Arc::new(new_scene),
+        native_dialogs: true,
+    })
+}
+
+/// A random world, another one each time.
+fn new_scene() -> anyhow::Result<Scene> {
+    use crate::generation::world::template::TEMPLATES;
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let seed = since.map_or(1, |d| u64::from(d.subsec_nanos()) ^ d.as_secs()) % 100_000;
+    let name = TEMPLATES[seed as usize % TEMPLATES.len()];
+    let mut scene =
+        open::from_template(name, seed).ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))?;
+    scene.name = format!("{name} {seed}").into();
+    Ok(scene)
+}
+
 /// Opens the window and returns when it is closed. Errors in one line if there is no display or no
 /// graphics adapter (a software one will do).
-pub fn run_window(config: AppConfig) -> anyhow::Result<()> {
+pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("sceneloom")
         .with_title(format!("{} – Sceneloom", config.scene.name))

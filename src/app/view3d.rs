@@ -84,7 +84,7 @@ impl View3d {
         });
         Self {
             camera: ViewCamera::default(),
-            options: ViewOptions::default(),
+            options: ViewOptions { point_px: 1.8, ..ViewOptions::default() },
             gpu,
             gesture: Gesture3d::None,
             rect: Rect::NOTHING,
@@ -263,6 +263,7 @@ impl View3d {
             grid_lines: state.show_grid,
             boxes: state.show_boxes,
             samples: if coarse || gpu.software { 1 } else { 4 },
+            point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             ..self.options.clone()
         };

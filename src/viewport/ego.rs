@@ -3,8 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::GROUND_TOP_M;
-use super::shared::{PipelineSpec, QuadBuffer, Shared};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use crate::scene::SensorRig;
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -27,7 +26,7 @@ const TAIL_LIGHT: [u8; 3] = [226, 62, 56];
 /// Drawable of the ego vehicle.
 #[derive(Debug, Default)]
 pub(super) struct Ego {
-    quads: QuadBuffer,
+    quads: VertexBuffer,
 }
 
 impl Ego {
@@ -41,12 +40,12 @@ impl Ego {
         .build(device, shared, samples)
     }
 
-    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, rig: &SensorRig) {
-        self.quads.write(device, queue, "ego", &car(rig));
+    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, rig: &SensorRig, drop_m: f64) {
+        self.quads.write(device, queue, "ego", &car(rig, drop_m));
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.quads.draw(pass, shared, 0..self.quads.len());
+        self.quads.draw_quads(pass, shared, 0..self.quads.quads());
     }
 }
 
@@ -67,12 +66,12 @@ struct Builder {
     vertices: Vec<EgoVertex>,
 }
 
-/// The mesh stands on the top of the drawn ground, which lies below the physical one.
-fn car(rig: &SensorRig) -> Vec<EgoVertex> {
+/// The mesh stands `drop_m` below the physical ground.
+fn car(rig: &SensorRig, drop_m: f64) -> Vec<EgoVertex> {
     let (size, center) = measures(rig);
     let mut b = Builder {
         size,
-        base: DVec3::new(center.x, center.y, GROUND_TOP_M),
+        base: DVec3::new(center.x, center.y, -drop_m),
         vertices: Vec::new(),
     };
     // Positions as shares of length (-.5 rear to .5 front), width and height.
@@ -241,8 +240,8 @@ mod tests {
     fn the_car_fits_its_measures_and_faces_outward() {
         let rig = SensorRig::default();
         let (size, center) = measures(&rig);
-        let vertices = car(&rig);
-        let middle = DVec3::new(center.x, center.y, GROUND_TOP_M + size.z / 2.0);
+        let vertices = car(&rig, 0.6);
+        let middle = DVec3::new(center.x, center.y, size.z / 2.0 - 0.6);
         for v in &vertices {
             let p = DVec3::from(glam::Vec3::from_array(v.position_m).as_dvec3()) - middle;
             assert!(
@@ -268,7 +267,7 @@ mod tests {
             ..rig
         };
         assert!(
-            car(&odd)
+            car(&odd, 0.0)
                 .iter()
                 .all(|v| v.position_m.iter().all(|c| c.is_finite()))
         );

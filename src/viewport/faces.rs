@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::shared::{PipelineSpec, QuadBuffer, Shared};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
 
 /// How a rectangle is filled; the value goes to the shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl FaceList {
 /// Rectangles on the device.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
-    quads: QuadBuffer,
+    quads: VertexBuffer,
 }
 
 impl Faces {
@@ -67,6 +67,6 @@ impl Faces {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.quads.draw(pass, shared, 0..self.quads.len());
+        self.quads.draw_quads(pass, shared, 0..self.quads.quads());
     }
 }

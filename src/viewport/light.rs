@@ -35,11 +35,10 @@ pub struct LightBlock {
     pub cells: Vec<[u8; 2]>,
 }
 
-/// A step of a ray: column offset and the bins it enters there, as height offsets.
+/// A step of a ray: how far its column lies in [`Solidity::padded`], and the bins up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
-    dx: isize,
-    dy: isize,
+    offset: isize,
     dz: u32,
 }
 
@@ -84,20 +83,20 @@ impl LightRays {
         }
     }
 
-    /// Bakes the columns `origin..origin + size`.
+    /// Bakes the columns `origin..origin + size`, which must lie in the grid.
     pub fn bake(&self, solid: &Solidity, origin: [usize; 2], size: [usize; 2]) -> LightBlock {
         // One more column on every side, because drawn voxels take the sun of their neighbours.
         let (w, h) = (size[0] + 2, size[1] + 2);
         let traced: Vec<Column> = (0..w * h)
             .into_par_iter()
+            .with_min_len(64)
             .map(|i| {
-                let x = (origin[0] + i % w) as isize - 1;
-                let y = (origin[1] + i / w) as isize - 1;
-                let own = solid.column(x, y);
+                // The margin of the padded columns is wide enough for this one and for every ray.
+                let at = Solidity::index(origin[0] + i % w, origin[1] + i / w) - Solidity::STRIDE - 1;
                 Column {
-                    own,
-                    sun: free_counts(solid, &self.sun, x, y),
-                    sky: free_counts(solid, &self.sky, x, y),
+                    own: solid.padded()[at],
+                    sun: free_counts(solid.padded(), &self.sun, at),
+                    sky: free_counts(solid.padded(), &self.sky, at),
                 }
             })
             .collect();
@@ -150,18 +149,23 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
 }
 
 /// Of each bin, how many rays reach the end unblocked.
-fn free_counts(solid: &Solidity, rays: &[Vec<Step>], x: isize, y: isize) -> [u8; GridSpec::NZ] {
-    let mut counts = [0; GridSpec::NZ];
+fn free_counts(columns: &[u16], rays: &[Vec<Step>], at: usize) -> [u8; GridSpec::NZ] {
+    // Sixteen counters side by side, one bit of each per word: adding a ray is a carry through five words.
+    let mut counters = [0u16; 5];
     for ray in rays {
         let mut blocked = 0u16;
         for step in ray {
-            blocked |= solid.column(x + step.dx, y + step.dy) >> step.dz;
+            blocked |= columns[at.wrapping_add_signed(step.offset)] >> step.dz;
         }
-        for (z, count) in counts.iter_mut().enumerate() {
-            *count += (!blocked >> z & 1) as u8;
+        let mut carry = !blocked;
+        for word in &mut counters {
+            (*word, carry) = (*word ^ carry, *word & carry);
         }
     }
-    counts
+    std::array::from_fn(|z| {
+        let bits = counters.iter().enumerate();
+        bits.fold(0, |sum, (i, word)| sum | ((word >> z & 1) as u8) << i)
+    })
 }
 
 /// Cells that a ray from a cell's centre enters, until it is above the grid or `reach` cells away.
@@ -180,9 +184,9 @@ fn steps(dir: glam::DVec3, reach: f64) -> Vec<Step> {
         if cell[2] >= GridSpec::NZ as isize || cell[2] < 0 {
             break;
         }
+        debug_assert!(cell[0].unsigned_abs() < REACH && cell[1].unsigned_abs() < REACH);
         out.push(Step {
-            dx: cell[0],
-            dy: cell[1],
+            offset: cell[0] * Solidity::STRIDE as isize + cell[1],
             dz: cell[2] as u32,
         });
     }
@@ -224,12 +228,16 @@ mod tests {
     fn changes_reach_no_farther_than_stated() {
         let rays = LightRays::new();
         for step in rays.sun.iter().chain(&rays.sky).flatten() {
+            let stride = Solidity::STRIDE as isize;
+            let dx = (step.offset + stride / 2).div_euclid(stride);
+            let dy = step.offset - dx * stride;
             // One column less, because solid voxels ask their neighbours.
             assert!(
-                step.dx.unsigned_abs() < REACH && step.dy.unsigned_abs() < REACH,
-                "{step:?}"
+                dx.unsigned_abs() < REACH && dy.unsigned_abs() < REACH,
+                "{dx} {dy}"
             );
         }
+        const { assert!(REACH < Solidity::MARGIN) };
         let whole = bake(&VoxelGrid::new(), [0, 0], [20, 20]);
         let mut grid = VoxelGrid::new();
         grid.set(10 + REACH + 1, 10, 15, 15);

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::shared::{PipelineSpec, QuadBuffer, Shared};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
 
 /// One corner of a line's quad; all four carry the whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -49,8 +49,8 @@ impl LineList {
 /// Lines on the device: those of the first list show through what hides them, faintly.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    see_through: QuadBuffer,
-    plain: QuadBuffer,
+    see_through: VertexBuffer,
+    plain: VertexBuffer,
 }
 
 impl Lines {
@@ -93,10 +93,11 @@ impl Lines {
     }
 
     pub fn draw_plain(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.plain.draw(pass, shared, 0..self.plain.len());
+        self.plain.draw_quads(pass, shared, 0..self.plain.quads());
     }
 
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.see_through.draw(pass, shared, 0..self.see_through.len());
+        self.see_through
+            .draw_quads(pass, shared, 0..self.see_through.quads());
     }
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
-use super::{GROUND_TOP_M, ViewScene, ego};
+use super::{GROUND_TOP_M, ViewScene, drop_m, ego};
 use crate::scene::{Camera, GridSpec, SceneBox, SensorRig};
 
 /// All marks of a picture.
@@ -31,21 +31,26 @@ impl Marks {
     pub fn of(scene: &ViewScene<'_>) -> Self {
         let mut marks = Self::default();
         let options = scene.options;
+        let down = DVec3::Z * drop_m(options);
         if options.grid_lines {
             marks.metre_grid();
         }
         if options.ego {
-            marks.ego_shadow(scene.rig);
+            marks.ego_shadow(scene.rig, down.z);
         }
         if options.frusta {
             for camera in &scene.rig.cameras {
-                marks.frustum(camera);
+                marks.frustum(camera, down);
             }
         }
         if options.boxes {
             for b in scene.boxes.iter().filter(|b| b.problem().is_none()) {
                 let selected = scene.selected.contains(&b.id);
-                marks.scene_box(b, selected, scene.hovered == Some(b.id));
+                let lowered = SceneBox {
+                    center_m: b.center_m - down,
+                    ..**b
+                };
+                marks.scene_box(&lowered, selected, scene.hovered == Some(b.id));
             }
         }
         if let Some(brush) = scene.brush {
@@ -79,10 +84,10 @@ impl Marks {
         axis(DVec3::Y, [120, 200, 110], &mut self.plain);
     }
 
-    fn ego_shadow(&mut self, rig: &SensorRig) {
+    fn ego_shadow(&mut self, rig: &SensorRig, drop_m: f64) {
         let (size, center) = ego::measures(rig);
         let (l, w) = (size.x / 2.0 * SHADOW_SPREAD, size.y / 2.0 * SHADOW_SPREAD);
-        let at = |x: f64, y: f64| DVec3::new(center.x + x, center.y + y, GROUND_TOP_M + 0.01);
+        let at = |x: f64, y: f64| DVec3::new(center.x + x, center.y + y, 0.01 - drop_m);
         self.faces.add(
             [at(l, w), at(-l, w), at(-l, -w), at(l, -w)],
             [8, 10, 14, 170],
@@ -90,20 +95,20 @@ impl Marks {
         );
     }
 
-    fn frustum(&mut self, camera: &Camera) {
+    fn frustum(&mut self, camera: &Camera, down: DVec3) {
         const DEPTH_M: f64 = 2.2;
         let pose = camera.ego_from_camera();
         let [w, h] = [f64::from(camera.width), f64::from(camera.height)];
         let at = |u: f64, v: f64| {
             let x = (u - camera.center_px[0]) / camera.focal_px[0];
             let y = (v - camera.center_px[1]) / camera.focal_px[1];
-            pose.apply(DVec3::new(x, y, 1.0) * DEPTH_M)
+            pose.apply(DVec3::new(x, y, 1.0) * DEPTH_M) - down
         };
+        let apex = pose.translation_m - down;
         let corners = [at(0.0, 0.0), at(w, 0.0), at(w, h), at(0.0, h)];
         let [r, g, b] = FRUSTUM;
         for i in 0..4 {
-            self.see_through
-                .add(pose.translation_m, corners[i], [r, g, b, 120], 1.0);
+            self.see_through.add(apex, corners[i], [r, g, b, 120], 1.0);
             self.see_through
                 .add(corners[i], corners[(i + 1) % 4], [r, g, b, 230], 1.4);
         }

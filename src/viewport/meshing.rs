@@ -8,16 +8,26 @@ use crate::scene::grid::{BRICK, BRICKS, Brick};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Which voxels are drawn: one bit per bin of every column, after hidden classes and the height clip.
+/// Empty columns border the grid on all sides, so that looking [`Solidity::MARGIN`] beyond it is no
+/// special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solidity {
-    columns: Vec<u16>, // [x][y]
+    columns: Vec<u16>, // [x + MARGIN][y + MARGIN]
 }
 
+/// A rectangle of columns: lower corner, and upper corner exclusive.
+pub type ColumnBox = ([usize; 2], [usize; 2]);
+
 impl Solidity {
+    /// Empty columns on each side of the grid.
+    pub const MARGIN: usize = 16;
+    /// From a column to the one beside it along x, in [`Solidity::padded`].
+    pub const STRIDE: usize = GridSpec::NY + 2 * Self::MARGIN;
+
     /// Of a whole grid; see [`Visible`].
     pub fn of(grid: &VoxelGrid, visible: Visible) -> Self {
         let mut solid = Self {
-            columns: vec![0; GridSpec::COLUMNS],
+            columns: vec![0; (GridSpec::NX + 2 * Self::MARGIN) * Self::STRIDE],
         };
         for brick in 0..BRICKS * BRICKS {
             solid.update(brick, &grid.bricks()[brick], visible);
@@ -25,10 +35,10 @@ impl Solidity {
         solid
     }
 
-    /// Takes over one brick; true if a bit changed.
-    pub fn update(&mut self, brick: usize, voxels: &Brick, visible: Visible) -> bool {
+    /// Takes over one brick; returns the box around the columns that changed, if any did.
+    pub fn update(&mut self, brick: usize, voxels: &Brick, visible: Visible) -> Option<ColumnBox> {
         let [x0, y0] = brick_origin(brick);
-        let mut changed = false;
+        let mut changed: Option<ColumnBox> = None;
         for x in x0..(x0 + BRICK).min(GridSpec::NX) {
             for y in y0..(y0 + BRICK).min(GridSpec::NY) {
                 let at = ((x - x0) * BRICK + y - y0) * BRICK;
@@ -37,22 +47,43 @@ impl Solidity {
                     bits |= u16::from(visible.class(class)) << z;
                 }
                 bits &= visible.below_clip;
-                let old = std::mem::replace(&mut self.columns[x * GridSpec::NY + y], bits);
-                changed |= old != bits;
+                let old = std::mem::replace(&mut self.columns[Self::index(x, y)], bits);
+                if old != bits {
+                    changed = join(changed, Some(([x, y], [x + 1, y + 1])));
+                }
             }
         }
         changed
     }
 
-    /// The bits of a column, lowest bin first; 0 outside the grid.
+    /// The bits of a column, lowest bin first; x and y may reach [`Solidity::MARGIN`] beyond the grid.
     #[inline]
     pub fn column(&self, x: isize, y: isize) -> u16 {
-        if (0..GridSpec::NX as isize).contains(&x) && (0..GridSpec::NY as isize).contains(&y) {
-            self.columns[x as usize * GridSpec::NY + y as usize]
-        } else {
-            0
-        }
+        let margin = Self::MARGIN as isize;
+        self.columns[(x + margin) as usize * Self::STRIDE + (y + margin) as usize]
     }
+
+    /// All columns, margins included; see [`Solidity::index`].
+    #[inline]
+    pub fn padded(&self) -> &[u16] {
+        &self.columns
+    }
+
+    /// Where a column of the grid is in [`Solidity::padded`].
+    #[inline]
+    pub fn index(x: usize, y: usize) -> usize {
+        (x + Self::MARGIN) * Self::STRIDE + y + Self::MARGIN
+    }
+}
+
+/// The box around two boxes.
+pub fn join(a: Option<ColumnBox>, b: Option<ColumnBox>) -> Option<ColumnBox> {
+    let (Some(a), Some(b)) = (a, b) else {
+        return a.or(b);
+    };
+    let low = [0, 1].map(|i| a.0[i].min(b.0[i]));
+    let high = [0, 1].map(|i| a.1[i].max(b.1[i]));
+    Some((low, high))
 }
 
 /// What is shown of a grid.
@@ -404,9 +435,11 @@ mod tests {
         let mut solid = Solidity::of(&grid, Visible::ALL);
         grid.set(20, 20, 5, 9);
         let brick = BRICKS + 1;
-        assert!(!solid.update(brick, &grid.bricks()[brick], Visible::ALL));
+        assert_eq!(solid.update(brick, &grid.bricks()[brick], Visible::ALL), None);
         grid.set(20, 20, 6, 9);
-        assert!(solid.update(brick, &grid.bricks()[brick], Visible::ALL));
+        let changed = solid.update(brick, &grid.bricks()[brick], Visible::ALL);
+        assert_eq!(changed, Some(([20, 20], [21, 21])));
+        assert_eq!(join(changed, Some(([3, 30], [4, 31]))), Some(([3, 20], [21, 31])));
         assert_eq!(solid.column(20, 20), 0b110_0000);
         assert_eq!(solid.column(-1, 20), 0);
         assert_eq!(solid.column(20, 200), 0);

@@ -99,6 +99,10 @@ pub struct ViewOptions {
     pub layout_opacity: f32,
     /// Boxes as wire frames.
     pub boxes: bool,
+    /// How much lower boxes, ego vehicle and cameras are drawn than they are, m. Labels put the ground
+    /// 0.6 m below the physical one ([`GROUND_TOP_M`]), so this makes things stand on the drawn road;
+    /// whoever picks boxes in the view adds it to the ray's z first. 0 draws them where they are.
+    pub drop_m: f64,
     /// LiDAR returns.
     pub lidar: bool,
     /// Size of a LiDAR return, pixels.
@@ -129,6 +133,7 @@ impl Default for ViewOptions {
             layout_plane: LayoutPlane::WhereEmpty,
             layout_opacity: 0.9,
             boxes: true,
+            drop_m: -GROUND_TOP_M,
             lidar: true,
             point_px: 2.5,
             ego: true,
@@ -211,7 +216,7 @@ struct Drawn {
 struct Uploaded {
     marks: Option<Marks>,
     points: Option<u64>,
-    rig: Option<SensorRig>,
+    ego: Option<(SensorRig, u64)>,
     layout: Option<(u64, LayoutPlane, bool)>,
 }
 
@@ -225,6 +230,15 @@ struct Pipelines {
     lines: wgpu::RenderPipeline,
     hidden_lines: wgpu::RenderPipeline,
     faces: wgpu::RenderPipeline,
+}
+
+/// A usable [`ViewOptions::drop_m`].
+fn drop_m(options: &ViewOptions) -> f64 {
+    if options.drop_m.is_finite() {
+        options.drop_m.clamp(-100.0, 100.0)
+    } else {
+        0.0
+    }
 }
 
 /// 1 or 4.
@@ -361,9 +375,10 @@ impl Viewport {
             self.uploaded.points = Some(points);
             changed = true;
         }
-        if self.uploaded.rig.as_ref() != Some(scene.rig) {
-            self.ego.write(device, queue, scene.rig);
-            self.uploaded.rig = Some(scene.rig.clone());
+        let ego = Some((scene.rig, options.drop_m.to_bits()));
+        if self.uploaded.ego.as_ref().map(|(rig, drop)| (rig, *drop)) != ego {
+            self.ego.write(device, queue, scene.rig, drop_m(options));
+            self.uploaded.ego = Some((scene.rig.clone(), options.drop_m.to_bits()));
             changed = true;
         }
         changed
@@ -410,7 +425,7 @@ impl Viewport {
                 self.ego.draw(&mut pass, shared);
             }
             pass.set_pipeline(&pipelines.points);
-            self.points.draw(&mut pass, shared);
+            self.points.draw(&mut pass);
             pass.set_pipeline(&pipelines.voxels);
             self.voxels.draw(&mut pass, shared, &camera.sane(), target.size);
             if options.background != Background::Transparent {

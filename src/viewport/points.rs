@@ -1,8 +1,8 @@
-//! LiDAR returns: small squares, and the colours they can have.
+//! LiDAR returns: small discs, and the colours they can have.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::shared::{PipelineSpec, QuadBuffer, Shared};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use crate::scene::{Class, LidarPoint, LidarSweep};
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -63,7 +63,7 @@ fn ramp(t: f32) -> [u8; 4] {
 /// Drawable of a sweep.
 #[derive(Debug, Default)]
 pub(super) struct Points {
-    quads: QuadBuffer,
+    triangles: VertexBuffer,
 }
 
 impl Points {
@@ -93,14 +93,14 @@ impl Points {
                 [PointVertex {
                     position_m: p.position_in_ego,
                     color: colors.get(i).copied().unwrap_or([255; 4]),
-                }; 4]
+                }; 3]
             })
             .collect();
-        self.quads.write(device, queue, "points", &vertices);
+        self.triangles.write(device, queue, "points", &vertices);
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.quads.draw(pass, shared, 0..self.quads.len());
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.triangles.draw_triangles(pass);
     }
 }
 

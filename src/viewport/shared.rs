@@ -374,25 +374,26 @@ impl PipelineSpec<'_> {
     }
 }
 
-/// A vertex buffer of rectangles, four vertices each; grows, never shrinks.
+/// A vertex buffer; grows, never shrinks.
 #[derive(Debug, Default)]
-pub(super) struct QuadBuffer {
+pub(super) struct VertexBuffer {
     buffer: Option<wgpu::Buffer>,
     stride: u64,
-    quads: u32,
+    vertices: u32,
 }
 
 /// Largest vertex buffer, bytes: within the downlevel limit of 128 MiB with room to spare.
 const MAX_BUFFER_BYTES: usize = 64 << 20;
 
-impl QuadBuffer {
+impl VertexBuffer {
     /// Replaces the content. What exceeds the largest buffer is left out.
     pub fn write<V: Pod>(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, label: &str, vertices: &[V]) {
         let stride = size_of::<V>();
-        let fit = vertices.len().min(MAX_BUFFER_BYTES / stride) / 4 * 4;
-        let bytes: &[u8] = bytemuck::cast_slice(&vertices[..fit]);
+        // Whole rectangles and whole triangles: a multiple of 12.
+        let most = MAX_BUFFER_BYTES / stride / 12 * 12;
+        let bytes: &[u8] = bytemuck::cast_slice(&vertices[..vertices.len().min(most)]);
         self.stride = stride as u64;
-        self.quads = (fit / 4) as u32;
+        self.vertices = (bytes.len() / stride) as u32;
         if bytes.is_empty() {
             return;
         }
@@ -409,10 +410,10 @@ impl QuadBuffer {
         queue.write_buffer(buffer, 0, bytes);
     }
 
-    /// Draws some of the rectangles with the pipeline that is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, quads: std::ops::Range<u32>) {
+    /// Draws some of the rectangles, four vertices each, with the pipeline that is set.
+    pub fn draw_quads(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, quads: std::ops::Range<u32>) {
         let Some(buffer) = &self.buffer else { return };
-        let end = quads.end.min(self.quads);
+        let end = quads.end.min(self.quads());
         let mut start = quads.start;
         if start >= end {
             return;
@@ -430,8 +431,17 @@ impl QuadBuffer {
         }
     }
 
+    /// Draws all as triangles, three vertices each.
+    pub fn draw_triangles(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(buffer) = self.buffer.as_ref().filter(|_| self.vertices > 0) else {
+            return;
+        };
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..self.vertices, 0..1);
+    }
+
     /// Number of rectangles held.
-    pub fn len(&self) -> u32 {
-        self.quads
+    pub fn quads(&self) -> u32 {
+        self.vertices / 4
     }
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::light::{LightBlock, LightRays, REACH};
-use super::meshing::{BrickMesh, NORMALS, Solidity, Visible, brick_origin, mesh_bricks};
-use super::shared::{PipelineSpec, QuadBuffer, Shared};
+use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use super::{ViewCamera, ViewOptions};
 use crate::scene::grid::{BRICK, BRICKS};
 use crate::scene::{GridSpec, VoxelGrid};
@@ -24,7 +24,7 @@ pub(super) struct Voxels {
 
 #[derive(Debug, Default)]
 struct BrickBuffer {
-    vertices: QuadBuffer,
+    vertices: VertexBuffer,
     quads: [std::ops::Range<u32>; 6],
 }
 
@@ -91,18 +91,17 @@ impl Voxels {
             return false;
         }
         let mut stale = [false; BRICKS * BRICKS];
-        let mut shape_changed = [false; BRICKS * BRICKS];
+        let mut shape_changed = None;
         for &b in &changed {
             stale[b] = true;
-            shape_changed[b] = self.solid.update(b, &grid.bricks()[b], visible);
+            let columns = self.solid.update(b, &grid.bricks()[b], visible);
+            if columns.is_some() {
+                // Faces at a brick's border depend on its neighbours.
+                neighbours(b).for_each(|n| stale[n] = true);
+            }
+            shape_changed = join(shape_changed, columns);
         }
         self.grid = grid.clone();
-        // Faces at a brick's border depend on its neighbours.
-        for b in (0..BRICKS * BRICKS).filter(|&b| shape_changed[b]) {
-            for n in neighbours(b) {
-                stale[n] = true;
-            }
-        }
         let stale: Vec<usize> = (0..BRICKS * BRICKS).filter(|&b| stale[b]).collect();
         let meshes = mesh_bricks(grid, &self.solid, &stale);
         for (&b, mesh) in stale.iter().zip(meshes) {
@@ -112,7 +111,7 @@ impl Voxels {
                 .vertices
                 .write(device, queue, "voxel brick", &vertices);
         }
-        if let Some((origin, size)) = lit_area(&shape_changed) {
+        if let Some((origin, size)) = shape_changed.map(lit_area) {
             let block: LightBlock = self.rays.bake(&self.solid, origin, size);
             shared.write_light(queue, &block);
         }
@@ -130,21 +129,21 @@ impl Voxels {
         for (b, _) in self.in_view(camera, size) {
             let brick = &self.bricks[b];
             for range in facing(b, &brick.quads, camera) {
-                brick.vertices.draw(pass, shared, range);
+                brick.vertices.draw_quads(pass, shared, range);
             }
         }
     }
 
     /// Rectangles held, seen or not.
     pub fn quads(&self) -> usize {
-        self.bricks.iter().map(|b| b.vertices.len() as usize).sum()
+        self.bricks.iter().map(|b| b.vertices.quads() as usize).sum()
     }
 
     fn in_view(&self, camera: &ViewCamera, size: [u32; 2]) -> Vec<(usize, f64)> {
         let clip = camera.clip_from_world(size);
         let (eye, forward) = (camera.eye_m(), camera.axes()[2]);
         let mut seen: Vec<(usize, f64)> = (0..self.bricks.len())
-            .filter(|&b| self.bricks[b].vertices.len() > 0)
+            .filter(|&b| self.bricks[b].vertices.quads() > 0)
             .filter_map(|b| {
                 let (low, high) = bounds_m(b);
                 let corners = (0..8).map(|i| {
@@ -220,24 +219,11 @@ fn neighbours(brick: usize) -> impl Iterator<Item = usize> {
     .map(|(x, y)| x * BRICKS + y)
 }
 
-/// Columns whose light may differ: the box around the changed bricks, as far as light looks.
-fn lit_area(changed: &[bool]) -> Option<([usize; 2], [usize; 2])> {
-    let mut low = [usize::MAX; 2];
-    let mut high = [0; 2];
-    for b in (0..changed.len()).filter(|&b| changed[b]) {
-        let origin = brick_origin(b);
-        for axis in 0..2 {
-            low[axis] = low[axis].min(origin[axis]);
-            high[axis] = high[axis].max(origin[axis] + BRICK);
-        }
-    }
-    if low[0] == usize::MAX {
-        return None;
-    }
+/// Columns whose light may differ, lower corner and size: as far as light looks.
+fn lit_area((low, high): ColumnBox) -> ([usize; 2], [usize; 2]) {
     let n = [GridSpec::NX, GridSpec::NY];
     let low = low.map(|v| v.saturating_sub(REACH));
-    let size = [0, 1].map(|i| (high[i] + REACH).min(n[i]) - low[i]);
-    Some((low, size))
+    (low, [0, 1].map(|i| (high[i] + REACH).min(n[i]) - low[i]))
 }
 
 /// True if both hold the same bricks in memory.

@@ -8,7 +8,6 @@ use sceneloom::scene::{
 
 pub struct Street {
     pub grid: VoxelGrid,
-    pub layout: BevLayout,
     pub bev: Vec<u32>,
     pub boxes: Vec<SceneBox>,
     pub sweep: LidarSweep,
@@ -136,7 +135,6 @@ pub fn street() -> Street {
     let sweep = sweep(&grid);
     Street {
         grid,
-        layout,
         bev,
         boxes,
         sweep,

@@ -23,6 +23,8 @@ const DEPTH_M: (f32, f32) = (2.0, 60.0);
 pub struct CameraStrip {
     textures: Vec<TextureHandle>,
     made_from: Option<(Arc<Vec<CameraMaps>>, CameraMode)>,
+    stale_since_s: Option<f64>,
+    looks_stale: bool,
 }
 
 /// What the strip shows.
@@ -47,7 +49,8 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         self.refresh(ui, input.maps, state.camera_mode);
-        header(ui, input, state);
+        self.note_stale(ui, input.stale);
+        header(ui, input, self.looks_stale, state);
         ui.add_space(2.0);
         let count = input.rig.cameras.len().max(1) as f32;
         let gap = 6.0;
@@ -61,7 +64,22 @@ impl CameraStrip {
         for (i, camera) in input.rig.cameras.iter().enumerate() {
             let at = pos2(left + i as f32 * (width + gap), top);
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
-            self.picture(ui, rect, i, &camera.name, input, state, commands);
+            self.picture(ui, rect, i, &camera.name, state, commands);
+        }
+    }
+
+    /// Pictures that are renewed at once should not flicker: only what stays stale looks so.
+    fn note_stale(&mut self, ui: &Ui, stale: bool) {
+        const AFTER_S: f64 = 0.35;
+        let now_s = ui.input(|i| i.time);
+        if !stale {
+            (self.stale_since_s, self.looks_stale) = (None, false);
+            return;
+        }
+        let since_s = *self.stale_since_s.get_or_insert(now_s);
+        self.looks_stale = now_s - since_s >= AFTER_S;
+        if !self.looks_stale {
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(AFTER_S));
         }
     }
 
@@ -91,14 +109,12 @@ impl CameraStrip {
         self.made_from = Some((maps.clone(), mode));
     }
 
-    #[expect(clippy::too_many_arguments, reason = "a picture is drawn from all of these")]
     fn picture(
         &self,
         ui: &Ui,
         rect: Rect,
         index: usize,
         name: &str,
-        input: &CamerasInput<'_>,
         state: &UiState,
         commands: &mut Vec<Command>,
     ) {
@@ -108,7 +124,7 @@ impl CameraStrip {
         let painter = ui.painter_at(rect.expand(1.0));
         match self.textures.get(index) {
             Some(texture) => {
-                let tint = if input.stale {
+                let tint = if self.looks_stale {
                     Color32::from_gray(170)
                 } else {
                     Color32::WHITE
@@ -197,7 +213,7 @@ impl CameraStrip {
     }
 }
 
-fn header(ui: &mut Ui, input: &CamerasInput<'_>, state: &mut UiState) {
+fn header(ui: &mut Ui, input: &CamerasInput<'_>, stale: bool, state: &mut UiState) {
     ui.horizontal(|ui| {
         ui.label(egui::RichText::new("Cameras").color(theme::TEXT));
         ui.add_space(4.0);
@@ -209,7 +225,7 @@ fn header(ui: &mut Ui, input: &CamerasInput<'_>, state: &mut UiState) {
                 (CameraMode::Depth, "Depth", "2 m warm to 60 m cold"),
             ],
         );
-        if input.stale {
+        if stale {
             ui.add_space(4.0);
             ui.add(egui::Spinner::new().size(12.0).color(theme::TEXT_WEAK));
             ui.label(egui::RichText::new("updating").small().color(theme::TEXT_WEAK));

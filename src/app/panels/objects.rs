@@ -10,6 +10,9 @@ use crate::app::theme;
 use crate::editor::{Document, Edit};
 use crate::scene::{BoxId, Class, SceneBox};
 
+/// What the history and its title take at the bottom, points.
+const HISTORY_HEIGHT: f32 = 168.0;
+
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &mut Vec<Command>) {
     let frame = document.scene().frame();
@@ -26,7 +29,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &
         n => format!("{n} boxes"),
     };
     section(ui, &title);
-    let list_height = (ui.available_height() * 0.66).max(80.0);
+    let list_height = (ui.available_height() - HISTORY_HEIGHT).max(80.0);
     let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
     boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
     let list = egui::ScrollArea::vertical()
@@ -34,6 +37,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &
         .max_height(list_height)
         .auto_shrink([false, false]);
     ui.spacing_mut().item_spacing.y = 1.0;
+    let list = reveal(ui, list, &boxes, state.selected, list_height);
     list.show_rows(ui, theme::ROW, boxes.len(), |ui, range| {
         for b in &boxes[range] {
             box_row(ui, b, state.selected == Some(b.id), commands);
@@ -42,6 +46,29 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &
     ui.add_space(theme::GAP);
     section(ui, "History");
     history(ui, document, commands);
+}
+
+/// Scrolls to the chosen box, once, when another one was chosen elsewhere.
+fn reveal(
+    ui: &Ui,
+    list: egui::ScrollArea,
+    boxes: &[&SceneBox],
+    selected: Option<BoxId>,
+    height: f32,
+) -> egui::ScrollArea {
+    let memory = egui::Id::unique("box revealed");
+    let before: Option<BoxId> = ui.data(|d| d.get_temp(memory)).flatten();
+    if before == selected {
+        return list;
+    }
+    ui.data_mut(|d| d.insert_temp(memory, selected));
+    match boxes.iter().position(|b| Some(b.id) == selected) {
+        Some(row) => {
+            let at = row as f32 * (theme::ROW + 1.0) - height / 2.0;
+            list.vertical_scroll_offset(at.max(0.0))
+        }
+        None => list,
+    }
 }
 
 fn box_row(ui: &mut Ui, b: &SceneBox, chosen: bool, commands: &mut Vec<Command>) {

@@ -55,6 +55,9 @@ pub fn view3d_header(
 ) {
     header(ui, "3D view", |ui| {
         swap(ui, commands);
+        if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
+            commands.push(Command::QuickShot);
+        }
         let show = egui::containers::menu::MenuButton::new("Show").config(
             egui::containers::menu::MenuConfig::new()
                 .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),

@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, Ui, WidgetInfo, vec2};
 
 use crate::app::command::Command;
-use crate::app::live::Running;
+use crate::app::live::{Purpose, Running};
 use crate::app::state::UiState;
 use crate::app::theme;
 use crate::generation::job::{GenReport, Stage};
@@ -156,11 +156,11 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         String::new()
     };
     let [x, y] = running.extent_m;
-    say(
-        ui,
-        &format!("{stage}{count}  ·  {seconds:.1} s  ·  {x:.0} × {y:.0} m"),
-        theme::TEXT,
-    );
+    let (what, extent) = match running.purpose {
+        Purpose::WarmUp => ("Getting ready to edit  ·  ", String::new()),
+        _ => ("", format!("  ·  {x:.0} × {y:.0} m")),
+    };
+    say(ui, &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"), theme::TEXT);
     let cancel = ui.add(egui::Button::new("Cancel").small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {

@@ -31,7 +31,12 @@ pub struct ToolbarInput<'a> {
 pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        menus(ui, input, state, commands);
+        ui.scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            widgets.inactive.weak_bg_fill = egui::Color32::TRANSPARENT;
+            ui.spacing_mut().item_spacing.x = 0.0;
+            menus(ui, input, state, commands);
+        });
         divider(ui);
         for (tool, name, key) in Tool::ALL {
             let icon = match tool {
