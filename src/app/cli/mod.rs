@@ -16,6 +16,8 @@ mod shot;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+pub(in crate::app) use generate::full_params;
+
 use clap::{Args, Parser, Subcommand};
 
 use crate::app::open;

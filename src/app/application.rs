@@ -1,0 +1,596 @@
+//! The application: owns document, worker, sensing and views; draws them, then carries out what the
+//! user asked for.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use crossbeam_channel::{Receiver, TryRecvError};
+use egui::{Rect, Ui};
+
+use crate::editor::Document;
+use crate::generation::job::{
+    GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Pipeline, UpdateGate,
+};
+use crate::generation::worker::GenWorker;
+use crate::scene::{Scene, SceneRev};
+
+use super::canvas::{Canvas, CanvasInput};
+use super::command::Command;
+use super::file_dialogs::FileDialogs;
+use super::keys;
+use super::live::{Advice, Live, Purpose};
+use super::panels::cameras::{CameraStrip, CamerasInput};
+use super::panels::dialogs::{self, Unsaved};
+use super::panels::layers::layers_ui;
+use super::panels::objects::objects_ui;
+use super::panels::panes;
+use super::panels::status::{Receipt, StatusInput, status_ui};
+use super::panels::toasts::{Level, Toasts};
+use super::panels::toolbar::{ToolbarInput, toolbar_ui};
+use super::sensing::Sensing;
+use super::state::{Pane, UiState};
+use super::theme;
+use super::view3d::{View3d, View3dInput};
+
+/// Reads a scene from a file of any kind that can be opened.
+pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;
+/// Writes a scene to a `.loom` file.
+pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sync>;
+/// Makes a new scene.
+pub type NewScene = Arc<dyn Fn() -> anyhow::Result<Scene> + Send + Sync>;
+/// Makes the pipeline, on the worker's thread.
+pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;
+
+/// What the application starts with.
+pub struct AppConfig {
+    /// The scene to show.
+    pub scene: Scene,
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
+    /// Makes the pipeline.
+    pub build_pipeline: BuildPipeline,
+    /// How to generate what was edited.
+    pub params: GenParams,
+    /// How to generate everything.
+    pub full_params: GenParams,
+    /// Send a job that edits nothing when a scene was opened, so that the pipeline can get ready.
+    pub warm_up: bool,
+    /// Opens files.
+    pub open: OpenScene,
+    /// Saves files.
+    pub save: SaveScene,
+    /// Makes new scenes.
+    pub new_scene: NewScene,
+    /// Ask the system for file dialogs; false: only the path field.
+    pub native_dialogs: bool,
+}
+
+/// [`GenWorker`] wants a type; this is one for whatever the configuration makes.
+struct AnyPipeline(Box<dyn Pipeline>);
+
+impl Pipeline for AnyPipeline {
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        self.0.run(job, ctx)
+    }
+}
+
+/// What to do once unsaved changes are dealt with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Next {
+    New,
+    AskOpen,
+    Open(PathBuf),
+    Quit,
+}
+
+/// A scene on its way from a file.
+pub(super) struct Opening {
+    pub path: Option<PathBuf>,
+    pub what: String,
+    pub scene: Receiver<anyhow::Result<Scene>>,
+}
+
+/// The window's contents. Works without eframe and without a graphics device, for tests.
+pub struct SceneloomApp {
+    /// What is edited.
+    pub document: Document,
+    /// What the window shows and holds in hand.
+    pub state: UiState,
+    /// The bird's-eye view.
+    pub canvas: Canvas,
+    /// The 3D view.
+    pub view3d: View3d,
+    /// The scheduler.
+    pub live: Live,
+    /// Of the last generation.
+    pub receipt: Option<Receipt>,
+    /// Messages.
+    pub toasts: Toasts,
+    pub(super) path: Option<PathBuf>,
+    pub(super) worker: GenWorker,
+    pub(super) dialogs: FileDialogs,
+    pub(super) opening: Option<Opening>,
+    /// Waits for an answer about unsaved changes.
+    pub(super) unsaved: Option<Next>,
+    /// Goes on after the scene was saved.
+    pub(super) after_save: Option<Next>,
+    pub(super) may_close: bool,
+    pub(super) io: (OpenScene, SaveScene, NewScene),
+    pub(super) clock: Instant,
+    gate: UpdateGate,
+    sensing: Sensing,
+    strip: CameraStrip,
+    finished: Option<Arc<GenResult>>, // came during a drag
+    preview: Option<(SceneRev, Arc<Scene>)>,
+    title: String,
+    center: Rect,
+    passes: u32,
+    unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
+}
+
+impl SceneloomApp {
+    /// Starts worker and sensing. Errors if the system gives no thread.
+    pub fn new(
+        config: AppConfig,
+        render_state: Option<egui_wgpu::RenderState>,
+        ctx: &egui::Context,
+    ) -> std::io::Result<Self> {
+        theme::apply(ctx);
+        let wake = {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let mut build = config.build_pipeline;
+        let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
+        Ok(Self {
+            document: Document::new(config.scene),
+            state: UiState::default(),
+            canvas: Canvas::default(),
+            view3d: View3d::new(render_state),
+            live: Live::new(config.params, config.full_params, config.warm_up),
+            receipt: None,
+            toasts: Toasts::default(),
+            path: config.path,
+            worker,
+            dialogs: FileDialogs::new(config.native_dialogs),
+            opening: None,
+            unsaved: None,
+            after_save: None,
+            may_close: false,
+            io: (config.open, config.save, config.new_scene),
+            clock: Instant::now(),
+            gate: UpdateGate::default(),
+            sensing: Sensing::spawn(wake)?,
+            strip: CameraStrip::default(),
+            finished: None,
+            preview: None,
+            title: String::new(),
+            center: Rect::NOTHING,
+            passes: 0,
+            unsettled: None,
+        })
+    }
+
+    /// Seconds since the start.
+    pub fn now_s(&self) -> f64 {
+        self.clock.elapsed().as_secs_f64()
+    }
+
+    /// File of the scene, if it has one.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// True if LiDAR and cameras show the state on screen.
+    pub fn sensors_are_current(&self) -> bool {
+        let rev = self.shown_scene().rev;
+        !self.sensing.cameras_stale(rev) && !self.sensing.lidar_stale(rev)
+    }
+
+    /// The document's scene, or a preview of its generation.
+    fn shown_scene(&self) -> Arc<Scene> {
+        match &self.preview {
+            Some((rev, scene)) if *rev == self.document.scene().rev => scene.clone(),
+            _ => self.document.scene().clone(),
+        }
+    }
+
+    /// Everything that happens without drawing: news of the worker, of sensing, of files.
+    pub fn update(&mut self, ctx: &egui::Context) {
+        self.sensing.drain();
+        let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
+        for event in events {
+            if self.gate.admit(&event) {
+                self.take_event(event);
+            }
+        }
+        if !self.document.is_dragging()
+            && let Some(result) = self.finished.take()
+        {
+            self.adopt(&result);
+        }
+        self.take_opened(ctx);
+        if let Some((purpose, path)) = self.dialogs.poll() {
+            self.file_chosen(purpose, path, ctx);
+        }
+        // The first picture comes first.
+        if self.passes > 1 {
+            self.schedule(ctx);
+        }
+        self.set_title(ctx);
+    }
+
+    fn schedule(&mut self, ctx: &egui::Context) {
+        let now_s = self.now_s();
+        let scene = self.document.settled_scene().clone();
+        match self.live.advise(&scene, self.document.is_dragging(), now_s) {
+            Advice::Rest => {}
+            Advice::Wait(seconds) => {
+                ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
+            }
+            Advice::Cancel => self.worker.cancel(),
+            Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
+        }
+        let dragging = self.document.is_dragging();
+        self.sensing.ask(&self.shown_scene(), dragging);
+    }
+
+    pub(super) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
+        let now_s = self.now_s();
+        let job = Job { scene, params };
+        let key = job.key();
+        let id = self.worker.submit(job);
+        self.live.submitted(id, key, now_s);
+    }
+
+    fn take_event(&mut self, event: JobEvent) {
+        match event.update {
+            JobUpdate::Progress { stage, step, steps } => {
+                if let Some(running) = self.live.running.as_mut().filter(|r| r.id == event.id) {
+                    running.progress = Some((stage, step, steps));
+                }
+            }
+            JobUpdate::Preview(result) => {
+                let mut scene = Scene::clone(self.document.scene());
+                if scene.rev == result.rev() {
+                    let rev = scene.rev;
+                    scene.frame_mut().occupancy = result.occupancy.clone();
+                    self.preview = Some((rev, Arc::new(scene)));
+                }
+            }
+            JobUpdate::Finished(result) => {
+                let now_s = self.now_s();
+                if let Some(running) = self.live.ended(event.id) {
+                    let full = running.purpose == Purpose::Full;
+                    if running.purpose == Purpose::WarmUp {
+                        let calls = result.report.network_calls;
+                        let took_s = now_s - running.submitted_s;
+                        self.toasts.log(format!("Ready to edit after {took_s:.1} s, {calls} network calls"), now_s);
+                        return;
+                    }
+                    if !full {
+                        self.live.took(now_s - running.submitted_s);
+                    }
+                    if running.key.rev == self.document.settled_scene().rev {
+                        self.receipt = Some(Receipt::new(&result.report, now_s - running.edited_s, full));
+                    }
+                }
+                if self.document.is_dragging() {
+                    self.finished = Some(result);
+                } else {
+                    self.adopt(&result);
+                }
+            }
+            JobUpdate::Failed(error) => {
+                self.live.ended(event.id);
+                self.preview = None;
+                let now_s = self.now_s();
+                let paused = if std::mem::replace(&mut self.live.on, false) {
+                    " Live is off now."
+                } else {
+                    ""
+                };
+                self.toasts.push(
+                    Level::Error,
+                    format!("Generation failed: {error}.{paused}"),
+                    now_s,
+                );
+            }
+            JobUpdate::Superseded => {
+                self.live.ended(event.id);
+                self.preview = None;
+            }
+        }
+    }
+
+    /// Takes a result into the document, if it still shows the state it was made for.
+    fn adopt(&mut self, result: &GenResult) {
+        self.preview = None;
+        if self
+            .document
+            .adopt(result.rev(), result.occupancy.clone())
+            .is_ok()
+        {
+            let now_s = self.now_s();
+            if let Some(receipt) = &self.receipt {
+                self.toasts.log(receipt.text(), now_s);
+            }
+            for note in &result.report.notes {
+                self.toasts.log(note.clone(), now_s);
+            }
+        }
+    }
+
+    fn take_opened(&mut self, ctx: &egui::Context) {
+        let Some(opening) = &self.opening else { return };
+        let answer = match opening.scene.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("reading it ended unexpectedly")),
+        };
+        let Some(opening) = self.opening.take() else {
+            return;
+        };
+        let now_s = self.now_s();
+        match answer {
+            Ok(scene) => {
+                self.worker.cancel();
+                self.live.reset();
+                (self.receipt, self.finished, self.preview) = (None, None, None);
+                self.toasts.log(format!("Opened {}", scene.name), now_s);
+                self.document = Document::new(scene);
+                self.path = opening.path;
+                self.state.selected = None;
+                ctx.request_repaint();
+            }
+            Err(error) => {
+                let text = format!("{}: {}", opening.what, one_line(&error));
+                self.toasts.push(Level::Error, text, now_s);
+            }
+        }
+    }
+
+    fn set_title(&mut self, ctx: &egui::Context) {
+        let mark = if self.document.is_dirty() { "● " } else { "" };
+        let title = format!("{mark}{} – Sceneloom", self.document.scene().name);
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Draws the window and carries out what the user asked for.
+    pub fn draw(&mut self, ui: &mut Ui) {
+        self.passes = self.passes.saturating_add(1);
+        let mut commands = Vec::new();
+        self.take_window_events(ui.ctx(), &mut commands);
+        let scene = self.shown_scene();
+        self.bars(ui, &scene, &mut commands);
+        self.side_panels(ui, &mut commands);
+        self.views(ui, &scene, &mut commands);
+        self.overlays(ui, &scene, &mut commands);
+        if self.unsaved.is_none() && !self.dialogs.is_open() {
+            let flying =
+                ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
+            keys::commands(ui.ctx(), &mut self.state, flying, &mut commands);
+        }
+        if !commands.is_empty() || self.passes < 3 {
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            self.execute(command, ui.ctx());
+        }
+    }
+
+    fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+        commands.extend(dropped.map(Command::OpenPath));
+        if ctx.input(|i| i.viewport().close_requested()) && !self.may_close && self.document.is_dirty() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.unsaved = Some(Next::Quit);
+        }
+    }
+
+    fn bars(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let input = ToolbarInput {
+            name: &scene.name,
+            dirty: self.document.is_dirty(),
+            undo: self.document.undo_label(),
+            redo: self.document.redo_label(),
+            live: self.live.on,
+            busy: self.live.running.is_some(),
+            has_paint: scene.frame().painted.count_set() > 0,
+        };
+        egui::Panel::top("toolbar")
+            .exact_size(42.0)
+            .frame(theme::bar_frame())
+            .show_separator_line(false)
+            .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
+        let now_s = self.now_s();
+        let settled = self.document.settled_scene().clone();
+        let touched = self.live.look(&settled, now_s);
+        self.unsettled = touched.bounds;
+        let unsettled = !touched.is_empty;
+        let status = StatusInput {
+            running: self.live.running.as_ref(),
+            now_s,
+            receipt: self.receipt.as_ref(),
+            live: self.live.on,
+            unsettled,
+            busy_with: self.opening.as_ref().map(|o| o.what.as_str()),
+            unread: self.toasts.unread(),
+        };
+        egui::Panel::bottom("status")
+            .exact_size(28.0)
+            .frame(theme::bar_frame())
+            .show_separator_line(false)
+            .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
+        let cameras = cameras_input(scene, &self.sensing);
+        let (strip, state) = (&mut self.strip, &mut self.state);
+        egui::Panel::bottom("cameras")
+            .resizable(true)
+            .default_size(190.0)
+            .size_range(92.0..=420.0)
+            .frame(
+                egui::Frame::new()
+                    .fill(theme::PANEL)
+                    .inner_margin(egui::Margin::symmetric(10, 6)),
+            )
+            .show(ui, |ui| {
+                strip.show(ui, &cameras, state, commands);
+                ui.take_available_space();
+            });
+    }
+
+    fn side_panels(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let layout = &self.document.scene().frame().layout;
+        egui::Panel::left("tools")
+            .default_size(226.0)
+            .size_range(200.0..=340.0)
+            .frame(theme::panel_frame())
+            .show(ui, |ui| layers_ui(ui, layout, &mut self.state, commands));
+        egui::Panel::right("objects")
+            .default_size(262.0)
+            .size_range(230.0..=380.0)
+            .frame(theme::panel_frame())
+            .show(ui, |ui| objects_ui(ui, &self.document, &self.state, commands));
+    }
+
+    fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
+        self.state.hovered_pane = None;
+        self.state.readout.clear();
+        let (first, second) = match self.state.swapped {
+            false => (Pane::Bev, Pane::View3d),
+            true => (Pane::View3d, Pane::Bev),
+        };
+        let half = ui.available_width() * 0.5;
+        let center = ui.available_rect_before_wrap();
+        egui::Panel::right("second view")
+            .resizable(true)
+            .default_size(half)
+            .size_range(180.0..=(center.width() - 180.0).max(181.0))
+            .frame(egui::Frame::new().fill(theme::BACKGROUND))
+            .show(ui, |ui| self.pane(ui, second, scene, commands));
+        egui::CentralPanel::no_frame()
+            .frame(egui::Frame::new().fill(theme::BACKGROUND))
+            .show(ui, |ui| self.pane(ui, first, scene, commands));
+        self.center = center;
+    }
+
+    fn pane(&mut self, ui: &mut Ui, pane: Pane, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let response = match pane {
+            Pane::Bev => {
+                panes::bev_header(ui, &mut self.state, commands);
+                ui.spacing_mut().item_spacing.y = 0.0;
+                                let input = CanvasInput {
+                    scene,
+                    lidar: self.sensing.lidar().map(|l| &**l),
+                    unsettled: self.unsettled,
+                    generating: self.live.running.is_some(),
+                };
+                self.canvas.show(ui, &input, &mut self.state, commands)
+            }
+            Pane::View3d => {
+                panes::view3d_header(ui, &mut self.view3d.options, &mut self.state, commands);
+                let input = View3dInput {
+                    scene,
+                    settled: self.document.settled_scene(),
+                    lidar: self.sensing.lidar(),
+                    dragging: self.document.is_dragging(),
+                };
+                self.view3d.show(ui, &input, &mut self.state, commands)
+            }
+        };
+        if response.contains_pointer() {
+            self.state.hovered_pane = Some(pane);
+        }
+    }
+
+    fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let now_s = self.now_s();
+        let cameras = cameras_input(scene, &self.sensing);
+        self.strip
+            .enlarged(ui, self.center, &cameras, &mut self.state, commands);
+        self.toasts.log_window(ui, &mut self.state.log_open);
+        if self.state.keys_open {
+            dialogs::keys_window(ui, &mut self.state.keys_open);
+        }
+        self.toasts.show(ui, self.center, now_s);
+        if ui.input(|i| !i.raw.hovered_files.is_empty()) {
+            drop_hint(ui, self.center);
+        }
+        if self.unsaved.is_some()
+            && let Some(answer) = dialogs::unsaved_ui(ui, &scene.name)
+        {
+            self.answer_unsaved(answer, ui.ctx());
+        }
+        if let Some((purpose, path)) = self.dialogs.show(ui) {
+            let ctx = ui.ctx().clone();
+            self.file_chosen(purpose, path, &ctx);
+        }
+    }
+
+    fn answer_unsaved(&mut self, answer: Unsaved, ctx: &egui::Context) {
+        let Some(next) = self.unsaved.take() else { return };
+        match answer {
+            Unsaved::Stay => {}
+            Unsaved::Discard => self.go_on(next, ctx),
+            Unsaved::Save => {
+                self.after_save = Some(next);
+                self.execute(Command::Save, ctx);
+            }
+        }
+    }
+}
+
+fn cameras_input<'a>(scene: &'a Scene, sensing: &'a Sensing) -> CamerasInput<'a> {
+    CamerasInput {
+        rig: &scene.rig,
+        maps: sensing.cameras(),
+        stale: sensing.cameras_stale(scene.rev),
+        lidar_points: sensing.lidar().map(|l| l.points.len()),
+    }
+}
+
+fn drop_hint(ui: &Ui, over: Rect) {
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let painter = ui.ctx().layer_painter(layer);
+    painter.rect_filled(over, 0.0, egui::Color32::from_black_alpha(170));
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    painter.text(
+        over.center(),
+        egui::Align2::CENTER_CENTER,
+        "Drop to open",
+        font,
+        theme::TEXT_STRONG,
+    );
+}
+
+/// An error with its causes on one line.
+pub(super) fn one_line(error: &anyhow::Error) -> String {
+    format!("{error:#}")
+        .lines()
+        .map(str::trim)
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+impl eframe::App for SceneloomApp {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.update(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.draw(ui);
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::BACKGROUND.to_normalized_gamma_f32()
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,92 @@
+//! Pictures of a frame from above, one pixel per column: the map layers in their draw order, and
+//! the top of the occupancy.
+
+use egui::{Color32, ColorImage};
+
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+
+/// Map layers from the lowest to the uppermost, as the papers draw them; boxes come after.
+pub const DRAW_ORDER: [BevLayer; 8] = [
+    BevLayer::DrivableArea,
+    BevLayer::RoadBlock,
+    BevLayer::Walkway,
+    BevLayer::StopLine,
+    BevLayer::CarparkArea,
+    BevLayer::PedCrossing,
+    BevLayer::RoadDivider,
+    BevLayer::LaneDivider,
+];
+
+/// Width and height in pixels of both pictures.
+pub const SIZE: [usize; 2] = [GridSpec::NY, GridSpec::NX];
+
+/// Column under a pixel: rows run against ego x, columns against ego y, so that forward is up.
+fn column_of(pixel: usize) -> (usize, usize) {
+    let (row, col) = (pixel / GridSpec::NY, pixel % GridSpec::NY);
+    (GridSpec::NX - 1 - row, GridSpec::NY - 1 - col)
+}
+
+/// The uppermost shown map layer of each column, transparent where there is none.
+pub fn layers(layout: &BevLayout, shown: u32, opacity: f32) -> ColorImage {
+    let alpha = (opacity.clamp(0.0, 1.0) * 255.0) as u8;
+    let pixel = |i: usize| {
+        let (x, y) = column_of(i);
+        let cell = layout.cell(x, y) & shown;
+        let top = DRAW_ORDER.iter().rev().find(|l| cell & l.bit() != 0);
+        top.map_or(Color32::TRANSPARENT, |layer| {
+            let mut color = layer.color();
+            if is_divider(*layer) {
+                // Half of the road shows through: a divider is a line, its cells are four times as wide.
+                let under = BevLayer::DrivableArea.color();
+                color = std::array::from_fn(|i| ((u16::from(color[i]) + u16::from(under[i])) / 2) as u8);
+            }
+            let [r, g, b] = color;
+            Color32::from_rgba_unmultiplied(r, g, b, alpha)
+        })
+    };
+    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+}
+
+fn is_divider(layer: BevLayer) -> bool {
+    matches!(layer, BevLayer::RoadDivider | BevLayer::LaneDivider)
+}
+
+/// The highest voxel of each column by class, brighter the higher it is.
+pub fn occupancy(grid: &VoxelGrid) -> ColorImage {
+    let pixel = |i: usize| {
+        let (x, y) = column_of(i);
+        let column = grid.column(x, y);
+        let Some(z) = column.iter().rposition(|v| *v != Class::FREE) else {
+            return Color32::TRANSPARENT;
+        };
+        let class = Class::from_id(column[z]).unwrap_or(Class::Others);
+        let light = 0.62 + 0.38 * (z as f32 / 11.0).min(1.0);
+        let [r, g, b] = class.color().map(|c| (f32::from(c) * light) as u8);
+        Color32::from_rgb(r, g, b)
+    };
+    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forward_is_up_and_left_is_left() {
+        let mut layout = BevLayout::default();
+        layout.set(BevLayer::DrivableArea, 199, 199, true); // far ahead, far left
+        layout.set(BevLayer::Walkway, 199, 199, true);
+        let image = layers(&layout, 0xff, 1.0);
+        let [r, g, b] = BevLayer::Walkway.color();
+        assert_eq!(image.pixels[0], Color32::from_rgb(r, g, b));
+        assert_eq!(image.pixels[1], Color32::TRANSPARENT);
+        let without = layers(&layout, !BevLayer::Walkway.bit(), 1.0);
+        let [r, g, b] = BevLayer::DrivableArea.color();
+        assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
+        let mut grid = VoxelGrid::new();
+        grid.set(0, 0, 15, Class::Car.id()); // behind, right
+        let image = occupancy(&grid);
+        let [r, g, b] = Class::Car.color();
+        assert_eq!(image.pixels[GridSpec::COLUMNS - 1], Color32::from_rgb(r, g, b));
+    }
+}

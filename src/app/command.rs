@@ -1,0 +1,103 @@
+//! What a user can ask for, as values: panels, canvases and keys push commands, the application
+//! carries them out after the frame was drawn.
+
+use std::path::PathBuf;
+
+use crate::editor::Edit;
+use crate::scene::{BoxId, Class};
+use crate::viewport::ViewPreset;
+
+use super::state::{Tool, VoxelVerb};
+
+/// One wish of the user.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Applies edits as one undo step of this name.
+    Apply(&'static str, Vec<Edit>),
+    /// Shows edits on top of the state in which the drag began.
+    Preview(Vec<Edit>),
+    /// Ends the drag as one undo step.
+    Commit(&'static str),
+    /// Ends the drag without a change.
+    CancelDrag,
+    /// One step back.
+    Undo,
+    /// One step forward.
+    Redo,
+    /// Shows that state of the history.
+    JumpTo(usize),
+    /// Chooses a box, or none.
+    Select(Option<BoxId>),
+    /// Chooses the next (1) or previous (-1) box by id.
+    SelectNext(i32),
+    /// Ends what is in hand: a drag, an enlarged camera, the selection, the tool.
+    Escape,
+    /// Puts a new box of typical size on the ground, and chooses it.
+    AddBox {
+        /// One of the ten object classes.
+        class: Class,
+        /// Middle of the footprint, ego frame, m.
+        at_m: glam::DVec2,
+        /// Heading, rad.
+        yaw_rad: f64,
+    },
+    /// Deletes the chosen box.
+    DeleteSelected,
+    /// Copies the chosen box beside itself, and chooses the copy.
+    DuplicateSelected,
+    /// Shifts the chosen box in the ego frame, m.
+    Nudge(glam::DVec3),
+    /// Turns the chosen box counter-clockwise, degrees.
+    Turn(f64),
+    /// Takes another tool.
+    Tool(Tool),
+    /// What the voxel brush does.
+    Verb(VoxelVerb),
+    /// Makes the brush in hand larger (1) or smaller (-1).
+    BrushSize(i32),
+    /// Generates: all of it, or what was edited.
+    Generate {
+        /// True: everything, from fresh noise.
+        full: bool,
+    },
+    /// Stops the generation that runs.
+    CancelGeneration,
+    /// Switches generation after each edit on or off.
+    ToggleLive,
+    /// Gives all painted voxels back to generation.
+    ClearPaint,
+    /// Starts a new scene.
+    New,
+    /// Asks for a file and opens it.
+    Open,
+    /// Opens this file.
+    OpenPath(PathBuf),
+    /// Saves to the scene's file, or asks for one.
+    Save,
+    /// Asks for a file and saves there.
+    SaveAs,
+    /// Asks for a file and saves the 3D view there.
+    ExportScreenshot,
+    /// Saves the 3D view beside the scene.
+    QuickShot,
+    /// Leaves the program.
+    Quit,
+    /// Brings the chosen box into the middle of the view under the pointer.
+    FrameSelection,
+    /// Brings everything into the view under the pointer.
+    FrameAll,
+    /// Takes a standard viewpoint in the 3D view.
+    View(ViewPreset),
+    /// Looks through that camera of the rig in the 3D view.
+    LookThrough(usize),
+    /// Enlarges that camera, or shows the strip again.
+    Inspect(Option<usize>),
+    /// Swaps the bird's-eye view and the 3D view.
+    SwapPanes,
+    /// Shows or hides the 10 m grid.
+    ToggleGrid,
+    /// Shows or hides the log.
+    ToggleLog,
+    /// Shows or hides the sheet of keys.
+    ToggleKeys,
+}

@@ -1,0 +1,386 @@
+//! Carries out commands, after the frame was drawn.
+
+use std::path::{Path, PathBuf};
+
+use crossbeam_channel::bounded;
+use egui::Context;
+
+use crate::editor::Edit;
+use crate::scene::SceneBox;
+
+use super::application::{Next, Opening, SceneloomApp, one_line};
+use super::canvas_tools::new_box;
+use super::command::Command;
+use super::file_dialogs::Purpose;
+use super::panels::objects::neighbour;
+use super::panels::toasts::Level;
+use super::state::{Pane, Tool};
+
+impl SceneloomApp {
+    /// Carries out one command.
+    pub fn execute(&mut self, command: Command, ctx: &Context) {
+        match command {
+            Command::Apply(label, edits) => self.apply(label, &edits),
+            Command::Preview(edits) => {
+                if let Err(error) = self.document.preview_all(&edits) {
+                    self.fail(error.to_string());
+                }
+            }
+            Command::Commit(label) => self.document.commit_drag(label),
+            Command::CancelDrag => self.document.cancel_drag(),
+            Command::Undo => drop(self.document.undo()),
+            Command::Redo => drop(self.document.redo()),
+            Command::JumpTo(index) => drop(self.document.jump_to(index)),
+            Command::Select(id) => self.state.selected = id,
+            Command::SelectNext(step) => {
+                let ids: Vec<_> = self.document.scene().frame().boxes.keys().copied().collect();
+                self.state.selected = neighbour(&ids, self.state.selected, step);
+            }
+            Command::Escape => self.escape(),
+            Command::AddBox { class, at_m, yaw_rad } => {
+                let made = new_box(self.document.scene().frame(), class, at_m, yaw_rad);
+                if let Some(b) = made {
+                    self.add(&b, "Add box");
+                }
+            }
+            Command::DeleteSelected => {
+                if let Some(b) = self.selected_box() {
+                    self.apply("Delete box", &[Edit::RemoveBox { id: b.id }]);
+                }
+            }
+            Command::DuplicateSelected => self.duplicate(),
+            Command::Nudge(step_m) => {
+                if let Some(b) = self.selected_box() {
+                    self.move_box(&b, "Nudge box", Some(b.center_m + step_m), None);
+                }
+            }
+            Command::Turn(degrees) => {
+                if let Some(b) = self.selected_box() {
+                    let yaw_deg = wrapped_deg(b.yaw_rad.to_degrees() + degrees);
+                    self.move_box(&b, "Turn box", None, Some(yaw_deg));
+                }
+            }
+            Command::Tool(tool) => self.state.tool = tool,
+            Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
+            Command::BrushSize(step) => self.state.step_brush(step),
+            Command::Generate { full } => self.generate(full),
+            Command::CancelGeneration => {
+                if self.live.running.is_some() {
+                    self.worker.cancel();
+                    let now_s = self.now_s();
+                    self.toasts.push(Level::Info, "Generation cancelled", now_s);
+                }
+            }
+            Command::ToggleLive => {
+                self.live.on = !self.live.on;
+                self.live.forget_asked();
+            }
+            Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
+            Command::New => self.guarded(Next::New, ctx),
+            Command::Open => self.guarded(Next::AskOpen, ctx),
+            Command::OpenPath(path) => self.guarded(Next::Open(path), ctx),
+            Command::Save => match self.path.clone() {
+                Some(path) => self.save_to(path, ctx),
+                None => self.dialogs.ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            },
+            Command::SaveAs => self.dialogs.ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            Command::ExportScreenshot => {
+                self.dialogs.ask(Purpose::Screenshot, &self.suggested("png"), ctx);
+            }
+            Command::QuickShot => {
+                let path = free_name(&self.suggested("png"));
+                self.screenshot(&path);
+            }
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::FrameSelection => self.frame_selection(),
+            Command::FrameAll => match self.state.hovered_pane {
+                Some(Pane::View3d) => self.view3d.camera.focus_all(),
+                Some(Pane::Bev) => self.canvas.frame_all_again(),
+                None => {
+                    self.view3d.camera.focus_all();
+                    self.canvas.frame_all_again();
+                }
+            },
+            Command::View(preset) => self.view3d.preset(preset),
+            Command::LookThrough(index) => self.look_through(index),
+            Command::Inspect(camera) => self.state.inspected = camera,
+            Command::SwapPanes => self.state.swapped = !self.state.swapped,
+            Command::ToggleGrid => self.state.show_grid = !self.state.show_grid,
+            Command::ToggleLog => self.state.log_open = !self.state.log_open,
+            Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
+        }
+        // A box that an edit or undo took away is not selected any more.
+        let boxes = &self.document.scene().frame().boxes;
+        self.state.selected = self.state.selected.filter(|id| boxes.contains_key(id));
+    }
+
+    fn fail(&mut self, text: String) {
+        let now_s = self.now_s();
+        self.toasts.push(Level::Error, text, now_s);
+    }
+
+    fn apply(&mut self, label: &'static str, edits: &[Edit]) {
+        if let Err(error) = self.document.apply_all(label, edits) {
+            self.fail(error.to_string());
+        }
+    }
+
+    fn selected_box(&self) -> Option<SceneBox> {
+        let id = self.state.selected?;
+        self.document.scene().frame().boxes.get(&id).copied()
+    }
+
+    fn move_box(
+        &mut self,
+        b: &SceneBox,
+        label: &'static str,
+        center_m: Option<glam::DVec3>,
+        yaw_deg: Option<f64>,
+    ) {
+        let edit = Edit::MoveBox {
+            id: b.id,
+            center_m,
+            yaw_deg,
+            size_m: None,
+        };
+        self.apply(label, &[edit]);
+    }
+
+    fn add(&mut self, b: &SceneBox, label: &'static str) {
+        self.apply(
+            label,
+            &[Edit::AddBox {
+                class: b.class,
+                center_m: b.center_m,
+                size_m: b.size_m,
+                yaw_deg: b.yaw_rad.to_degrees(),
+                velocity_mps: (b.velocity_mps != glam::DVec2::ZERO).then_some(b.velocity_mps),
+                id: Some(b.id),
+            }],
+        );
+        self.state.selected = Some(b.id);
+    }
+
+    fn duplicate(&mut self) {
+        let Some(b) = self.selected_box() else { return };
+        let frame = self.document.scene().frame();
+        // Beside the original, to its left.
+        let left = b.heading().perp() * (b.size_m.y + 0.6);
+        let at_m = b.center_m.truncate() + left;
+        if let Some(place) = new_box(frame, b.class, at_m, b.yaw_rad) {
+            let copy = SceneBox {
+                id: place.id,
+                center_m: b.center_m + left.extend(0.0),
+                ..b
+            };
+            self.add(&copy, "Duplicate box");
+        }
+    }
+
+    fn escape(&mut self) {
+        if self.document.is_dragging() {
+            self.document.cancel_drag();
+        } else if self.state.inspected.is_some() {
+            self.state.inspected = None;
+        } else if self.state.tool != Tool::Select {
+            self.state.tool = Tool::Select;
+        } else {
+            self.state.selected = None;
+        }
+    }
+
+    fn generate(&mut self, full: bool) {
+        if self.document.is_dragging() {
+            return;
+        }
+        let scene = self.document.settled_scene().clone();
+        let now_s = self.now_s();
+        if !full && self.live.look(&scene, now_s).is_empty {
+            self.toasts
+                .push(Level::Info, "Nothing was edited since the last generation", now_s);
+            return;
+        }
+        let params = self.live.params_for(&scene, full);
+        let same = |r: &super::live::Running| r.key.rev == scene.rev && r.key.params == params;
+        if !self.live.running.as_ref().is_some_and(same) {
+            self.live.look(&scene, now_s);
+            self.submit(scene, params);
+        }
+    }
+
+    fn frame_selection(&mut self) {
+        let Some(b) = self.selected_box() else { return };
+        if self.state.hovered_pane != Some(Pane::View3d) {
+            self.canvas.frame_box(&b);
+        }
+        if self.state.hovered_pane != Some(Pane::Bev) {
+            self.view3d.frame_box(&b);
+        }
+    }
+
+    fn look_through(&mut self, index: usize) {
+        if let Some(camera) = self.document.scene().rig.cameras.get(index) {
+            self.view3d.camera = crate::viewport::ViewCamera::through(camera);
+        }
+    }
+
+    /// Goes on at once if nothing is unsaved, else asks first.
+    fn guarded(&mut self, next: Next, ctx: &Context) {
+        if self.document.is_dirty() {
+            self.unsaved = Some(next);
+        } else {
+            self.go_on(next, ctx);
+        }
+    }
+
+    pub(super) fn go_on(&mut self, next: Next, ctx: &Context) {
+        match next {
+            Next::Quit => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            Next::AskOpen => {
+                let folder = self.suggested("loom");
+                let folder = folder.parent().unwrap_or(Path::new("")).join("");
+                self.dialogs.ask(Purpose::Open, &folder, ctx);
+            }
+            Next::New => {
+                let make = self.io.2.clone();
+                self.load("New scene".into(), None, ctx, move || make());
+            }
+            Next::Open(path) => {
+                let (open, file) = (self.io.0.clone(), path.clone());
+                let what = format!("Opening {}", path.display());
+                let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
+                self.load(what, own_file, ctx, move || open(&file));
+            }
+        }
+    }
+
+    /// Makes a scene on a thread of its own; the window goes on meanwhile.
+    fn load(
+        &mut self,
+        what: String,
+        path: Option<PathBuf>,
+        ctx: &Context,
+        make: impl FnOnce() -> anyhow::Result<crate::scene::Scene> + Send + 'static,
+    ) {
+        let (send, scene) = bounded(1);
+        let wake = ctx.clone();
+        let thread = std::thread::Builder::new().name("open".into()).spawn(move || {
+            // Nobody listens if something else was opened meanwhile.
+            let _ = send.send(make());
+            wake.request_repaint();
+        });
+        match thread {
+            Ok(_) => self.opening = Some(Opening { path, what, scene }),
+            Err(error) => self.fail(format!("{what}: {error}")),
+        }
+    }
+
+    pub(super) fn file_chosen(&mut self, purpose: Purpose, path: PathBuf, ctx: &Context) {
+        match purpose {
+            Purpose::Open => self.go_on(Next::Open(path), ctx),
+            Purpose::SaveAs => self.save_to(path, ctx),
+            Purpose::Screenshot => self.screenshot(&path),
+        }
+    }
+
+    fn save_to(&mut self, path: PathBuf, ctx: &Context) {
+        self.document.cancel_drag();
+        let scene = self.document.settled_scene().clone();
+        let next = self.after_save.take();
+        match (self.io.1)(&scene, &path) {
+            Ok(()) => {
+                self.document.mark_saved();
+                let now_s = self.now_s();
+                self.toasts
+                    .push(Level::Info, format!("Saved {}", path.display()), now_s);
+                self.path = Some(path);
+                if let Some(next) = next {
+                    self.go_on(next, ctx);
+                }
+            }
+            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
+        }
+    }
+
+    /// A path beside the scene's file, or in the working folder, named after the scene.
+    fn suggested(&self, extension: &str) -> PathBuf {
+        match &self.path {
+            Some(path) => path.with_extension(extension),
+            None => {
+                let name = &self.document.scene().name;
+                let tidy: String = name
+                    .chars()
+                    .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
+                    .collect();
+                let folder = std::env::current_dir().unwrap_or_default();
+                folder.join(format!("{tidy}.{extension}"))
+            }
+        }
+    }
+
+    fn screenshot(&mut self, path: &Path) {
+        let scene = self.document.scene().clone();
+        let shot = self.view3d.screenshot(&scene, &self.state, None);
+        let saved = shot.and_then(|([width, height], rgba)| {
+            image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
+            Ok([width, height])
+        });
+        match saved {
+            Ok([width, height]) => {
+                let now_s = self.now_s();
+                let text = format!("Saved {} ({width} × {height})", path.display());
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(error) => self.fail(format!("No screenshot: {}", one_line(&error))),
+        }
+    }
+}
+
+/// An angle within -180 to 180 degrees.
+fn wrapped_deg(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    if turned > 180.0 { turned - 360.0 } else { turned }
+}
+
+/// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
+fn free_name(path: &Path) -> PathBuf {
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let numbered = |i: u32| path.with_file_name(format!("{stem}_{i}.{extension}"));
+    std::iter::once(path.to_path_buf())
+        .chain((1..10_000).map(numbered))
+        .find(|p| !p.exists())
+        .unwrap_or_else(|| path.to_path_buf())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_are_taken_get_a_number() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = folder.path().join("a.png");
+        assert_eq!(free_name(&first), first);
+        std::fs::write(&first, "").expect("a file");
+        assert_eq!(free_name(&first), folder.path().join("a_1.png"));
+    }
+
+    #[test]
+    fn angles_stay_in_range() {
+        for (from, to) in [(0.0, 0.0), (181.0, -179.0), (-190.0, 170.0), (720.5, 0.5)] {
+            assert!((wrapped_deg(from) - to).abs() < 1e-9, "{from}");
+        }
+    }
+}

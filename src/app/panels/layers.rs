@@ -1,0 +1,182 @@
+//! The left panel: options of the tool in hand, and the layers of the bird's-eye view.
+
+use egui::accesskit::Role;
+use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use crate::app::command::Command;
+use crate::app::icons::{self, Icon, section};
+use crate::app::state::{Tool, UiState, VoxelVerb};
+use crate::app::theme;
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
+
+/// Draws the panel.
+pub fn layers_ui(ui: &mut Ui, layout: &BevLayout, state: &mut UiState, commands: &mut Vec<Command>) {
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        match state.tool {
+            Tool::Select => {
+                section(ui, "Select");
+                caption(ui, "Click a box to choose it, drag to move it. The round handle turns it, corners resize it.");
+            }
+            Tool::Brush => brush_options(ui, state),
+            Tool::AddBox => {
+                section(ui, "Add box");
+                caption(ui, "Click to place, drag to set the heading. Boxes follow the nearest lane.");
+                ui.add_space(4.0);
+                classes(ui, &Class::OBJECTS, &mut state.box_class, "Add");
+            }
+            Tool::Voxel => voxel_options(ui, state, commands),
+        }
+        ui.add_space(theme::GAP);
+        section(ui, "Map layers");
+        for layer in BevLayer::MAP {
+            layer_row(ui, layout, layer, state, commands);
+        }
+        ui.add_space(theme::GAP);
+        section(ui, "Overlays");
+        toggle_row(ui, "Boxes", &mut state.show_boxes);
+        toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
+        toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
+        toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
+    });
+}
+
+fn caption(ui: &mut Ui, text: &str) {
+    ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
+}
+
+fn brush_options(ui: &mut Ui, state: &mut UiState) {
+    section(ui, "Brush");
+    icons::segments(
+        ui,
+        &mut state.erase,
+        &[(false, "Paint", ""), (true, "Erase", "E, or hold Shift")],
+    );
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new("Size").color(theme::TEXT_WEAK));
+        let slider = egui::Slider::new(&mut state.brush_m, UiState::BRUSH_M)
+            .logarithmic(true)
+            .suffix(" m")
+            .fixed_decimals(1);
+        ui.add(slider)
+            .on_hover_text("[ and ], or Ctrl+wheel")
+            .accessible_name("Brush size");
+    });
+}
+
+fn voxel_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+    section(ui, "Voxel brush");
+    let mut verb = state.verb;
+    let verbs = VoxelVerb::ALL.map(|(verb, name, key)| (verb, name, key));
+    if icons::segments(ui, &mut verb, &verbs) {
+        commands.push(Command::Verb(verb));
+    }
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new("Size").color(theme::TEXT_WEAK));
+        let slider = egui::Slider::new(&mut state.voxel_size, 1..=UiState::MAX_VOXEL_SIZE).suffix(" vx");
+        ui.add(slider)
+            .on_hover_text("[ and ]")
+            .accessible_name("Voxel brush size");
+    });
+    ui.add_space(4.0);
+    if state.verb == VoxelVerb::Remove {
+        caption(
+            ui,
+            "Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.",
+        );
+    } else {
+        let shown: Vec<Class> = Class::ALL.into_iter().filter(|c| *c != Class::Free).collect();
+        classes(ui, &shown, &mut state.voxel_class, "Voxel");
+    }
+}
+
+/// Classes in two columns, one of them chosen.
+fn classes(ui: &mut Ui, shown: &[Class], chosen: &mut Class, verb: &str) {
+    let gap = 4.0;
+    let width = (ui.available_width() - gap) / 2.0;
+    ui.spacing_mut().item_spacing = vec2(gap, 2.0);
+    for pair in shown.chunks(2) {
+        ui.horizontal(|ui| {
+            for class in pair {
+                let label = class.label();
+                let short = match class {
+                    Class::ConstructionVehicle => "Construction".to_owned(),
+                    Class::DriveableSurface => "Driveable".to_owned(),
+                    _ => theme::sentence(&label),
+                };
+                let size = vec2(width, theme::ROW);
+                ui.allocate_ui(size, |ui| {
+                    let name = format!("{verb} {label}");
+                    let row = icons::row(ui, theme::class_color(*class), &short, "", chosen == class, &name);
+                    if row.clicked() {
+                        *chosen = *class;
+                    }
+                });
+            }
+        });
+    }
+}
+
+fn layer_row(
+    ui: &mut Ui,
+    layout: &BevLayout,
+    layer: BevLayer,
+    state: &mut UiState,
+    commands: &mut Vec<Command>,
+) {
+    let label = layer.label();
+    let shown = state.shows(layer);
+    let chosen = state.tool == Tool::Brush && state.layer == layer;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if eye(ui, shown, &format!("Show {label}")).clicked() {
+            state.layers_shown ^= layer.bit();
+        }
+        let share = layout.count(layer) as f64 * 100.0 / GridSpec::COLUMNS as f64;
+        let right = match share {
+            0.0 => String::new(),
+            s if s < 1.0 => "<1 %".to_owned(),
+            s => format!("{s:.0} %"),
+        };
+        let color = theme::rgb(layer.color()).gamma_multiply(if shown { 1.0 } else { 0.4 });
+        let name = theme::sentence(&label);
+        let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
+        if row.on_hover_text("Choose for the brush").clicked() {
+            state.layer = layer;
+            commands.push(Command::Tool(Tool::Brush));
+        }
+    });
+}
+
+fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if eye(ui, *on, &format!("Show {}", name.to_lowercase())).clicked() {
+            *on = !*on;
+        }
+        let color = if *on { theme::TEXT } else { theme::TEXT_WEAK };
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW), Sense::click());
+        let body = egui::TextStyle::Body.resolve(ui.style());
+        let at = pos2(rect.left() + 8.0, rect.center().y);
+        ui.painter()
+            .text(at, egui::Align2::LEFT_CENTER, name, body, color);
+        if response.clicked() {
+            *on = !*on;
+        }
+    });
+}
+
+fn eye(ui: &mut Ui, shown: bool, name: &str) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(theme::ROW, theme::ROW), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, shown, name));
+    let color = match (response.hovered(), shown) {
+        (true, _) => theme::TEXT_STRONG,
+        (false, true) => theme::TEXT_WEAK,
+        (false, false) => Color32::from_rgb(90, 96, 106),
+    };
+    let icon = if shown { Icon::Eye } else { Icon::EyeOff };
+    icon.paint(ui, rect.shrink(5.0), color);
+    icons::focus_ring(ui, &response, rect);
+    response
+}

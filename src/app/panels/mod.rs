@@ -1,0 +1,10 @@
+//! The panels around the views: each draws from values and pushes commands.
+
+pub mod cameras;
+pub mod dialogs;
+pub mod layers;
+pub mod objects;
+pub mod panes;
+pub mod status;
+pub mod toasts;
+pub mod toolbar;

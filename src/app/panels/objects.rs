@@ -1,0 +1,285 @@
+//! The right panel: the chosen box in numbers, the list of boxes, the history.
+
+use egui::{DragValue, Ui};
+use glam::DVec3;
+
+use crate::app::command::Command;
+use crate::app::icons::{self, Icon, section};
+use crate::app::state::UiState;
+use crate::app::theme;
+use crate::editor::{Document, Edit};
+use crate::scene::{BoxId, Class, SceneBox};
+
+/// What the history and its title take at the bottom, points.
+const HISTORY_HEIGHT: f32 = 168.0;
+
+/// Draws the panel.
+pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &mut Vec<Command>) {
+    let frame = document.scene().frame();
+    section(ui, "Inspector");
+    match state.selected.and_then(|id| frame.boxes.get(&id)) {
+        Some(b) => inspector(ui, b, commands),
+        None => {
+            ui.label(egui::RichText::new("Nothing selected").color(theme::TEXT_WEAK));
+        }
+    }
+    ui.add_space(theme::GAP);
+    let title = match frame.boxes.len() {
+        1 => "1 box".to_owned(),
+        n => format!("{n} boxes"),
+    };
+    section(ui, &title);
+    let list_height = (ui.available_height() - HISTORY_HEIGHT).max(80.0);
+    let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
+    boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
+    let list = egui::ScrollArea::vertical()
+        .id_salt("boxes")
+        .max_height(list_height)
+        .auto_shrink([false, false]);
+    ui.spacing_mut().item_spacing.y = 1.0;
+    let list = reveal(ui, list, &boxes, state.selected, list_height);
+    list.show_rows(ui, theme::ROW, boxes.len(), |ui, range| {
+        for b in &boxes[range] {
+            box_row(ui, b, state.selected == Some(b.id), commands);
+        }
+    });
+    ui.add_space(theme::GAP);
+    section(ui, "History");
+    history(ui, document, commands);
+}
+
+/// Scrolls to the chosen box, once, when another one was chosen elsewhere.
+fn reveal(
+    ui: &Ui,
+    list: egui::ScrollArea,
+    boxes: &[&SceneBox],
+    selected: Option<BoxId>,
+    height: f32,
+) -> egui::ScrollArea {
+    let memory = egui::Id::unique("box revealed");
+    let before: Option<BoxId> = ui.data(|d| d.get_temp(memory)).flatten();
+    if before == selected {
+        return list;
+    }
+    ui.data_mut(|d| d.insert_temp(memory, selected));
+    match boxes.iter().position(|b| Some(b.id) == selected) {
+        Some(row) => {
+            let at = row as f32 * (theme::ROW + 1.0) - height / 2.0;
+            list.vertical_scroll_offset(at.max(0.0))
+        }
+        None => list,
+    }
+}
+
+fn box_row(ui: &mut Ui, b: &SceneBox, chosen: bool, commands: &mut Vec<Command>) {
+    let name = theme::sentence(&b.class.label());
+    let right = format!("#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
+    let label = format!("Box {} {}", b.id.0, b.class.label());
+    let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
+    if row.clicked() {
+        commands.push(Command::Select(Some(b.id)));
+    }
+    if row.double_clicked() {
+        commands.push(Command::FrameSelection);
+    }
+}
+
+fn inspector(ui: &mut Ui, b: &SceneBox, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let mut class = b.class;
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
+        icons::swatch(ui, rect.center(), 14.0, theme::class_color(class));
+        let combo = egui::ComboBox::from_id_salt("class")
+            .width(118.0)
+            .selected_text(theme::sentence(&class.label()));
+        combo.show_ui(ui, |ui| {
+            for other in Class::OBJECTS {
+                ui.selectable_value(&mut class, other, theme::sentence(&other.label()));
+            }
+        });
+        if class != b.class {
+            commands.push(Command::Apply(
+                "Change class",
+                vec![Edit::SetBoxClass { id: b.id, class }],
+            ));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            if icons::button(ui, Icon::Trash, "Delete box", "Del", false, true).clicked() {
+                commands.push(Command::DeleteSelected);
+            }
+            if icons::button(ui, Icon::Copy, "Duplicate box", "Ctrl+D", false, true).clicked() {
+                commands.push(Command::DuplicateSelected);
+            }
+            if icons::button(ui, Icon::Focus, "Frame box", "F", false, true).clicked() {
+                commands.push(Command::FrameSelection);
+            }
+        });
+    });
+    ui.add_space(2.0);
+    let [mut center, mut size] = [b.center_m, b.size_m];
+    let limit = SceneBox::LIMIT_M;
+    let position = numbers(ui, "Position", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    let dimensions = numbers(
+        ui,
+        "Size",
+        ["Length", "Width", "Height"],
+        &mut size,
+        0.1..=60.0,
+        0.05,
+    );
+    let mut yaw_deg = b.yaw_rad.to_degrees();
+    let turned = ui
+        .horizontal(|ui| {
+            caption(ui, "Heading");
+            let drag = DragValue::new(&mut yaw_deg)
+                .speed(0.5)
+                .fixed_decimals(1)
+                .suffix("°");
+            ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading")
+        })
+        .inner;
+    let id = b.id;
+    let edit = |center_m, yaw_deg, size_m| Edit::MoveBox {
+        id,
+        center_m,
+        yaw_deg,
+        size_m,
+    };
+    field(&position, "Move box", edit(Some(center), None, None), commands);
+    field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
+    field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
+    speed(ui, b);
+}
+
+fn speed(ui: &mut Ui, b: &SceneBox) {
+    ui.horizontal(|ui| {
+        caption(ui, "Speed");
+        let kmh = b.velocity_mps.length() * 3.6;
+        let text = if kmh < 0.5 {
+            "standing".to_owned()
+        } else {
+            format!("{kmh:.0} km/h")
+        };
+        ui.label(text);
+        ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::TEXT_WEAK));
+    });
+}
+
+fn caption(ui: &mut Ui, text: &str) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(52.0, theme::ROW), egui::Sense::hover());
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    ui.painter().text(
+        rect.left_center(),
+        egui::Align2::LEFT_CENTER,
+        text,
+        font,
+        theme::TEXT_WEAK,
+    );
+}
+
+/// Three numbers in a row; the response of all of them.
+fn numbers(
+    ui: &mut Ui,
+    title: &str,
+    names: [&str; 3],
+    value: &mut DVec3,
+    range: std::ops::RangeInclusive<f64>,
+    speed: f64,
+) -> egui::Response {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        caption(ui, title);
+        let width = ((ui.available_width() - 6.0) / 3.0).clamp(40.0, 90.0);
+        let mut fields = names.into_iter().enumerate().map(|(axis, name)| {
+            let drag = DragValue::new(&mut value[axis])
+                .speed(speed)
+                .range(range.clone())
+                .fixed_decimals(2);
+            ui.add_sized([width, theme::ROW], drag)
+                .on_hover_text(format!("{name}, m"))
+                .accessible_name(name)
+        });
+        let first = fields.next().expect("three names");
+        fields.fold(first, |all, one| all.union(one))
+    })
+    .inner
+}
+
+/// Dragging previews, letting go commits, typing applies.
+fn field(response: &egui::Response, label: &'static str, edit: Edit, commands: &mut Vec<Command>) {
+    if response.dragged() {
+        if response.changed() {
+            commands.push(Command::Preview(vec![edit]));
+        }
+    } else if response.drag_stopped() {
+        commands.push(Command::Commit(label));
+    } else if response.changed() {
+        commands.push(Command::Apply(label, vec![edit]));
+    }
+}
+
+fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
+    let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
+    let area = egui::ScrollArea::vertical()
+        .id_salt("history")
+        .auto_shrink([false, false])
+        .stick_to_bottom(true);
+    area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
+        for i in range {
+            let color = match i.cmp(&at) {
+                std::cmp::Ordering::Less => theme::TEXT,
+                std::cmp::Ordering::Equal => theme::TEXT_STRONG,
+                std::cmp::Ordering::Greater => theme::TEXT_WEAK.gamma_multiply(0.7),
+            };
+            let size = egui::vec2(ui.available_width(), theme::ROW - 4.0);
+            let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+            let name = format!("History {i} {}", labels[i]);
+            response.widget_info(|| {
+                egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
+            });
+            let fill = match (i == at, response.hovered()) {
+                (true, _) => theme::FIELD,
+                (_, true) => theme::FIELD.gamma_multiply(0.6),
+                _ => egui::Color32::TRANSPARENT,
+            };
+            ui.painter().rect_filled(rect, theme::RADIUS, fill);
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let text_at = rect.left_center() + egui::vec2(8.0, 0.0);
+            ui.painter()
+                .text(text_at, egui::Align2::LEFT_CENTER, labels[i], font, color);
+            if response.clicked() {
+                commands.push(Command::JumpTo(i));
+            }
+        }
+    });
+}
+
+/// The box after (1) or before (-1) the chosen one, by id, round about.
+pub fn neighbour(ids: &[BoxId], chosen: Option<BoxId>, step: i32) -> Option<BoxId> {
+    let count = ids.len() as i64;
+    if count == 0 {
+        return None;
+    }
+    let at = chosen.and_then(|id| ids.iter().position(|i| *i == id));
+    let next = match at {
+        Some(at) => (at as i64 + i64::from(step)).rem_euclid(count),
+        None if step > 0 => 0,
+        None => count - 1,
+    };
+    ids.get(next as usize).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stepping_through_boxes_goes_round() {
+        let ids = [BoxId(2), BoxId(5), BoxId(9)];
+        assert_eq!(neighbour(&ids, None, 1), Some(BoxId(2)));
+        assert_eq!(neighbour(&ids, Some(BoxId(9)), 1), Some(BoxId(2)));
+        assert_eq!(neighbour(&ids, Some(BoxId(2)), -1), Some(BoxId(9)));
+        assert_eq!(neighbour(&[], Some(BoxId(2)), 1), None);
+    }
+}

@@ -1,0 +1,281 @@
+//! The bar at the top: menus, tools, history, generation.
+
+use egui::accesskit::Role;
+use egui::{Align2, Sense, Ui, WidgetInfo, vec2};
+
+use crate::app::command::Command;
+use crate::app::icons::{self, Icon};
+use crate::app::state::{Tool, UiState};
+use crate::app::theme;
+use crate::viewport::ViewPreset;
+
+/// What the bar shows of the document and the worker.
+pub struct ToolbarInput<'a> {
+    /// Name of the scene.
+    pub name: &'a str,
+    /// There are changes that are in no file.
+    pub dirty: bool,
+    /// What undo would take back.
+    pub undo: Option<&'static str>,
+    /// What redo would bring back.
+    pub redo: Option<&'static str>,
+    /// Generation after each edit is on.
+    pub live: bool,
+    /// A job is on its way.
+    pub busy: bool,
+    /// Voxels that the user painted.
+    pub has_paint: bool,
+}
+
+/// Draws the bar.
+pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+    ui.horizontal_centered(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            widgets.inactive.weak_bg_fill = egui::Color32::TRANSPARENT;
+            ui.spacing_mut().item_spacing.x = 0.0;
+            menus(ui, input, state, commands);
+        });
+        divider(ui);
+        for (tool, name, key) in Tool::ALL {
+            let icon = match tool {
+                Tool::Select => Icon::Cursor,
+                Tool::Brush => Icon::Brush,
+                Tool::AddBox => Icon::AddBox,
+                Tool::Voxel => Icon::Voxel,
+            };
+            if icons::button(ui, icon, name, key, state.tool == tool, true).clicked() {
+                commands.push(Command::Tool(tool));
+            }
+        }
+        divider(ui);
+        let hint = |label: Option<&str>, keys: &str| {
+            label.map_or_else(|| keys.to_owned(), |label| format!("{label}  ·  {keys}"))
+        };
+        let undo = icons::button(
+            ui,
+            Icon::Undo,
+            "Undo",
+            &hint(input.undo, "Ctrl+Z"),
+            false,
+            input.undo.is_some(),
+        );
+        if undo.clicked() {
+            commands.push(Command::Undo);
+        }
+        let keys = "Ctrl+Shift+Z";
+        let redo = icons::button(
+            ui,
+            Icon::Redo,
+            "Redo",
+            &hint(input.redo, keys),
+            false,
+            input.redo.is_some(),
+        );
+        if redo.clicked() {
+            commands.push(Command::Redo);
+        }
+        let left = ui.min_rect().right();
+        let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            generation(ui, input, commands);
+            ui.min_rect().left()
+        });
+        title(ui, input, left, right.inner);
+    });
+}
+
+/// A chord in the second column of a menu.
+fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
+    let keys = egui::RichText::new(keys).color(theme::TEXT_WEAK);
+    let button = egui::Button::new(name).shortcut_text(keys);
+    let clicked = ui.add_enabled(enabled, button).clicked();
+    if clicked {
+        ui.close();
+    }
+    clicked
+}
+
+fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+    let mut on = |clicked: bool, command: Command| {
+        if clicked {
+            commands.push(command);
+        }
+    };
+    ui.menu_button("File", |ui| {
+        on(item(ui, "New scene", "Ctrl+N", true), Command::New);
+        on(item(ui, "Open…", "Ctrl+O", true), Command::Open);
+        ui.separator();
+        on(item(ui, "Save", "Ctrl+S", true), Command::Save);
+        on(item(ui, "Save as…", "Ctrl+Shift+S", true), Command::SaveAs);
+        ui.separator();
+        on(item(ui, "Quick screenshot", "F12", true), Command::QuickShot);
+        on(
+            item(ui, "Export screenshot…", "", true),
+            Command::ExportScreenshot,
+        );
+        ui.separator();
+        on(item(ui, "Quit", "Ctrl+Q", true), Command::Quit);
+    });
+    ui.menu_button("Edit", |ui| {
+        on(item(ui, "Undo", "Ctrl+Z", input.undo.is_some()), Command::Undo);
+        on(
+            item(ui, "Redo", "Ctrl+Shift+Z", input.redo.is_some()),
+            Command::Redo,
+        );
+        ui.separator();
+        let some = state.selected.is_some();
+        on(
+            item(ui, "Duplicate box", "Ctrl+D", some),
+            Command::DuplicateSelected,
+        );
+        on(item(ui, "Delete box", "Del", some), Command::DeleteSelected);
+        ui.separator();
+        on(
+            item(ui, "Unlock painted voxels", "", input.has_paint),
+            Command::ClearPaint,
+        );
+    });
+    ui.menu_button("View", |ui| {
+        on(item(ui, "Frame all", "Home", true), Command::FrameAll);
+        on(
+            item(ui, "Frame selection", "F", state.selected.is_some()),
+            Command::FrameSelection,
+        );
+        ui.separator();
+        for preset in ViewPreset::ALL {
+            let name = format!("3D: {}", theme::sentence(preset.name()));
+            let key = match preset {
+                ViewPreset::Perspective => "5",
+                ViewPreset::Top => "7",
+                ViewPreset::Front => "1",
+                ViewPreset::Side => "3",
+                ViewPreset::Ego => "0",
+            };
+            on(item(ui, &name, key, true), Command::View(preset));
+        }
+        ui.separator();
+        on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
+        on(item(ui, "Grid", "G", true), Command::ToggleGrid);
+        on(item(ui, "Log", "", true), Command::ToggleLog);
+    });
+    ui.menu_button("Generate", |ui| {
+        on(
+            item(ui, "Generate everything", "Ctrl+Enter", true),
+            Command::Generate { full: true },
+        );
+        on(
+            item(ui, "Generate edited region", "", true),
+            Command::Generate { full: false },
+        );
+        on(
+            item(ui, "Cancel", "Ctrl+Backspace", input.busy),
+            Command::CancelGeneration,
+        );
+        ui.separator();
+        let live = if input.live {
+            "Switch live off"
+        } else {
+            "Switch live on"
+        };
+        on(item(ui, live, "Ctrl+Space", true), Command::ToggleLive);
+    });
+    let help = ui.button("Keys");
+    on(help.clicked(), Command::ToggleKeys);
+}
+
+fn divider(ui: &mut Ui) {
+    ui.add_space(6.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(1.0, 18.0), Sense::hover());
+    ui.painter().rect_filled(rect, 0.0, theme::FIELD_HOVER);
+    ui.add_space(6.0);
+}
+
+/// From right to left: the button that generates, the live switch.
+fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = theme::GAP;
+    let (name, hint, fill, icon, command) = if input.busy {
+        (
+            "Cancel",
+            "Ctrl+Backspace",
+            theme::FIELD,
+            Icon::Stop,
+            Command::CancelGeneration,
+        )
+    } else {
+        let command = Command::Generate { full: true };
+        (
+            "Generate",
+            "all of it, Ctrl+Enter",
+            theme::ACCENT_FILL,
+            Icon::Play,
+            command,
+        )
+    };
+    if wide_button(ui, icon, name, hint, fill, name).clicked() {
+        commands.push(command);
+    }
+    let fill = if input.live {
+        theme::FIELD
+    } else {
+        egui::Color32::TRANSPARENT
+    };
+    let hint = if input.live {
+        "on: generates after each edit, Ctrl+Space"
+    } else {
+        "off, Ctrl+Space"
+    };
+    let live = wide_button(ui, Icon::Live, "Live", hint, fill, "Live");
+    if input.live {
+        let dot = live.rect.right_top() + vec2(-6.0, 6.0);
+        ui.painter().circle_filled(dot, 3.0, theme::GOOD);
+    }
+    live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, "Live"));
+    if live.clicked() {
+        commands.push(Command::ToggleLive);
+    }
+}
+
+/// A button with an icon and a name, of one height with the others.
+fn wide_button(
+    ui: &mut Ui,
+    icon: Icon,
+    name: &str,
+    hint: &str,
+    fill: egui::Color32,
+    label: &str,
+) -> egui::Response {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(name.to_owned(), font, theme::TEXT_STRONG);
+    let size = vec2(galley.size().x + 42.0, theme::ROW + 4.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
+    let fill = if response.hovered() {
+        fill.lerp_to_gamma(theme::TEXT_STRONG, 0.12)
+    } else {
+        fill
+    };
+    ui.painter().rect_filled(rect, theme::RADIUS, fill);
+    let icon_rect = egui::Rect::from_center_size(rect.left_center() + vec2(17.0, 0.0), vec2(14.0, 14.0));
+    icon.paint(ui, icon_rect, theme::TEXT_STRONG);
+    let at = rect.left_center() + vec2(30.0, -galley.size().y / 2.0);
+    ui.painter().galley(at, galley, theme::TEXT_STRONG);
+    icons::focus_ring(ui, &response, rect);
+    response.on_hover_ui(|ui| icons::tip(ui, name, hint))
+}
+
+/// Name of the scene in the middle of what is left free.
+fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
+    if right - left < 120.0 {
+        return;
+    }
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let middle = egui::pos2((left + right) / 2.0, ui.max_rect().center().y);
+    let painter = ui.painter();
+    let drawn = painter.text(middle, Align2::CENTER_CENTER, input.name, font, theme::TEXT);
+    if input.dirty {
+        painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::WARN);
+    }
+}

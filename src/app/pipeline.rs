@@ -1,0 +1,34 @@
+//! The generation that the window runs: the bundled networks, warmed up while nobody waits.
+
+use crate::generation::job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use crate::generation::pipeline::OccPipeline;
+use crate::generation::region::Region;
+
+/// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
+/// so that the first edit finds both ready.
+pub struct WarmPipeline(OccPipeline);
+
+impl WarmPipeline {
+    /// With the weights that ship with the program.
+    pub fn bundled() -> Result<Self, GenError> {
+        OccPipeline::bundled().map(Self)
+    }
+}
+
+impl Pipeline for WarmPipeline {
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let frame = job.scene.frame();
+        let nothing_edited = job.params.region == RegionMode::Auto
+            && Region::of_edit(frame, job.params.halo_columns as usize).is_empty();
+        if !nothing_edited {
+            return self.0.run(job, ctx);
+        }
+        let network_calls = self.0.prepare(job, ctx)?;
+        Ok(GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy: frame.occupancy.clone(),
+            report: GenReport { network_calls, inversion_calls: network_calls, ..GenReport::default() },
+        })
+    }
+}

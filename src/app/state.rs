@@ -1,0 +1,235 @@
+//! What the window shows and holds in hand, beside the document: tools, layers, options. Nothing
+//! here is saved with a scene.
+
+use glam::DVec2;
+
+use crate::scene::{BevLayer, BoxId, Class};
+use crate::viewport::LidarColorMode;
+
+/// What the primary button does on a canvas.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Tool {
+    /// Chooses, moves and turns boxes.
+    #[default]
+    Select,
+    /// Paints a map layer.
+    Brush,
+    /// Places boxes.
+    AddBox,
+    /// Paints voxels in the 3D view.
+    Voxel,
+}
+
+impl Tool {
+    /// Every tool with its name and key.
+    pub const ALL: [(Tool, &'static str, &'static str); 4] = [
+        (Tool::Select, "Select", "V"),
+        (Tool::Brush, "Brush", "B"),
+        (Tool::AddBox, "Add box", "A"),
+        (Tool::Voxel, "Voxels", "B in 3D"),
+    ];
+}
+
+/// What the voxel brush does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum VoxelVerb {
+    /// Puts voxels on the face under the pointer.
+    #[default]
+    Attach,
+    /// Takes voxels away.
+    Remove,
+    /// Gives voxels another class.
+    Recolour,
+}
+
+impl VoxelVerb {
+    /// Every verb with its name and key.
+    pub const ALL: [(VoxelVerb, &'static str, &'static str); 3] = [
+        (VoxelVerb::Attach, "Attach", "T"),
+        (VoxelVerb::Remove, "Remove", "R"),
+        (VoxelVerb::Recolour, "Recolour", "Y"),
+    ];
+}
+
+/// The two large views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pane {
+    /// Bird's-eye view.
+    Bev,
+    /// 3D view.
+    View3d,
+}
+
+/// What the camera strip shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CameraMode {
+    /// Classes.
+    #[default]
+    Semantic,
+    /// Distance along the optical axis.
+    Depth,
+}
+
+/// What lies under the layers of the bird's-eye view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Underlay {
+    /// Layers only.
+    #[default]
+    Layout,
+    /// The occupancy from above, layers off.
+    Occupancy,
+    /// Both, the layers translucent.
+    Both,
+}
+
+/// State of the window.
+#[derive(Clone, Debug)]
+pub struct UiState {
+    /// Tool in hand.
+    pub tool: Tool,
+    /// Chosen box.
+    pub selected: Option<BoxId>,
+    /// Layer that the brush paints.
+    pub layer: BevLayer,
+    /// Diameter of the brush, m.
+    pub brush_m: f64,
+    /// True: the brush clears instead of setting.
+    pub erase: bool,
+    /// Class of the next box.
+    pub box_class: Class,
+    /// What the voxel brush does.
+    pub verb: VoxelVerb,
+    /// Class that the voxel brush paints.
+    pub voxel_class: Class,
+    /// Edge of the voxel brush, voxels, 1 to 5.
+    pub voxel_size: usize,
+    /// Bit per map layer that is drawn.
+    pub layers_shown: u32,
+    /// What lies under the layers.
+    pub underlay: Underlay,
+    /// Draw boxes.
+    pub show_boxes: bool,
+    /// Draw lane centres and dividers as lines.
+    pub show_lines: bool,
+    /// Draw the 10 m grid, in both views.
+    pub show_grid: bool,
+    /// Draw the LiDAR returns in the bird's-eye view too.
+    pub show_lidar_bev: bool,
+    /// Colour of LiDAR returns.
+    pub lidar_colors: LidarColorMode,
+    /// What the camera strip shows.
+    pub camera_mode: CameraMode,
+    /// Camera that is enlarged.
+    pub inspected: Option<usize>,
+    /// The 3D view is the left pane.
+    pub swapped: bool,
+    /// Pane under the pointer in the last frame.
+    pub hovered_pane: Option<Pane>,
+    /// What the pane under the pointer says about it; shown in the status bar.
+    pub readout: String,
+    /// The log is open.
+    pub log_open: bool,
+    /// The sheet of keys is open.
+    pub keys_open: bool,
+}
+
+impl UiState {
+    /// Limits of the brush's diameter, m.
+    pub const BRUSH_M: std::ops::RangeInclusive<f64> = 0.4..=12.0;
+    /// Largest edge of the voxel brush.
+    pub const MAX_VOXEL_SIZE: usize = 5;
+    /// Diameters that the keys step through, m.
+    const BRUSH_STEPS_M: [f64; 11] = [0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 4.0, 5.6, 7.2, 9.6, 12.0];
+
+    /// True if a map layer is drawn.
+    pub fn shows(&self, layer: BevLayer) -> bool {
+        self.layers_shown & layer.bit() != 0
+    }
+
+    /// The brush in hand one step larger or smaller.
+    pub fn step_brush(&mut self, step: i32) {
+        if self.tool == Tool::Voxel {
+            let size = self.voxel_size as i32 + step;
+            self.voxel_size = size.clamp(1, Self::MAX_VOXEL_SIZE as i32) as usize;
+            return;
+        }
+        let sizes = Self::BRUSH_STEPS_M;
+        self.brush_m = if step > 0 {
+            let larger = sizes.into_iter().find(|s| *s > self.brush_m + 1e-6);
+            larger.unwrap_or(*Self::BRUSH_M.end())
+        } else {
+            let smaller = sizes.into_iter().rev().find(|s| *s < self.brush_m - 1e-6);
+            smaller.unwrap_or(*Self::BRUSH_M.start())
+        };
+    }
+}
+
+impl Default for UiState {
+    fn default() -> Self {
+        Self {
+            tool: Tool::Select,
+            selected: None,
+            layer: BevLayer::DrivableArea,
+            brush_m: 3.2,
+            erase: false,
+            box_class: Class::Car,
+            verb: VoxelVerb::Attach,
+            voxel_class: Class::Manmade,
+            voxel_size: 1,
+            layers_shown: 0xff,
+            underlay: Underlay::Layout,
+            show_boxes: true,
+            show_lines: true,
+            show_grid: true,
+            show_lidar_bev: false,
+            lidar_colors: LidarColorMode::Range,
+            camera_mode: CameraMode::Semantic,
+            inspected: None,
+            swapped: false,
+            hovered_pane: None,
+            readout: String::new(),
+            log_open: false,
+            keys_open: false,
+        }
+    }
+}
+
+/// Position for a person: `12.4, -3.0 m`.
+pub fn position_text(p_m: DVec2) -> String {
+    // Adding 0 turns -0 into 0.
+    let tidy = |v: f64| (v * 10.0).round() / 10.0 + 0.0;
+    format!("{:.1}, {:.1} m", tidy(p_m.x), tidy(p_m.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_brush_steps_through_its_sizes_and_stays_in_range() {
+        let mut ui = UiState {
+            tool: Tool::Brush,
+            ..UiState::default()
+        };
+        for _ in 0..30 {
+            ui.step_brush(1);
+        }
+        assert_eq!(ui.brush_m, 12.0);
+        for _ in 0..30 {
+            ui.step_brush(-1);
+        }
+        assert_eq!(ui.brush_m, 0.4);
+        ui.step_brush(1);
+        assert_eq!(ui.brush_m, 0.8);
+        ui.tool = Tool::Voxel;
+        for (step, size) in [(-1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 5)] {
+            ui.step_brush(step);
+            assert_eq!(ui.voxel_size, size);
+        }
+    }
+
+    #[test]
+    fn positions_have_no_negative_zero() {
+        assert_eq!(position_text(DVec2::new(-0.01, 3.14)), "0.0, 3.1 m");
+    }
+}

@@ -1,0 +1,476 @@
+//! The 3D pane: the viewport's picture at the size of the pane, its camera, and what is under the
+//! pointer. Gestures of the tools are in `view3d_tools.rs`.
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
+use glam::{DVec2, DVec3};
+
+use crate::editor::pick::{self, Hit, Ray};
+use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
+use crate::viewport::{
+    BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
+    lidar_colors,
+};
+
+use super::command::Command;
+use super::state::{Tool, UiState, VoxelVerb, position_text};
+use super::theme;
+use super::view3d_tools::Gesture3d;
+
+/// Turn per point that the pointer moves, rad.
+const ORBIT_RAD: f64 = 0.006;
+/// Frames slower than this while moving make the picture coarse, s.
+const SLOW_FRAME_S: f32 = 0.045;
+/// Time without motion after which the picture is fine again, s.
+const SETTLE_S: f64 = 0.18;
+/// Speed of flight, m/s.
+const FLY_MPS: f64 = 14.0;
+
+/// Device objects of the view.
+struct Gpu {
+    render_state: egui_wgpu::RenderState,
+    viewport: Viewport,
+    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with size and samples it was registered for
+    software: bool,
+}
+
+/// The 3D view's own state.
+pub struct View3d {
+    /// Viewpoint.
+    pub camera: ViewCamera,
+    /// What is shown and how.
+    pub options: ViewOptions,
+    gpu: Option<Gpu>,
+    /// What the pointer is doing.
+    pub(super) gesture: Gesture3d,
+    /// The pane drawn last; tests click with it.
+    pub rect: Rect,
+    colors: Option<(Arc<LidarSweep>, LidarColorMode, Vec<[u8; 4]>)>,
+    last_motion_s: f64,
+    frame_s: f32,
+    frames: u32,
+    pixels_per_point: f32,
+}
+
+/// What the view draws.
+pub struct View3dInput<'a> {
+    /// The scene shown, a drag in progress included.
+    pub scene: &'a Scene,
+    /// The scene without the drag in progress: what a stroke picks against.
+    pub settled: &'a Scene,
+    /// The newest sweep.
+    pub lidar: Option<&'a Arc<LidarSweep>>,
+    /// The user drags something, anywhere.
+    pub dragging: bool,
+}
+
+/// The pointer over the view.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pointer {
+    /// The way it looks.
+    pub ray: Ray,
+}
+
+impl View3d {
+    /// Without a render state the pane says that there is no graphics adapter.
+    pub fn new(render_state: Option<egui_wgpu::RenderState>) -> Self {
+        let gpu = render_state.map(|state| Gpu {
+            viewport: Viewport::new(&state.device, &state.queue),
+            software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            texture: None,
+            render_state: state,
+        });
+        Self {
+            camera: ViewCamera::default(),
+            options: ViewOptions { point_px: 1.8, ..ViewOptions::default() },
+            gpu,
+            gesture: Gesture3d::None,
+            rect: Rect::NOTHING,
+            colors: None,
+            last_motion_s: f64::NEG_INFINITY,
+            frame_s: 0.0,
+            frames: 0,
+            pixels_per_point: 1.0,
+        }
+    }
+
+    /// True if there is a device to draw with.
+    pub fn has_gpu(&self) -> bool {
+        self.gpu.is_some()
+    }
+
+    /// Takes a standard viewpoint.
+    pub fn preset(&mut self, preset: ViewPreset) {
+        self.camera = ViewCamera::preset(preset);
+    }
+
+    /// Brings a box into the middle.
+    pub fn frame_box(&mut self, b: &SceneBox) {
+        self.camera.focus(b.center_m, b.size_m.length() * 0.9);
+    }
+
+    /// Draws the view into all the space there is, and answers the pointer.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        input: &View3dInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) -> Response {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3D view"));
+        self.rect = rect;
+        self.pixels_per_point = ui.ctx().pixels_per_point();
+        if self.gpu.is_none() {
+            no_adapter(ui, rect);
+            return response;
+        }
+        let moved = self.navigate(ui, &response, input);
+        let pointer = response.hover_pos().and_then(|p| self.pointer(p));
+        self.interact(ui, &response, input, state, commands);
+        let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
+        if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
+            state.readout = readout(input.scene, hit, &pointer.ray);
+        }
+        let now_s = ui.input(|i| i.time);
+        if moved || input.dragging {
+            self.last_motion_s = now_s;
+        }
+        self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
+        response
+    }
+
+    /// The size of the picture, physical pixels.
+    fn size_px(&self) -> [u32; 2] {
+        let size = self.rect.size() * self.pixels_per_point;
+        [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
+    }
+
+    /// The ray under a point of the screen.
+    pub(super) fn pointer(&self, at: Pos2) -> Option<Pointer> {
+        let size = self.size_px();
+        let part = (at - self.rect.min) / self.rect.size();
+        let pixel = DVec2::new(
+            f64::from(part.x) * f64::from(size[0]),
+            f64::from(part.y) * f64::from(size[1]),
+        );
+        let (origin, direction) = self.camera.ray_in_world(pixel, size);
+        Ray::new(origin, direction).map(|ray| Pointer { ray })
+    }
+
+    /// Camera motion by pointer and keys; true if the view changed.
+    fn navigate(&mut self, ui: &Ui, response: &Response, input: &View3dInput<'_>) -> bool {
+        let before = self.camera;
+        let (shift, alt, space) =
+            ui.input(|i| (i.modifiers.shift, i.modifiers.alt, i.key_down(egui::Key::Space)));
+        let delta = response.drag_delta();
+        let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
+        let middle = response.dragged_by(egui::PointerButton::Middle);
+        let primary = response.dragged_by(egui::PointerButton::Primary);
+        let px = f64::from(self.pixels_per_point);
+        if middle && shift || primary && space {
+            self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
+        } else if middle || primary && alt {
+            // A turned standard view is none any more: back to perspective.
+            self.camera.ortho &= delta == egui::Vec2::ZERO;
+            self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
+        } else if response.dragged_by(egui::PointerButton::Secondary) {
+            self.fly(ui, dx, dy);
+        }
+        if let Some(at) = response.hover_pos() {
+            let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+            let factor = f64::from((scroll / 260.0).exp() * zoom);
+            if (factor - 1.0).abs() > 1e-4 {
+                let toward = self.pointer(at).and_then(|p| {
+                    let distance_m = match pick::pick(input.scene.frame(), &p.ray)? {
+                        Hit::Box { distance_m, .. } => distance_m,
+                        Hit::Voxel(v) => v.distance_m,
+                        Hit::Ground { point_in_ego } => p.ray.origin_in_ego.distance(point_in_ego),
+                    };
+                    (distance_m < 400.0).then(|| p.ray.at(distance_m))
+                });
+                self.camera.zoom(factor, toward);
+            }
+        }
+        self.camera != before
+    }
+
+    fn fly(&mut self, ui: &Ui, dx: f64, dy: f64) {
+        use egui::Key;
+        self.camera.look(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
+        let (step, modifiers, dt) = ui.input(|i| {
+            let axis =
+                |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));
+            let step = DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
+            (step, i.modifiers, f64::from(i.stable_dt.min(0.1)))
+        });
+        let pace = if modifiers.shift {
+            4.0
+        } else if modifiers.alt {
+            0.25
+        } else {
+            1.0
+        };
+        self.camera.fly(step * (FLY_MPS * pace * dt));
+        ui.ctx().request_repaint();
+    }
+
+    fn paint(
+        &mut self,
+        ui: &Ui,
+        input: &View3dInput<'_>,
+        state: &UiState,
+        pointer: Option<&Pointer>,
+        hit: Option<&Hit>,
+        now_s: f64,
+    ) {
+        self.frames += 1;
+        let rect = self.rect;
+        if self.frames < 3 {
+            // The window comes up first; the pipelines take a moment.
+            hint(ui, rect, "Preparing the 3D view…", "");
+            ui.ctx().request_repaint();
+            return;
+        }
+        let moving = now_s - self.last_motion_s < SETTLE_S;
+        if moving {
+            let dt = ui.input(|i| i.unstable_dt).min(0.5);
+            self.frame_s = if self.frame_s == 0.0 {
+                dt
+            } else {
+                0.8 * self.frame_s + 0.2 * dt
+            };
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_secs_f64(SETTLE_S));
+        }
+        let size = self.size_px();
+        let frame = input.scene.frame();
+        self.refresh_colors(input.lidar, state.lidar_colors);
+        let (cells, brush_color) = self.brush_cells(input, state, pointer, hit);
+        let ghost = self.ghost(input.scene, state, pointer, hit);
+        let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
+        let selected: Vec<BoxId> = state.selected.into_iter().chain(ghost.map(|b| b.id)).collect();
+        let hovered = match hit {
+            Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
+            _ => None,
+        };
+        let Some(gpu) = &mut self.gpu else { return };
+        let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);
+        let options = ViewOptions {
+            grid_lines: state.show_grid,
+            boxes: state.show_boxes,
+            samples: if coarse || gpu.software { 1 } else { 4 },
+            point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
+            pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
+            ..self.options.clone()
+        };
+        let lidar = self
+            .colors
+            .as_ref()
+            .map(|(sweep, _, colors)| LidarView { sweep, colors });
+        let view = ViewScene {
+            grid: &frame.occupancy,
+            bev: frame.layout.cells(),
+            boxes: &boxes,
+            selected: &selected,
+            hovered,
+            brush: (!cells.is_empty()).then_some(BrushCells {
+                cells: &cells,
+                color: brush_color,
+            }),
+            lidar,
+            rig: &input.scene.rig,
+            options: &options,
+        };
+        let [w, h] = if coarse { size.map(|s| s.div_ceil(2)) } else { size };
+        let wgpu = &gpu.render_state;
+        gpu.viewport
+            .render(&wgpu.device, &wgpu.queue, &self.camera, &view, w, h);
+        let texture = register(gpu, options.samples);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        ui.painter().image(texture, rect, whole, Color32::WHITE);
+    }
+
+    fn refresh_colors(&mut self, lidar: Option<&Arc<LidarSweep>>, mode: LidarColorMode) {
+        self.colors = match (lidar, self.colors.take()) {
+            (None, _) => None,
+            (Some(sweep), Some(old)) if Arc::ptr_eq(sweep, &old.0) && old.1 == mode => Some(old),
+            (Some(sweep), _) => Some((sweep.clone(), mode, lidar_colors(sweep, mode))),
+        };
+    }
+
+    /// The voxels that a click would change, and their colour.
+    fn brush_cells(
+        &self,
+        input: &View3dInput<'_>,
+        state: &UiState,
+        pointer: Option<&Pointer>,
+        hit: Option<&Hit>,
+    ) -> (Vec<[usize; 3]>, [u8; 3]) {
+        let Some(pointer) = pointer else {
+            return (Vec::new(), [0; 3]);
+        };
+        match state.tool {
+            Tool::Voxel => {
+                let color = match state.verb {
+                    VoxelVerb::Remove => [238, 112, 104],
+                    _ if state.voxel_class == Class::Free => [200; 3],
+                    _ => state.voxel_class.color(),
+                };
+                (self.voxel_target(input, state, &pointer.ray), color)
+            }
+            Tool::Brush => {
+                let cells = hit.map_or_else(Vec::new, |hit| {
+                    let at = point_of(hit, &pointer.ray);
+                    super::view3d_tools::tops_in_disc(input.scene.frame(), at.truncate(), state.brush_m / 2.0)
+                });
+                (
+                    cells,
+                    if state.erase {
+                        [238, 112, 104]
+                    } else {
+                        state.layer.color()
+                    },
+                )
+            }
+            _ => (Vec::new(), [0; 3]),
+        }
+    }
+
+    fn ghost(
+        &self,
+        scene: &Scene,
+        state: &UiState,
+        pointer: Option<&Pointer>,
+        hit: Option<&Hit>,
+    ) -> Option<SceneBox> {
+        if state.tool != Tool::AddBox {
+            return None;
+        }
+        let at_m = point_of(hit?, &pointer?.ray).truncate();
+        let frame = scene.frame();
+        let yaw_rad = super::canvas_tools::lane_heading(frame, at_m).unwrap_or(0.0);
+        super::canvas_tools::new_box(frame, state.box_class, at_m, yaw_rad)
+    }
+
+    /// The view as an image, `width` x `height` pixels, RGBA.
+    pub fn screenshot(
+        &mut self,
+        scene: &Scene,
+        state: &UiState,
+        size: Option<[u32; 2]>,
+    ) -> anyhow::Result<([u32; 2], Vec<u8>)> {
+        let size = size.unwrap_or_else(|| self.size_px());
+        let Some(gpu) = &mut self.gpu else {
+            anyhow::bail!("there is no graphics adapter to draw the 3D view with");
+        };
+        let frame = scene.frame();
+        let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
+        let options = ViewOptions {
+            grid_lines: state.show_grid,
+            boxes: state.show_boxes,
+            pixels_per_point: self.pixels_per_point,
+            ..self.options.clone()
+        };
+        let lidar = self
+            .colors
+            .as_ref()
+            .map(|(sweep, _, colors)| LidarView { sweep, colors });
+        let view = ViewScene {
+            grid: &frame.occupancy,
+            bev: frame.layout.cells(),
+            boxes: &boxes,
+            selected: &[],
+            hovered: None,
+            brush: None,
+            lidar,
+            rig: &scene.rig,
+            options: &options,
+        };
+        let wgpu = &gpu.render_state;
+        let supersample = if gpu.software { 2 } else { 4 };
+        let pixels = gpu.viewport.render_to_image(
+            &wgpu.device,
+            &wgpu.queue,
+            &self.camera,
+            &view,
+            size,
+            supersample,
+        )?;
+        Ok((size, pixels))
+    }
+}
+
+/// The picture as a texture of egui; registered again when the viewport made a new one.
+fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
+    let size = gpu.viewport.size();
+    let device = &gpu.render_state.device;
+    let mut renderer = gpu.render_state.renderer.write();
+    let (view, filter) = (gpu.viewport.color_view(), wgpu::FilterMode::Linear);
+    let id = match gpu.texture {
+        Some((id, of, with)) if of == size && with == samples => id,
+        Some((id, ..)) => {
+            renderer.update_egui_texture_from_wgpu_texture(device, view, filter, id);
+            id
+        }
+        None => renderer.register_native_texture(device, view, filter),
+    };
+    gpu.texture = Some((id, size, samples));
+    id
+}
+
+/// The point that was hit, ego frame, m.
+pub(super) fn point_of(hit: &Hit, ray: &Ray) -> DVec3 {
+    match hit {
+        Hit::Box { distance_m, .. } => ray.at(*distance_m),
+        Hit::Voxel(v) => ray.at(v.distance_m),
+        Hit::Ground { point_in_ego } => *point_in_ego,
+    }
+}
+
+fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
+    let p = point_of(hit, ray);
+    let mut parts = vec![format!("{}  z {:.1}", position_text(p.truncate()), p.z + 0.0)];
+    match hit {
+        Hit::Box { id, .. } => {
+            if let Some(b) = scene.frame().boxes.get(id) {
+                parts.push(format!("{} #{}", b.class.label(), id.0));
+            }
+        }
+        Hit::Voxel(v) => {
+            parts.push(Class::from_id(v.label).map_or_else(String::new, Class::label));
+            parts.push(format!("voxel {}, {}, {}", v.cell[0], v.cell[1], v.cell[2]));
+        }
+        Hit::Ground { .. } if GridSpec::voxel_at(p).is_none() => parts.push("outside the grid".into()),
+        Hit::Ground { .. } => {}
+    }
+    parts.join("  ·  ")
+}
+
+fn no_adapter(ui: &Ui, rect: Rect) {
+    let hint_text =
+        "Install a Vulkan driver (a software one such as lavapipe will do); editing works without.";
+    hint(ui, rect, "No GPU adapter", hint_text);
+    ui.interact(rect, ui.scope_id().with("no adapter"), Sense::hover())
+        .widget_info(|| WidgetInfo::labeled(Role::Label, true, "No GPU adapter"));
+}
+
+/// A title and a line in the middle of an empty pane.
+fn hint(ui: &Ui, rect: Rect, title: &str, text: &str) {
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 0.0, theme::WELL);
+    let heading = egui::TextStyle::Heading.resolve(ui.style());
+    let body = egui::TextStyle::Body.resolve(ui.style());
+    painter.text(rect.center(), Align2::CENTER_BOTTOM, title, heading, theme::TEXT);
+    let galley = painter.layout(
+        text.into(),
+        body,
+        theme::TEXT_WEAK,
+        (rect.width() - 40.0).max(60.0),
+    );
+    let at = rect.center() + egui::vec2(-galley.size().x / 2.0, 8.0);
+    painter.galley(at, galley, theme::TEXT_WEAK);
+}
