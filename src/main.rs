@@ -1,2 +1,5 @@
-//! main
-fn main() {}
+//! Parses arguments, runs, reports the error once, exits.
+
+fn main() -> std::process::ExitCode {
+    sceneloom::app::cli::main()
+}

@@ -1,1 +1,5 @@
 //! How a scene travels: one file per exchange format.
+
+pub mod atomic;
+pub mod opendrive;
+pub mod project;

@@ -1,3 +1,18 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
 
+pub mod composite;
+pub mod dataset;
+pub mod inversion;
+pub mod job;
+pub mod metrics;
+pub mod model;
+pub mod pipeline;
+pub mod region;
+pub mod replay;
+pub mod rng;
+pub mod schedule;
 pub mod sensors;
+pub mod solver;
+pub mod weights;
+pub mod worker;
+pub mod world;

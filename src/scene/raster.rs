@@ -42,7 +42,9 @@ pub fn box_cells(b: &SceneBox, margin_m: f64, mut visit: impl FnMut(usize, usize
     let mut own_seen = false;
     for_cells(center - radius, center + radius, |x, y, p| {
         let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z));
-        if local.x.abs() <= reach.x && local.y.abs() <= reach.y {
+        // Half-open, so that an edge on a row of cell centres counts once.
+        let within = |v: f64, r: f64| -r <= v && v < r;
+        if within(local.x, reach.x) && within(local.y, reach.y) {
             own_seen |= own == Some([x, y]);
             visit(x, y);
         }

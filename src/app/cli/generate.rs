@@ -1,0 +1,115 @@
+//! `sceneloom generate`: occupancy from layout and boxes, then the sensors.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::progress::Progress;
+use super::{Common, Gen, Outcome, output};
+use crate::app::open;
+use crate::editor::Document;
+use crate::formats::project;
+use crate::generation::job::{GenParams, GenResult, Job, Pipeline, RegionMode};
+use crate::generation::metrics::agreement::layout_agreement;
+use crate::generation::model::OccModels;
+use crate::generation::pipeline::OccPipeline;
+use crate::generation::sensors::{cloud::GaussianCloud, lidar, splat};
+use crate::scene::Scene;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Generate {
+    /// Scene to read.
+    scene: PathBuf,
+    /// Scene to write.
+    #[arg(short, long, value_name = "S.loom")]
+    output: PathBuf,
+    #[command(flatten)]
+    generation: Gen,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Parameters of a generation from the layout alone.
+pub fn full_params() -> GenParams {
+    GenParams { region: RegionMode::Full, steps: 20, guidance: 1.5, ..GenParams::default() }
+}
+
+/// The networks of `--weights`, or the bundled ones.
+pub fn models(weights: Option<&Path>) -> anyhow::Result<Arc<OccModels>> {
+    Ok(match weights {
+        Some(dir) => OccModels::from_dir(dir)?,
+        None => OccModels::bundled()?,
+    })
+}
+
+/// Runs the pipeline on a document's scene and adopts the result.
+pub fn run_and_adopt(
+    document: &mut Document,
+    pipeline: &mut OccPipeline,
+    params: GenParams,
+    progress: &Progress,
+) -> anyhow::Result<GenResult> {
+    let job = Job { scene: document.scene().clone(), params };
+    let result = progress.with_ctx(|ctx| pipeline.run(&job, ctx))?;
+    document.adopt(result.rev(), result.occupancy.clone())?;
+    Ok(result)
+}
+
+/// Seconds that a LiDAR sweep and six camera maps of the scene take.
+pub fn sense(scene: &Scene) -> (f64, f64) {
+    let frame = scene.frame();
+    let start = Instant::now();
+    if let Some(pattern) = scene.rig.lidars.first() {
+        lidar::sweep(&frame.occupancy, pattern, Some(lidar::EgoBox::of_rig(&scene.rig)));
+    }
+    let lidar_s = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
+    splat::render_rig(&cloud, &scene.rig, 400, 225, &splat::SplatOptions::default());
+    (lidar_s, start.elapsed().as_secs_f64())
+}
+
+impl Generate {
+    pub(super) fn run(self) -> Outcome {
+        let scene = open::scene(&self.scene)?;
+        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let progress = Progress::new(&self.common);
+        let params = self.generation.params(full_params());
+        let mut document = Document::new(scene);
+        let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
+        let scene = document.scene();
+        project::save(&self.output, scene)?;
+        let (lidar_s, cameras_s) = sense(scene);
+        let agreement = layout_agreement(scene.frame());
+        let occupied = scene.frame().occupancy.count_set();
+        let mut wall_s = serde_json::to_value(&result.report.wall_s)?;
+        wall_s["lidar"] = lidar_s.into();
+        wall_s["cameras"] = cameras_s.into();
+        let report = json!({
+            "occupancy": { "occupied_voxels": occupied, "layout_agreement": agreement },
+            "network_calls": result.report.network_calls,
+            "wall_s": wall_s,
+            "peak_rss_mb": output::peak_rss_mb(),
+            "seed": params.seed,
+            "steps": params.steps,
+            "guidance": params.guidance,
+            "model": pipeline.models().card.name,
+            "file": self.output,
+        });
+        output::report(&self.common, &report, || {
+            let percent = |v: Option<f64>| v.map_or("none".into(), |v| format!("{:.0} %", v * 100.0));
+            format!(
+                "{}: {occupied} occupied voxels, layout agreement drivable {} vehicles {}, {} network calls, {:.1} s",
+                self.output.display(),
+                percent(agreement.drivable),
+                percent(agreement.vehicles),
+                result.report.network_calls,
+                result.report.total_s(),
+            )
+        });
+        Ok(())
+    }
+}

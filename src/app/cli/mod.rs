@@ -1,0 +1,176 @@
+//! The command line: one subcommand per file. See README for the rules that all of them follow.
+
+mod dataset;
+mod demo;
+mod doctor;
+mod edit;
+mod eval;
+mod generate;
+mod import;
+mod new;
+mod output;
+mod progress;
+mod render;
+mod shot;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::app::open;
+use crate::generation::job::{GenParams, RegionMode};
+
+/// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
+#[derive(Parser)]
+#[command(name = "sceneloom", version, about, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scene to open in the editor (.loom or .xodr); without one the bundled scene opens.
+    scene: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// The main job without a window: edits of the bundled scene, regenerated, with pictures and a report.
+    Demo(demo::Demo),
+    /// A scene from a procedural world.
+    New(new::New),
+    /// A scene from a road network (OpenDRIVE).
+    Import(import::Import),
+    /// Occupancy from layout and boxes.
+    Generate(generate::Generate),
+    /// Apply edits and regenerate what they touch, by inversion.
+    Edit(edit::EditCommand),
+    /// Pictures of what the sensors see.
+    Render(render::Render),
+    /// The 3D viewport alone, off screen.
+    Shot(shot::Shot),
+    /// Training and evaluation data from procedural worlds.
+    Dataset(dataset::Dataset),
+    /// Held-out quality.
+    Eval(eval::Eval),
+    /// What this machine offers.
+    Doctor(doctor::Doctor),
+}
+
+/// Options that every command has.
+#[derive(Args, Clone, Debug, Default)]
+struct Common {
+    /// Print exactly one JSON object on stdout at the end.
+    #[arg(long)]
+    json: bool,
+    /// Show progress on stderr even when it is not a terminal.
+    #[arg(long)]
+    progress: bool,
+    /// Folder of weights (occ_vae.safetensors, occ_dit.safetensors) instead of the bundled ones.
+    #[arg(long, value_name = "DIR", global = true)]
+    weights: Option<PathBuf>,
+}
+
+/// Knobs of a generation.
+#[derive(Args, Clone, Debug)]
+struct Gen {
+    /// Steps of the sampler.
+    #[arg(long, value_name = "N")]
+    steps: Option<u32>,
+    /// Classifier-free guidance weight; 1 means none.
+    #[arg(long, value_name = "W")]
+    guidance: Option<f64>,
+    /// Fixes every random draw.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What is regenerated: what an edit touches, or everything from fresh noise.
+    #[arg(long, value_parser = ["auto", "full"])]
+    region: Option<String>,
+    /// Number of fixed-point updates per inversion step.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    inversion_iterations: u32,
+    /// How far an edited region's noise leaves the inverted one, 0 to 1.
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    strength: f64,
+}
+
+impl Gen {
+    fn params(&self, default: GenParams) -> GenParams {
+        GenParams {
+            steps: self.steps.unwrap_or(default.steps),
+            guidance: self.guidance.unwrap_or(default.guidance),
+            seed: self.seed,
+            region: match self.region.as_deref() {
+                Some("full") => RegionMode::Full,
+                Some(_) => RegionMode::Auto,
+                None => default.region,
+            },
+            inversion_iterations: self.inversion_iterations,
+            strength: self.strength,
+            ..default
+        }
+    }
+}
+
+/// Why a command ends other than well.
+enum Stop {
+    /// It ran, and what was checked fell short: exit 1.
+    Short(String),
+    /// Bad input or arguments: one line, exit 2.
+    Bad(anyhow::Error),
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Stop {
+    fn from(error: E) -> Self {
+        Stop::Bad(error.into())
+    }
+}
+
+type Outcome = Result<(), Stop>;
+
+/// Parses the arguments, runs the command or the editor, prints an error once; the exit code of the process.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // --help and --version come this way too, with exit 0; bad arguments with 2.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let outcome = match cli.command {
+        Some(Command::Demo(c)) => c.run(),
+        Some(Command::New(c)) => c.run(),
+        Some(Command::Import(c)) => c.run(),
+        Some(Command::Generate(c)) => c.run(),
+        Some(Command::Edit(c)) => c.run(),
+        Some(Command::Render(c)) => c.run(),
+        Some(Command::Shot(c)) => c.run(),
+        Some(Command::Dataset(c)) => c.run(),
+        Some(Command::Eval(c)) => c.run(),
+        Some(Command::Doctor(c)) => c.run(),
+        None => editor(cli.scene),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Stop::Short(what)) => {
+            eprintln!("sceneloom: {what}");
+            ExitCode::from(1)
+        }
+        Err(Stop::Bad(error)) => {
+            eprintln!("sceneloom: {}", output::one_line(&error));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn editor(path: Option<PathBuf>) -> Outcome {
+    let scene = match &path {
+        Some(path) => open::scene(path)?,
+        None => open::bundled()?,
+    };
+    if !doctor::has_display() {
+        eprintln!("no display: running the demo without a window");
+        return demo::Demo::default().run();
+    }
+    crate::app::run_window(scene, path)?;
+    Ok(())
+}

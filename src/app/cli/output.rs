@@ -1,0 +1,64 @@
+//! What commands print and write: one JSON object, atomic files, one-line errors, PNG pictures.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::Context;
+use serde_json::Value;
+
+use super::Common;
+
+/// Prints the report: as JSON if asked, else the given text.
+pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
+    if common.json {
+        println!("{json}");
+    } else {
+        println!("{}", text());
+    }
+}
+
+/// An error with its causes on one line.
+pub fn one_line(error: &anyhow::Error) -> String {
+    let text = format!("{error:#}");
+    text.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// Writes a file beside its final name and renames it: an interrupted command leaves the old file whole.
+pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || -> std::io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(dir)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().with_context(|| format!("write {}", path.display()))
+}
+
+/// Writes an RGBA8 picture as PNG.
+pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    image::ImageEncoder::write_image(encoder, rgba, width as u32, height as u32, image::ExtendedColorType::Rgba8)
+        .with_context(|| format!("encode {}", path.display()))?;
+    write_file(path, &bytes)
+}
+
+/// Writes 16-bit grey values as PNG.
+pub fn write_png16(path: &Path, width: usize, height: usize, values: &[u16]) -> anyhow::Result<()> {
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    let raw: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    image::ImageEncoder::write_image(encoder, &raw, width as u32, height as u32, image::ExtendedColorType::L16)
+        .with_context(|| format!("encode {}", path.display()))?;
+    write_file(path, &bytes)
+}
+
+/// Largest memory this process has held, MB; `None` where the system does not tell.
+pub fn peak_rss_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some((kb / 102.4).round() / 10.0)
+}

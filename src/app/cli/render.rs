@@ -1,0 +1,168 @@
+//! `sceneloom render`: pictures of what the sensors see.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, bail};
+use serde_json::json;
+
+use super::{Common, Outcome, output};
+use crate::app::{open, picture};
+use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, splat};
+use crate::scene::{CameraMaps, LidarSweep, Scene, SensorRig};
+
+/// What can be rendered.
+const KINDS: [&str; 5] = ["semantic", "depth", "lidar", "bev", "view"];
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Render {
+    /// Scene to read.
+    scene: PathBuf,
+    /// Comma-separated: semantic, depth, lidar, bev, view.
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    what: Vec<String>,
+    /// JSON file with another sensor rig (as in assets/rigs).
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    /// Size of camera pictures in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
+    size: [u32; 2],
+    /// Folder to write into.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// `WxH`, each 1 to 8192.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides: Vec<u32> = text.split('x').filter_map(|v| v.parse().ok()).collect();
+    match sides[..] {
+        [w, h] if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok([w, h]),
+        _ => Err("expected WxH, each 1 to 8192 pixels".into()),
+    }
+}
+
+/// A sensor rig from a JSON file.
+pub fn read_rig(path: &Path) -> anyhow::Result<SensorRig> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
+    let rig: SensorRig = serde_json::from_str(&text).with_context(|| name.to_string())?;
+    match rig.problem() {
+        Some(problem) => bail!("{name}: {problem}"),
+        None => Ok(rig),
+    }
+}
+
+/// The six cameras' maps and the LiDAR sweep of a scene.
+pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
+    let frame = scene.frame();
+    let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
+    let maps = splat::render_rig(&cloud, &scene.rig, width, height, &splat::SplatOptions::default());
+    let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
+    let sweep = scene.rig.lidars.first().map(|p| lidar::sweep(&frame.occupancy, p, ego)).unwrap_or_default();
+    (maps, sweep)
+}
+
+/// Points as a binary little-endian PLY: x, y, z in the ego frame, range, ring, class.
+fn ply(sweep: &LidarSweep) -> Vec<u8> {
+    let mut out = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         property float range_m\nproperty ushort ring\nproperty uchar class\nend_header\n",
+        sweep.points.len()
+    )
+    .into_bytes();
+    for p in &sweep.points {
+        for v in p.position_in_ego.iter().chain([&p.range_m]) {
+            out.extend(v.to_le_bytes());
+        }
+        out.extend(p.ring.to_le_bytes());
+        out.push(p.class.id());
+    }
+    out
+}
+
+impl Render {
+    pub(super) fn run(self) -> Outcome {
+        if self.what.is_empty() {
+            return Err(anyhow::anyhow!("--what is empty, expected some of {}", KINDS.join(", ")).into());
+        }
+        if let Some(unknown) = self.what.iter().find(|w| !KINDS.contains(&w.as_str())) {
+            return Err(anyhow::anyhow!("--what holds {unknown:?}, expected {}", KINDS.join(", ")).into());
+        }
+        let mut scene = open::scene(&self.scene)?;
+        if let Some(path) = &self.rig {
+            scene.rig = read_rig(path)?.into();
+        }
+        let dir = &self.output;
+        std::fs::create_dir_all(dir).with_context(|| format!("create {}", dir.display()))?;
+        let frame = scene.frame().clone();
+        let wants = |kind: &str| self.what.iter().any(|w| w == kind);
+        let mut files = Vec::new();
+        let mut wall_s = BTreeMap::new();
+        let mut lidar_report = serde_json::Value::Null;
+        if wants("semantic") || wants("depth") {
+            let start = Instant::now();
+            let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
+            let [width, height] = self.size;
+            let maps = splat::render_rig(&cloud, &scene.rig, width, height, &splat::SplatOptions::default());
+            wall_s.insert("cameras", start.elapsed().as_secs_f64());
+            for m in &maps {
+                if wants("semantic") {
+                    let path = dir.join(format!("{}_semantic.png", m.camera));
+                    output::write_png(&path, m.width, m.height, &color::semantic_rgba(m, true))?;
+                    files.push(path);
+                }
+                if wants("depth") {
+                    let path = dir.join(format!("{}_depth.png", m.camera));
+                    output::write_png(&path, m.width, m.height, &color::depth_rgba(&m.depth_m, 1.0, 60.0))?;
+                    files.push(path);
+                    let path = dir.join(format!("{}_depth_mm.png", m.camera));
+                    output::write_png16(&path, m.width, m.height, &color::depth_mm(&m.depth_m))?;
+                    files.push(path);
+                }
+            }
+        }
+        if wants("lidar") {
+            let Some(pattern) = scene.rig.lidars.first() else {
+                return Err(anyhow::anyhow!("the rig {:?} has no lidar", scene.rig.name).into());
+            };
+            let start = Instant::now();
+            let sweep = lidar::sweep(&frame.occupancy, pattern, Some(lidar::EgoBox::of_rig(&scene.rig)));
+            wall_s.insert("lidar", start.elapsed().as_secs_f64());
+            let returns = sweep.points.len();
+            lidar_report = json!({ "rays": sweep.rays, "returns": returns, "dropped": sweep.rays - returns });
+            let path = dir.join("lidar.ply");
+            output::write_file(&path, &ply(&sweep))?;
+            files.push(path);
+            let path = dir.join("lidar.png");
+            let top = picture::lidar_top(&sweep, 4);
+            output::write_png(&path, top.width, top.height, &top.rgba)?;
+            files.push(path);
+        }
+        if wants("bev") {
+            let start = Instant::now();
+            for (name, shot) in [("bev.png", picture::layout_top(&frame, 4)), ("occupancy_top.png", picture::occupancy_top(&frame.occupancy, 4))] {
+                let path = dir.join(name);
+                output::write_png(&path, shot.width, shot.height, &shot.rgba)?;
+                files.push(path);
+            }
+            wall_s.insert("bev", start.elapsed().as_secs_f64());
+        }
+        if wants("view") {
+            let start = Instant::now();
+            let path = dir.join("view.png");
+            let shot = picture::View3d::new()?.shot(&scene, &Default::default())?;
+            output::write_png(&path, shot.width, shot.height, &shot.rgba)?;
+            files.push(path);
+            wall_s.insert("view", start.elapsed().as_secs_f64());
+        }
+        let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report });
+        output::report(&self.common, &report, || {
+            files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>().join("\n")
+        });
+        Ok(())
+    }
+}

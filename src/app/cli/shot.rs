@@ -1,0 +1,68 @@
+//! `sceneloom shot`: the 3D viewport alone, off screen.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::anyhow;
+use serde_json::json;
+
+use super::render::size;
+use super::{Common, Outcome, output};
+use crate::app::{open, picture};
+use crate::viewport::{ViewCamera, ViewPreset};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Shot {
+    /// Scene to read.
+    scene: PathBuf,
+    /// Viewpoint: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
+    #[arg(long, value_name = "NAME", default_value = "perspective")]
+    view: String,
+    /// Size in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x720")]
+    size: [u32; 2],
+    /// Supersampling per axis, 1 to 8.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    scale: u32,
+    /// Without background.
+    #[arg(long)]
+    transparent: bool,
+    /// With LiDAR returns.
+    #[arg(long)]
+    lidar: bool,
+    /// Picture to write.
+    #[arg(short, long, value_name = "F.png")]
+    output: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Shot {
+    pub(super) fn run(self) -> Outcome {
+        let scene = open::scene(&self.scene)?;
+        let of_rig = scene.rig.cameras.iter().find(|c| c.name == self.view).map(ViewCamera::through);
+        let camera = ViewPreset::from_name(&self.view).map(ViewCamera::preset).or(of_rig).ok_or_else(|| {
+            let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+            anyhow!("--view is {:?}, expected perspective, top, front, side, ego or one of {}", self.view, cameras.join(", "))
+        })?;
+        let options = picture::ShotOptions {
+            camera,
+            size: self.size,
+            supersample: self.scale,
+            transparent: self.transparent,
+            lidar: self.lidar,
+            boxes: true,
+        };
+        let start = Instant::now();
+        let mut view = picture::View3d::new()?;
+        let shot = view.shot(&scene, &options)?;
+        output::write_png(&self.output, shot.width, shot.height, &shot.rgba)?;
+        let wall_s = start.elapsed().as_secs_f64();
+        let report = json!({ "adapter": view.adapter, "wall_s": wall_s, "file": self.output });
+        output::report(&self.common, &report, || {
+            format!("{}: {} in {wall_s:.2} s on {}", self.output.display(), self.view, view.adapter)
+        });
+        Ok(())
+    }
+}

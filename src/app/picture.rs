@@ -1,0 +1,213 @@
+//! Pictures made without a window: top views, the 3D view off screen, sheets of several pictures.
+
+use anyhow::bail;
+
+use crate::generation::sensors::{color, lidar};
+use crate::scene::raster::box_cells;
+use crate::scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, VoxelGrid};
+use crate::viewport::{
+    Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, headless_device,
+    lidar_colors,
+};
+
+/// RGBA8, row-major, top row first.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Four bytes per pixel.
+    pub rgba: Vec<u8>,
+}
+
+impl Picture {
+    /// One colour.
+    pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Self {
+        let pixel = [color[0], color[1], color[2], 255];
+        Self { width, height, rgba: pixel.repeat(width * height) }
+    }
+
+    fn set(&mut self, x: usize, y: usize, color: [u8; 3]) {
+        if x < self.width && y < self.height {
+            let at = (y * self.width + x) * 4;
+            self.rgba[at..at + 3].copy_from_slice(&color);
+        }
+    }
+
+    /// Copies another picture in at (x, y); what does not fit is cut.
+    pub fn put(&mut self, other: &Picture, x: usize, y: usize) {
+        for row in 0..other.height.min(self.height.saturating_sub(y)) {
+            let n = other.width.min(self.width.saturating_sub(x)) * 4;
+            let from = row * other.width * 4;
+            let to = ((y + row) * self.width + x) * 4;
+            self.rgba[to..to + n].copy_from_slice(&other.rgba[from..from + n]);
+        }
+    }
+
+    /// Pictures side by side in rows, with a margin around each.
+    pub fn sheet(rows: &[Vec<Picture>], margin: usize) -> Self {
+        let width = |row: &Vec<Picture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
+        let height = |row: &Vec<Picture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
+        let w = rows.iter().map(width).max().unwrap_or(margin);
+        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, [24, 26, 31]);
+        let mut y = margin;
+        for row in rows {
+            let mut x = margin;
+            for p in row {
+                out.put(p, x, y);
+                x += p.width + margin;
+            }
+            y += height(row);
+        }
+        out
+    }
+}
+
+/// Fills grid cells seen from above: ego x is up, ego y is left.
+fn top_view(scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
+    let mut out = Picture::filled(GridSpec::NY * scale, GridSpec::NX * scale, [0; 3]);
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            let color = cell(x, y);
+            let (left, top) = ((GridSpec::NY - 1 - y) * scale, (GridSpec::NX - 1 - x) * scale);
+            for i in 0..scale * scale {
+                out.set(left + i % scale, top + i / scale, color);
+            }
+        }
+    }
+    out
+}
+
+fn scaled(color: [u8; 3], by: f32) -> [u8; 3] {
+    color.map(|c| (f32::from(c) * by).clamp(0.0, 255.0) as u8)
+}
+
+/// The layout from above, `scale` pixels per cell, boxes in their colours.
+pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
+    use BevLayer::{CarparkArea, DrivableArea, LaneDivider, PedCrossing, RoadBlock, RoadDivider, StopLine, Walkway};
+    let order = [DrivableArea, RoadBlock, Walkway, StopLine, CarparkArea, PedCrossing, RoadDivider, LaneDivider];
+    let mut boxes: Vec<Option<&SceneBox>> = vec![None; GridSpec::COLUMNS];
+    for b in frame.boxes.values() {
+        box_cells(b, 0.0, |x, y| boxes[x * GridSpec::NY + y] = Some(b));
+    }
+    top_view(scale, |x, y| {
+        if let Some(b) = boxes[x * GridSpec::NY + y] {
+            return b.class.color();
+        }
+        let top = order.into_iter().rev().find(|l| frame.layout.has(*l, x, y));
+        top.map_or([38, 41, 48], BevLayer::color)
+    })
+}
+
+/// Occupancy from above: the class of the highest voxel, brighter with height.
+pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
+    top_view(scale, |x, y| {
+        let column = grid.column(x, y);
+        let top = (0..GridSpec::NZ).rev().find(|z| column[*z] != Class::FREE);
+        top.and_then(|z| Some((z, Class::from_id(column[z])?))).map_or([20, 22, 27], |(z, class)| {
+            scaled(class.color(), 0.62 + 0.38 * z as f32 / 15.0)
+        })
+    })
+}
+
+/// LiDAR returns from above, coloured by range.
+pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
+    let mut out = Picture::filled(GridSpec::NY * scale, GridSpec::NX * scale, [16, 18, 22]);
+    for p in &sweep.points {
+        let [x, y, _] = p.position_in_ego.map(f64::from);
+        let u = GridSpec::to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
+        let (px, py) = (out.width as f64 - u.y, out.height as f64 - u.x);
+        if px >= 0.0 && py >= 0.0 {
+            out.set(px as usize, py as usize, color::ramp(1.0 - (p.range_m / 50.0).min(1.0)));
+        }
+    }
+    out
+}
+
+/// How a 3D picture is taken.
+#[derive(Clone, Debug)]
+pub struct ShotOptions {
+    /// Where from.
+    pub camera: ViewCamera,
+    /// Size in pixels.
+    pub size: [u32; 2],
+    /// Supersampling per axis.
+    pub supersample: u32,
+    /// No background.
+    pub transparent: bool,
+    /// With LiDAR returns.
+    pub lidar: bool,
+    /// With boxes.
+    pub boxes: bool,
+}
+
+impl Default for ShotOptions {
+    fn default() -> Self {
+        Self {
+            camera: ViewCamera::preset(ViewPreset::Perspective),
+            size: [1280, 720],
+            supersample: 2,
+            transparent: false,
+            lidar: false,
+            boxes: true,
+        }
+    }
+}
+
+/// The 3D viewport on a device of its own.
+pub struct View3d {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    viewport: Viewport,
+    /// Name of the adapter in use.
+    pub adapter: String,
+}
+
+impl View3d {
+    /// On any adapter, a software one included; one line if there is none.
+    pub fn new() -> anyhow::Result<Self> {
+        let (info, device, queue) = headless_device()?;
+        let viewport = Viewport::new(&device, &queue);
+        Ok(Self { device, queue, viewport, adapter: info.name })
+    }
+
+    /// A picture of the scene.
+    pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
+        let frame = scene.frame();
+        let pattern = scene.rig.lidars.first().filter(|_| options.lidar);
+        let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
+        let sweep = pattern.map(|p| lidar::sweep(&frame.occupancy, p, ego)).unwrap_or_default();
+        let colors = lidar_colors(&sweep, LidarColorMode::Range);
+        let mut view = ViewOptions { boxes: options.boxes, lidar: options.lidar, ..ViewOptions::default() };
+        if options.transparent {
+            view.background = Background::Transparent;
+        }
+        let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
+        let bev = frame.bev_channels();
+        let view_scene = ViewScene {
+            grid: &frame.occupancy,
+            bev: &bev,
+            boxes: &boxes,
+            selected: &[],
+            hovered: None,
+            brush: None,
+            lidar: options.lidar.then_some(LidarView { sweep: &sweep, colors: &colors }),
+            rig: &scene.rig,
+            options: &view,
+        };
+        let [width, height] = options.size;
+        let rgba = self.viewport.render_to_image(
+            &self.device,
+            &self.queue,
+            &options.camera,
+            &view_scene,
+            options.size,
+            options.supersample,
+        )?;
+        if !options.transparent && rgba.chunks_exact(4).all(|p| p == &rgba[..4]) {
+            bail!("the 3D view came out in one colour");
+        }
+        Ok(Picture { width: width as usize, height: height as usize, rgba })
+    }
+}

@@ -1,0 +1,230 @@
+//! The only place a scene changes: edits as undo steps, drags as one step, results taken in place.
+
+use std::sync::Arc;
+
+use crate::scene::{Scene, SceneRev, VoxelGrid};
+
+use super::edit::{self, Edit, EditError};
+
+/// A scene with its history. A step is a snapshot: copy-on-write makes it a few kilobytes.
+/// Deliberately absent: a way to get at the scene mutably.
+#[derive(Debug)]
+pub struct Document {
+    steps: Vec<Step>, // never empty; the first is the state that was opened
+    at: usize,        // step being shown
+    drag: Option<Arc<Scene>>,
+    saved: SceneRev,
+}
+
+#[derive(Debug)]
+struct Step {
+    label: &'static str, // of the edit that led here
+    scene: Arc<Scene>,
+}
+
+/// A result came too late: the document shows another state by now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the result belongs to an earlier state of the scene")]
+pub struct Stale;
+
+impl Document {
+    /// States kept, the current one included; older ones can no longer be undone to.
+    pub const MAX_STEPS: usize = 256;
+
+    /// A document that was just opened or made: nothing to undo, nothing unsaved.
+    pub fn new(scene: Scene) -> Self {
+        let saved = scene.rev;
+        let first = Step {
+            label: "Open",
+            scene: Arc::new(scene),
+        };
+        Self {
+            steps: vec![first],
+            at: 0,
+            drag: None,
+            saved,
+        }
+    }
+
+    /// What to draw and to generate from: the state shown, a drag in progress included.
+    pub fn scene(&self) -> &Arc<Scene> {
+        self.drag.as_ref().unwrap_or(&self.steps[self.at].scene)
+    }
+
+    /// The state without the drag in progress.
+    pub fn settled_scene(&self) -> &Arc<Scene> {
+        &self.steps[self.at].scene
+    }
+
+    /// Applies one edit as one undo step. A drag in progress is cancelled first. An edit that
+    /// changes nothing makes no step. On error nothing has changed.
+    pub fn apply(&mut self, label: &'static str, edit: &Edit) -> Result<(), EditError> {
+        self.apply_all(label, std::slice::from_ref(edit))
+    }
+
+    /// Applies several edits as one undo step: all of them, or on error none.
+    pub fn apply_all(&mut self, label: &'static str, edits: &[Edit]) -> Result<(), EditError> {
+        let next = self.edited(edits)?;
+        self.drag = None;
+        self.push(label, next);
+        Ok(())
+    }
+
+    /// Shows the edit on top of the state in which the drag began; call it again with the whole
+    /// change so far whenever the pointer moves. The first call begins the drag. On error the
+    /// previous preview stays.
+    pub fn preview(&mut self, edit: &Edit) -> Result<(), EditError> {
+        self.preview_all(std::slice::from_ref(edit))
+    }
+
+    /// The same with several edits.
+    pub fn preview_all(&mut self, edits: &[Edit]) -> Result<(), EditError> {
+        self.drag = Some(Arc::new(self.edited(edits)?));
+        Ok(())
+    }
+
+    /// True between the first preview and its commit or cancel.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some()
+    }
+
+    /// Makes the last preview one undo step. Without a drag, or without a change, nothing happens.
+    pub fn commit_drag(&mut self, label: &'static str) {
+        if let Some(dragged) = self.drag.take() {
+            self.push(label, Arc::unwrap_or_clone(dragged));
+        }
+    }
+
+    /// Back to the state in which the drag began.
+    pub fn cancel_drag(&mut self) {
+        self.drag = None;
+    }
+
+    /// One step back; the label of what was undone. During a drag only the drag is cancelled (`None`).
+    pub fn undo(&mut self) -> Option<&'static str> {
+        if self.drag.take().is_some() || self.at == 0 {
+            return None;
+        }
+        self.at -= 1;
+        Some(self.steps[self.at + 1].label)
+    }
+
+    /// One step forward again; the label of what was redone. During a drag only the drag is
+    /// cancelled (`None`).
+    pub fn redo(&mut self) -> Option<&'static str> {
+        if self.drag.take().is_some() || self.at + 1 == self.steps.len() {
+            return None;
+        }
+        self.at += 1;
+        Some(self.steps[self.at].label)
+    }
+
+    /// True if [`Self::undo`] has a step to go back.
+    pub fn can_undo(&self) -> bool {
+        self.at > 0
+    }
+
+    /// True if [`Self::redo`] has a step to go forward.
+    pub fn can_redo(&self) -> bool {
+        self.at + 1 < self.steps.len()
+    }
+
+    /// Label of the step that [`Self::undo`] would take back.
+    pub fn undo_label(&self) -> Option<&'static str> {
+        self.can_undo().then(|| self.steps[self.at].label)
+    }
+
+    /// Label of the step that [`Self::redo`] would bring back.
+    pub fn redo_label(&self) -> Option<&'static str> {
+        self.can_redo().then(|| self.steps[self.at + 1].label)
+    }
+
+    /// Labels of all states kept, oldest first; the first is the oldest state itself.
+    pub fn history(&self) -> impl ExactSizeIterator<Item = &'static str> + '_ {
+        self.steps.iter().map(|s| s.label)
+    }
+
+    /// Index into [`Self::history`] of the state shown.
+    pub fn position(&self) -> usize {
+        self.at
+    }
+
+    /// Shows the state at that index of [`Self::history`]; false if there is none. Cancels a drag.
+    pub fn jump_to(&mut self, index: usize) -> bool {
+        if index >= self.steps.len() {
+            return false;
+        }
+        self.drag = None;
+        self.at = index;
+        true
+    }
+
+    /// True if the settled state is not the one last opened or saved.
+    pub fn is_dirty(&self) -> bool {
+        self.settled_scene().rev != self.saved
+    }
+
+    /// Notes that the settled state has been written to a file.
+    pub fn mark_saved(&mut self) {
+        self.saved = self.settled_scene().rev;
+    }
+
+    /// Takes a generated occupancy of the state `rev` into that state, if it is the one shown: no new
+    /// undo step, the occupancy becomes the source of what comes, painted voxels keep what was
+    /// painted. Returns the state's new revision; later undo and redo visit the settled state.
+    pub fn adopt(&mut self, rev: SceneRev, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
+        let step = &mut self.steps[self.at];
+        if self.drag.is_some() || step.scene.rev != rev {
+            return Err(Stale);
+        }
+        let scene = Arc::make_mut(&mut step.scene);
+        edit::adopt(scene.frame_mut(), occupancy);
+        Ok(scene.rev)
+    }
+
+    /// Shows another frame of the clip; not an undo step. False if there is none. Cancels a drag.
+    pub fn select_frame(&mut self, index: usize) -> bool {
+        let step = &mut self.steps[self.at];
+        if index >= step.scene.frames.len() {
+            return false;
+        }
+        self.drag = None;
+        if step.scene.current != index {
+            let was_saved = self.saved == step.scene.rev;
+            let scene = Arc::make_mut(&mut step.scene);
+            scene.current = index;
+            scene.rev = SceneRev::fresh();
+            if was_saved {
+                self.saved = scene.rev; // looking is no change worth saving
+            }
+        }
+        true
+    }
+
+    fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
+        let mut scene = Scene::clone(self.settled_scene());
+        for edit in edits {
+            edit.apply(&mut scene)?;
+        }
+        Ok(scene)
+    }
+
+    fn push(&mut self, label: &'static str, scene: Scene) {
+        if scene.rev == self.settled_scene().rev {
+            return;
+        }
+        self.steps.truncate(self.at + 1);
+        self.steps.push(Step {
+            label,
+            scene: Arc::new(scene),
+        });
+        if self.steps.len() > Self::MAX_STEPS {
+            self.steps.remove(0);
+        }
+        self.at = self.steps.len() - 1;
+    }
+}
+
+#[cfg(test)]
+#[path = "document_tests.rs"]
+mod tests;

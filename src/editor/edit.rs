@@ -1,0 +1,330 @@
+//! Every change a user can make to a scene, as a value: what the window, the command line and tests apply.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::scene::grid::NOT_PAINTED;
+use crate::scene::{
+    BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SourceFrame, VoxelGrid, VoxelPaint,
+};
+
+use super::Shape;
+use super::immediate;
+use super::shape::at_least;
+
+/// One change of the current frame (or, for the prompt, of the scene). As JSON:
+/// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Edit {
+    /// Takes a box out, and its voxels.
+    RemoveBox {
+        /// The box.
+        id: BoxId,
+    },
+    /// Puts a box in, and voxels of its class.
+    AddBox {
+        /// One of the ten object classes.
+        class: Class,
+        /// Centre in the ego frame, m.
+        center_m: DVec3,
+        /// Length, width, height, m.
+        size_m: DVec3,
+        /// Heading, degrees counter-clockwise from ego x.
+        yaw_deg: f64,
+        /// Velocity over ground in the ego frame's axes, m/s; none means standing.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        velocity_mps: Option<DVec2>,
+        /// Its name; none means the next one free.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        id: Option<BoxId>,
+    },
+    /// Moves, turns or resizes a box; what is left out stays.
+    MoveBox {
+        /// The box.
+        id: BoxId,
+        /// New centre in the ego frame, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        center_m: Option<DVec3>,
+        /// New heading, degrees counter-clockwise from ego x.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        yaw_deg: Option<f64>,
+        /// New length, width, height, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        size_m: Option<DVec3>,
+    },
+    /// Turns a box into another class; its size stays.
+    SetBoxClass {
+        /// The box.
+        id: BoxId,
+        /// One of the ten object classes.
+        class: Class,
+    },
+    /// Sets or clears a map layer.
+    PaintBev {
+        /// One of the eight map layers.
+        layer: BevLayer,
+        /// Where.
+        shape: Shape,
+        /// True sets, false clears.
+        value: bool,
+    },
+    /// Sets voxels to a class (`free` removes them) and locks them.
+    PaintVoxels {
+        /// Indices `[x, y, z]`.
+        cells: Vec<[usize; 3]>,
+        /// Any class.
+        class: Class,
+    },
+    /// Gives painted voxels back to generation; what they show stays for now.
+    UnlockVoxels {
+        /// Indices `[x, y, z]`.
+        cells: Vec<[usize; 3]>,
+    },
+    /// Gives every painted voxel of the frame back to generation.
+    ClearPaint {},
+    /// Replaces the text that describes the style.
+    SetPrompt {
+        /// The text; empty means none.
+        prompt: String,
+    },
+    /// Takes a generated occupancy as the frame's own and as the source of what comes. Not in JSON.
+    #[serde(skip)]
+    AdoptResult {
+        /// What was generated for the current state.
+        occupancy: VoxelGrid,
+    },
+}
+
+/// Why an edit was refused; the scene is then as before. One line each.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    /// No box of that id.
+    #[error("box {} does not exist in this frame", .id.0)]
+    UnknownBox {
+        /// The id asked for.
+        id: BoxId,
+    },
+    /// A box of that id is there already.
+    #[error("box {} exists already in this frame", .id.0)]
+    DuplicateBox {
+        /// The id asked for.
+        id: BoxId,
+    },
+    /// No id is left for a new box.
+    #[error("no box id is left above {}", u32::MAX)]
+    NoIdLeft,
+    /// The box that would result is not sound; see [`SceneBox::problem`].
+    #[error("{0}")]
+    BadBox(String),
+    /// Layers of objects come from boxes.
+    #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
+    ObjectLayer(BevLayer),
+    /// A number that cannot be used.
+    #[error("{field} is {found}, expected {expected}")]
+    Number {
+        /// Key of the edit.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// A list that is too short.
+    #[error("{field} holds {found} entries, expected at least {expected}")]
+    TooFew {
+        /// Key of the edit.
+        field: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        expected: usize,
+    },
+    /// An index beyond the grid.
+    #[error(
+        "cell {cell:?} is outside the grid of {} x {} x {}",
+        GridSpec::NX,
+        GridSpec::NY,
+        GridSpec::NZ
+    )]
+    CellOutside {
+        /// The index: x, y and perhaps z.
+        cell: Vec<usize>,
+    },
+    /// A shape that misses the grid or every cell centre.
+    #[error("the shape covers no cell of the grid")]
+    NoCell,
+    /// A move that names no change.
+    #[error("move_box needs at least one of center_m, yaw_deg and size_m")]
+    NothingToMove,
+}
+
+impl Edit {
+    /// Applies the change to the scene's current frame: the authored data and, at once, a rough
+    /// version in the voxels. All or nothing: on error the scene is as before. A change that
+    /// changes nothing leaves the revision as it is. The frame's `source` is touched by
+    /// [`Edit::AdoptResult`] only.
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), EditError> {
+        match self {
+            Self::SetPrompt { prompt } => {
+                if scene.prompt.as_ref() != prompt {
+                    scene.rev = crate::scene::SceneRev::fresh();
+                    scene.prompt = prompt.as_str().into();
+                }
+            }
+            edit => {
+                // A frame is a few hundred pointers; working on a copy makes "all or nothing" certain.
+                let mut frame = Frame::clone(scene.frame());
+                edit.apply_to(&mut frame)?;
+                if frame != **scene.frame() {
+                    *scene.frame_mut() = frame;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn apply_to(&self, frame: &mut Frame) -> Result<(), EditError> {
+        match self {
+            Self::RemoveBox { id } => {
+                let old = take_box(frame, *id)?;
+                immediate::clear_box(frame, &old);
+            }
+            Self::AddBox {
+                class,
+                center_m,
+                size_m,
+                yaw_deg,
+                velocity_mps,
+                id,
+            } => {
+                let id = match *id {
+                    Some(id) => id,
+                    None => next_id(frame)?,
+                };
+                if frame.boxes.contains_key(&id) {
+                    return Err(EditError::DuplicateBox { id });
+                }
+                let new = SceneBox {
+                    id,
+                    class: *class,
+                    center_m: *center_m,
+                    size_m: *size_m,
+                    yaw_rad: yaw_deg.to_radians(),
+                    velocity_mps: velocity_mps.unwrap_or_default(),
+                };
+                put_box(frame, new)?;
+            }
+            Self::MoveBox {
+                id,
+                center_m,
+                yaw_deg,
+                size_m,
+            } => {
+                if center_m.is_none() && yaw_deg.is_none() && size_m.is_none() {
+                    return Err(EditError::NothingToMove);
+                }
+                change_box(frame, *id, |b| {
+                    b.center_m = center_m.unwrap_or(b.center_m);
+                    b.size_m = size_m.unwrap_or(b.size_m);
+                    b.yaw_rad = yaw_deg.map_or(b.yaw_rad, f64::to_radians);
+                })?;
+            }
+            Self::SetBoxClass { id, class } => change_box(frame, *id, |b| b.class = *class)?,
+            Self::PaintBev { layer, shape, value } => {
+                if layer.is_object() {
+                    return Err(EditError::ObjectLayer(*layer));
+                }
+                let mut cells = shape.cells()?;
+                cells.retain(|&[x, y]| frame.layout.has(*layer, x, y) != *value);
+                for &[x, y] in &cells {
+                    frame.layout.set(*layer, x, y, *value);
+                }
+                if immediate::shapes_ground(*layer) {
+                    immediate::lay_ground(frame, &cells);
+                }
+            }
+            Self::PaintVoxels { cells, class } => {
+                check_voxels(cells)?;
+                for &[x, y, z] in cells {
+                    frame.painted.set(x, y, z, class.id());
+                    frame.occupancy.set(x, y, z, class.id());
+                }
+            }
+            Self::UnlockVoxels { cells } => {
+                check_voxels(cells)?;
+                for &[x, y, z] in cells {
+                    frame.painted.set(x, y, z, NOT_PAINTED);
+                }
+            }
+            Self::ClearPaint {} => frame.painted = VoxelPaint::new(),
+            Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
+            Self::SetPrompt { .. } => {} // concerns the scene, see `apply`
+        }
+        Ok(())
+    }
+}
+
+/// Makes a generated occupancy the frame's own and its source. Painted voxels keep what was painted.
+pub(super) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) {
+    for (x, y, z, class) in frame.painted.iter_set() {
+        occupancy.set(x, y, z, class);
+    }
+    frame.occupancy = occupancy;
+    frame.source = Arc::new(SourceFrame {
+        layout: frame.layout.clone(),
+        boxes: frame.boxes.clone(),
+        occupancy: frame.occupancy.clone(),
+    });
+}
+
+fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
+    let taken: &BTreeMap<_, _> = &frame.boxes;
+    if taken.contains_key(&BoxId(u32::MAX)) {
+        // `next_box_id` counts up from the highest; look for a gap instead.
+        let free = (1..u32::MAX).find(|id| !taken.contains_key(&BoxId(*id)));
+        return free.map(BoxId).ok_or(EditError::NoIdLeft);
+    }
+    Ok(frame.next_box_id())
+}
+
+fn take_box(frame: &mut Frame, id: BoxId) -> Result<SceneBox, EditError> {
+    frame.boxes.remove(&id).ok_or(EditError::UnknownBox { id })
+}
+
+fn put_box(frame: &mut Frame, new: SceneBox) -> Result<(), EditError> {
+    if let Some(problem) = new.problem() {
+        return Err(EditError::BadBox(problem));
+    }
+    frame.boxes.insert(new.id, new);
+    immediate::stamp_box(frame, &new);
+    Ok(())
+}
+
+fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) -> Result<(), EditError> {
+    let old = *frame.boxes.get(&id).ok_or(EditError::UnknownBox { id })?;
+    let mut new = old;
+    change(&mut new);
+    if new == old {
+        return Ok(());
+    }
+    frame.boxes.remove(&id);
+    immediate::clear_box(frame, &old);
+    put_box(frame, new)
+}
+
+fn check_voxels(cells: &[[usize; 3]]) -> Result<(), EditError> {
+    at_least("cells", cells.len(), 1)?;
+    let outside = |c: &&[usize; 3]| c[0] >= GridSpec::NX || c[1] >= GridSpec::NY || c[2] >= GridSpec::NZ;
+    match cells.iter().find(outside) {
+        Some(c) => Err(EditError::CellOutside { cell: c.to_vec() }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+#[path = "edit_tests.rs"]
+mod tests;

@@ -1,0 +1,165 @@
+//! The rough effect of an edit on the voxels, shown in the same frame: boxes cleared or stamped,
+//! ground laid. Generation replaces it within moments. Painted voxels are locked and never touched.
+
+use glam::DVec3;
+
+use crate::scene::draft::{box_columns, ground_class};
+use crate::scene::grid::NOT_PAINTED;
+use crate::scene::raster::box_cells;
+use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
+
+/// How far voxels of an object may reach beyond its box, m.
+const MARGIN_M: f64 = 0.3;
+/// Bins in which ground classes lie in Occ3D labels.
+const GROUND_BINS: usize = 3;
+/// How far a column without layout looks for ground to continue, columns.
+const MAX_REACH: usize = 24;
+
+/// Clears the voxels of a box that has just left `frame.boxes`, and lays ground where they stood.
+/// Voxels inside another box of the same class stay.
+pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
+    let class = old.class.id();
+    let others: Vec<SceneBox> = frame
+        .boxes
+        .values()
+        .filter(|b| b.class == old.class && b.id != old.id && near(b, old))
+        .copied()
+        .collect();
+    let top_m = old.center_m.z + old.size_m.z / 2.0 + MARGIN_M;
+    let mut emptied = Vec::new();
+    box_cells(old, MARGIN_M, |x, y| {
+        if others.iter().any(|b| footprint_holds(b, x, y)) {
+            return;
+        }
+        let painted = *frame.painted.column(x, y);
+        let mut column = *frame.occupancy.column(x, y);
+        for z in 0..GridSpec::NZ {
+            let inside = GridSpec::center(x, y, z).z <= top_m;
+            if inside && column[z] == class && painted[z] == NOT_PAINTED {
+                column[z] = background(frame.source.occupancy.get(x, y, z));
+                if z == 0 && column[z] == Class::FREE {
+                    emptied.push([x, y]);
+                }
+            }
+        }
+        if column != *frame.occupancy.column(x, y) {
+            *frame.occupancy.column_mut(x, y) = column;
+        }
+    });
+    refill_ground(frame, &emptied);
+}
+
+/// What comes back where an object leaves: walls and plants that it was put on top of. Objects do
+/// not, their boxes may have gone since, and the ground follows the layout of today.
+fn background(source_label: u8) -> u8 {
+    match Class::from_id(source_label) {
+        Some(Class::Others | Class::Manmade | Class::Vegetation) => source_label,
+        _ => Class::FREE,
+    }
+}
+
+/// Stamps the voxels of a box in the rough profile of its class, in place of what was there.
+pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
+    for (x, y, layers) in box_columns(b) {
+        let painted = *frame.painted.column(x, y);
+        for (z, locked) in painted.iter().enumerate().take(layers) {
+            if *locked == NOT_PAINTED {
+                frame.occupancy.set(x, y, z, b.class.id());
+            }
+        }
+    }
+}
+
+/// True for the layers that say what the ground is made of; lines and crossings lie on it.
+pub(super) fn shapes_ground(layer: BevLayer) -> bool {
+    matches!(
+        layer,
+        BevLayer::DrivableArea | BevLayer::Walkway | BevLayer::CarparkArea
+    )
+}
+
+/// Gives columns whose layout has changed the ground class it now asks for. Columns in which
+/// something stands on bin 0 keep it.
+pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
+    for &[x, y] in cells {
+        let ground = ground_class(frame.layout.cell(x, y)).id();
+        let painted = *frame.painted.column(x, y);
+        let mut column = *frame.occupancy.column(x, y);
+        if column[0] != Class::FREE && !is_ground(column[0]) {
+            continue;
+        }
+        // A kerb's second bin goes, or a road painted over a sidewalk would keep its rim.
+        for z in 1..GROUND_BINS {
+            if is_ground(column[z]) && painted[z] == NOT_PAINTED {
+                column[z] = Class::FREE;
+            }
+        }
+        if painted[0] == NOT_PAINTED {
+            column[0] = ground;
+        }
+        if column != *frame.occupancy.column(x, y) {
+            *frame.occupancy.column_mut(x, y) = column;
+        }
+    }
+}
+
+/// Lays ground in bin 0 of columns that were emptied: what the layout says, else what most of the
+/// nearest ground columns around have, else terrain.
+fn refill_ground(frame: &mut Frame, emptied: &[[usize; 2]]) {
+    // Looked up before any is laid, so that the order of the columns does not matter.
+    let filled: Vec<u8> = emptied
+        .iter()
+        .map(|&[x, y]| {
+            let cell = frame.layout.cell(x, y);
+            match ground_class(cell) {
+                Class::Terrain => nearby_ground(frame, x, y),
+                named => named.id(),
+            }
+        })
+        .collect();
+    for (&[x, y], ground) in emptied.iter().zip(filled) {
+        frame.occupancy.set(x, y, 0, ground);
+    }
+}
+
+/// Ground class that most columns have on the smallest square ring around (x, y) with any ground.
+fn nearby_ground(frame: &Frame, x: usize, y: usize) -> u8 {
+    for reach in 1..=MAX_REACH {
+        let mut votes = [0usize; Class::COUNT];
+        let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
+        for i in x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1) {
+            for j in ys.clone() {
+                let on_ring = i.abs_diff(x).max(j.abs_diff(y)) == reach;
+                if on_ring {
+                    let below = frame.occupancy.get(i, j, 0);
+                    if is_ground(below) {
+                        votes[below as usize] += 1;
+                    }
+                }
+            }
+        }
+        // First of the highest: a tie goes to the lower id.
+        let most = votes.iter().copied().max().unwrap_or(0);
+        if most > 0 {
+            return votes
+                .iter()
+                .position(|v| *v == most)
+                .unwrap_or(Class::Terrain as usize) as u8;
+        }
+    }
+    Class::Terrain.id()
+}
+
+fn is_ground(label: u8) -> bool {
+    Class::from_id(label).is_some_and(Class::is_ground)
+}
+
+fn near(a: &SceneBox, b: &SceneBox) -> bool {
+    let reach = (a.size_m.truncate().length() + b.size_m.truncate().length()) / 2.0;
+    a.center_m.truncate().distance(b.center_m.truncate()) <= reach + 2.0 * MARGIN_M
+}
+
+fn footprint_holds(b: &SceneBox, x: usize, y: usize) -> bool {
+    let p = GridSpec::center(x, y, 0);
+    b.contains(DVec3::new(p.x, p.y, b.center_m.z), 0.0)
+}

@@ -1,0 +1,252 @@
+//! Cuts a bird's-eye-view layout out of a road network.
+
+use glam::DVec2;
+
+use super::lanes::{Ground, LaneSection, Travel};
+use super::lines::{Follower, SectionLines, clipped};
+use super::objects::ObjectKind;
+use super::sampling::{BUDGET, Row, walk};
+use super::xml::{Skipped, count};
+use super::{Road, RoadNetwork, tidy};
+use crate::scene::raster::{draw_polyline, polygon_cells};
+use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
+
+/// Half the edge of the window, m.
+const HALF_M: f64 = GridSpec::MAX_M[0];
+
+/// A layout and what went into it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayoutImport {
+    /// Ego at the origin, x forward.
+    pub layout: BevLayout,
+    /// Roads with ground inside the window.
+    pub road_count: usize,
+    /// Lane centres inside the window; a lane that goes on from one road to the next counts once for each.
+    pub lane_count: usize,
+    /// Pedestrian crossings inside the window.
+    pub crossing_count: usize,
+    /// Share of the cells that is drivable, 0 to 1.
+    pub drivable_share: f64,
+    /// What the file holds and the layout does not, counted by kind.
+    pub skipped: Skipped,
+}
+
+/// The grid while it is drawn.
+struct Canvas {
+    at_m: DVec2,
+    ego_from_file: DVec2, // unit vector; rotating by it turns file axes to ego axes
+    layout: BevLayout,
+    named: Vec<bool>,       // cells on which some lane lies, drivable or not
+    in_junction: Vec<bool>, // cells on which a connecting road lies
+    lines: Vec<Polyline>,
+    budget: usize,
+}
+
+impl RoadNetwork {
+    /// The 80 x 80 m around `at_m` (file frame), seen by an ego vehicle that looks along `heading_rad`.
+    ///
+    /// Layers in the sense of the nuScenes map: drivable area is everything paved that is connected
+    /// to a traffic lane; stop lines, crossings and dividers are also kept as polylines.
+    pub fn to_layout(&self, at_m: DVec2, heading_rad: f64) -> LayoutImport {
+        let mut canvas = Canvas {
+            at_m,
+            ego_from_file: DVec2::from_angle(-heading_rad),
+            layout: BevLayout::default(),
+            named: vec![false; GridSpec::COLUMNS],
+            in_junction: vec![false; GridSpec::COLUMNS],
+            lines: Vec::new(),
+            budget: BUDGET,
+        };
+        let mut skipped = self.skipped.clone();
+        let mut road_count = 0;
+        if at_m.is_finite() && heading_rad.is_finite() {
+            for road in &self.roads {
+                road_count += usize::from(canvas.road(road, self.marks_known));
+                canvas.objects(road, &mut skipped);
+            }
+        } else {
+            count(&mut skipped, "window at no finite place");
+        }
+        if canvas.budget == 0 {
+            count(&mut skipped, "roads beyond the drawing budget");
+        }
+        canvas.pave_gaps();
+        canvas.roads_cover_walkways();
+        for line in &canvas.lines {
+            draw_polyline(&mut canvas.layout, line);
+        }
+        let of_kind = |kind| canvas.lines.iter().filter(|l| l.kind == kind).count();
+        let (lane_count, crossing_count) = (
+            of_kind(PolylineKind::LaneCenter),
+            of_kind(PolylineKind::PedCrossing),
+        );
+        let mut layout = canvas.layout;
+        layout.polylines = canvas.lines.into();
+        LayoutImport {
+            road_count,
+            lane_count,
+            crossing_count,
+            drivable_share: layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64,
+            skipped,
+            layout,
+        }
+    }
+}
+
+impl Canvas {
+    fn to_ego(&self, p: DVec2) -> DVec2 {
+        self.ego_from_file.rotate(p - self.at_m)
+    }
+
+    fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
+        let mut cells = Vec::new();
+        polygon_cells(area_in_ego, |x, y| cells.push((x, y)));
+        self.budget = self.budget.saturating_sub(cells.len() / 8);
+        for (x, y) in &cells {
+            self.named[x * GridSpec::NY + y] = true;
+            self.in_junction[x * GridSpec::NY + y] |= in_junction;
+            for layer in layers {
+                self.layout.set(*layer, *x, *y, true);
+            }
+        }
+        !cells.is_empty()
+    }
+
+    /// Draws the lanes of a road; true if any ground of it is in the window.
+    fn road(&mut self, road: &Road, marks_known: bool) -> bool {
+        let mut follower = Follower::default();
+        let mut seen = false;
+        for section in &road.sections {
+            let mut grounds = None;
+            let mut budget = self.budget;
+            let (at_m, radius_m) = (self.at_m, HALF_M * std::f64::consts::SQRT_2);
+            walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
+                let grounds = grounds.get_or_insert_with(|| section.grounds());
+                self.budget = *budget;
+                seen |= self.strips(from, to, grounds, road.junction.is_some());
+                let lines = SectionLines {
+                    section,
+                    grounds,
+                    in_junction: road.junction.is_some(),
+                    marks_known,
+                };
+                follower.step(&lines.tracks(from, to), from, to, &mut self.budget);
+                *budget = self.budget;
+                None
+            });
+            self.budget = budget;
+        }
+        for (kind, points) in follower.finish() {
+            let points: Vec<DVec2> = points.iter().map(|p| self.to_ego(*p)).collect();
+            self.lines.extend(
+                clipped(&points, HALF_M)
+                    .into_iter()
+                    .map(|points_m| Polyline { kind, points_m }),
+            );
+        }
+        seen
+    }
+
+    /// One step of every lane, as quads that share their corners: neighbours leave no cell between them.
+    fn strips(&mut self, from: &Row, to: &Row, grounds: &[Ground], in_junction: bool) -> bool {
+        let edge = |row: &Row, i: usize| self.to_ego(row.between(i, i));
+        let edges: Vec<[DVec2; 2]> = (0..from.t_m.len())
+            .map(|i| [edge(from, i), edge(to, i)])
+            .collect();
+        let mut seen = false;
+        for (ground, sides) in grounds.iter().zip(edges.windows(2)) {
+            let layers: &[BevLayer] = match ground {
+                Ground::Road => &[BevLayer::DrivableArea],
+                Ground::Carpark => &[BevLayer::DrivableArea, BevLayer::CarparkArea],
+                Ground::Walkway => &[BevLayer::Walkway],
+                Ground::Other => &[],
+            };
+            let quad = [sides[0][0], sides[0][1], sides[1][1], sides[1][0]];
+            seen |= self.fill(&quad, layers, in_junction);
+        }
+        seen
+    }
+
+    fn objects(&mut self, road: &Road, skipped: &mut Skipped) {
+        for object in &road.objects {
+            if let ObjectKind::StopLine { against_line } = object.kind {
+                let line = road
+                    .section_at(object.s_m)
+                    .and_then(|s| stop_line(road, s, object.s_m, against_line));
+                match line {
+                    Some(line) => {
+                        let points: Vec<DVec2> = line.iter().map(|p| self.to_ego(*p)).collect();
+                        self.lines
+                            .extend(clipped(&points, HALF_M).into_iter().map(|points_m| Polyline {
+                                kind: PolylineKind::StopLine,
+                                points_m,
+                            }));
+                    }
+                    None => count(skipped, "stop line without a lane"),
+                }
+                continue;
+            }
+            let mut areas = Vec::new();
+            let mut budget = self.budget;
+            object.outlines_m(&road.reference, &mut budget, skipped, |area| {
+                let area: Vec<DVec2> = area.iter().map(|p| self.to_ego(*p)).collect();
+                let min = area.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+                let max = area.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+                if max.min_element() > -HALF_M && min.max_element() < HALF_M {
+                    areas.push(area);
+                }
+            });
+            self.budget = budget;
+            for area in areas {
+                if object.kind == ObjectKind::Parking {
+                    self.fill(&area, &[BevLayer::DrivableArea, BevLayer::CarparkArea], false);
+                } else {
+                    self.lines.push(Polyline {
+                        kind: PolylineKind::PedCrossing,
+                        points_m: area,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Joints between roads and cracks in junctions become drivable.
+    fn pave_gaps(&mut self) {
+        let bit = BevLayer::DrivableArea.bit();
+        let mut drivable: Vec<bool> = self.layout.cells().iter().map(|c| c & bit != 0).collect();
+        tidy::close_gaps(&mut drivable, &self.named);
+        tidy::fill_junction_holes(&mut drivable, &self.named, &self.in_junction);
+        for (i, _) in drivable.iter().enumerate().filter(|(_, d)| **d) {
+            self.layout
+                .set(BevLayer::DrivableArea, i / GridSpec::NY, i % GridSpec::NY, true);
+        }
+    }
+
+    /// In a junction the walkway of one connecting road lies under the lanes of another.
+    fn roads_cover_walkways(&mut self) {
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                if self.layout.has(BevLayer::DrivableArea, x, y) {
+                    self.layout.set(BevLayer::Walkway, x, y, false);
+                }
+            }
+        }
+    }
+}
+
+/// The ends of a stop line: across all traffic lanes of one direction.
+fn stop_line(road: &Road, section: &LaneSection, s_m: f64, against_line: Option<bool>) -> Option<[DVec2; 2]> {
+    let row = Row::at(road, section, s_m);
+    let holds = |travel: Travel| match against_line {
+        None => true,
+        Some(against) => travel == Travel::Both || (travel == Travel::Backward) == against,
+    };
+    let mut lanes = section
+        .lanes_left_to_right()
+        .enumerate()
+        .filter(|(i, lane)| lane.kind.carries_traffic() && holds(lane.travel) && row.width(*i) > 0.4)
+        .map(|(i, _)| i);
+    let first = lanes.next()?;
+    let last = lanes.last().unwrap_or(first);
+    Some([row.between(first, first), row.between(last + 1, last + 1)])
+}

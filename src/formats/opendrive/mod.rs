@@ -1,0 +1,100 @@
+//! OpenDRIVE roads (ASAM OpenDRIVE 1.4 to 1.8, `.xodr`): read a road network, cut a layout out of it.
+
+pub mod geometry;
+pub mod lanes;
+mod layout;
+mod lines;
+pub mod objects;
+mod parse;
+mod parse_lanes;
+mod parse_objects;
+mod pose;
+mod sampling;
+mod tidy;
+mod xml;
+
+pub use layout::LayoutImport;
+pub use parse::read;
+pub use pose::LanePose;
+pub use xml::{OpenDriveError, Skipped};
+
+use geometry::ReferenceLine;
+use lanes::{Cubics, LaneSection};
+use objects::RoadObject;
+
+/// The roads of one file, flat: heights are not modelled.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RoadNetwork {
+    /// Name in the header; often empty.
+    pub name: String,
+    /// At least one.
+    pub roads: Vec<Road>,
+    /// May be empty.
+    pub junctions: Vec<Junction>,
+    /// What the file holds and this reader does not understand or model, counted by kind.
+    pub skipped: Skipped,
+    marks_known: bool, // false for a file without any road mark: every lane edge is drawn then
+}
+
+/// A road: a reference line with lanes on both sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Road {
+    /// Id in the file.
+    pub id: String,
+    /// The junction this road connects through, if it is a connecting road.
+    pub junction: Option<String>,
+    /// True for left-hand traffic.
+    pub left_hand: bool,
+    /// What lies before its start.
+    pub predecessor: Option<RoadEnd>,
+    /// What lies beyond its end.
+    pub successor: Option<RoadEnd>,
+    /// Plan view.
+    pub reference: ReferenceLine,
+    /// Shift of the centre lane from the reference line, left positive.
+    pub lane_offset: Cubics,
+    /// In order, without gaps.
+    pub sections: Vec<LaneSection>,
+    /// Crossings, parking spaces, stop lines.
+    pub objects: Vec<RoadObject>,
+}
+
+/// What a road ends at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RoadEnd {
+    /// The road with this id.
+    Road(String),
+    /// The junction with this id.
+    Junction(String),
+}
+
+/// A junction. Its ground is that of its connecting roads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Junction {
+    /// Id in the file.
+    pub id: String,
+    /// Ids of the roads that lead into it, each once.
+    pub incoming: Vec<String>,
+    /// Number of connections.
+    pub connections: usize,
+}
+
+impl Road {
+    /// Length by its geometry, m.
+    pub fn length_m(&self) -> f64 {
+        self.reference.end_s_m()
+    }
+
+    /// The section that holds `s_m`; the first or last outside, `None` for a road without lanes.
+    pub fn section_at(&self, s_m: f64) -> Option<&LaneSection> {
+        let after = self.sections.partition_point(|section| section.start_s_m <= s_m);
+        self.sections.get(after.max(1) - 1)
+    }
+}
+
+impl RoadNetwork {
+    /// Length of all roads together, connecting roads included, m.
+    pub fn length_m(&self) -> f64 {
+        self.roads.iter().map(Road::length_m).sum()
+    }
+}

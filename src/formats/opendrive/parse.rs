@@ -1,0 +1,268 @@
+//! From XML to roads: header, plan view, profiles, links, junctions.
+
+use glam::DVec2;
+use roxmltree::Node;
+
+use super::geometry::{Geometry, MAX_COORDINATE_M, MAX_LENGTH_M, ReferenceLine, Shape};
+use super::xml::{
+    OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
+    named, number, parse_document, shown,
+};
+use super::{Junction, Road, RoadEnd, RoadNetwork, parse_lanes, parse_objects};
+
+/// Reads the bytes of an `.xodr` file. Nothing of the file is dropped without being counted in
+/// [`RoadNetwork::skipped`]; a number that is not finite, a record without length, a road without
+/// geometry and a start out of order are errors.
+pub fn read(bytes: &[u8]) -> Result<RoadNetwork> {
+    let text = decode(bytes)?;
+    let document = parse_document(&text)?;
+    let root = document.root_element();
+    if root.tag_name().name() != "OpenDRIVE" {
+        return Err(OpenDriveError::NotOpenDrive {
+            found: shown(root.tag_name().name(), 40),
+        });
+    }
+    let mut network = RoadNetwork::default();
+    let skipped = &mut network.skipped;
+    for node in elements(root) {
+        match node.tag_name().name() {
+            "header" => {
+                network.name = shown(node.attribute("name").unwrap_or_default(), 80);
+                count_others(node, &[], skipped);
+            }
+            "road" => network.roads.push(road(node, skipped)?),
+            "junction" => network.junctions.push(junction(node, skipped)),
+            _ => {}
+        }
+    }
+    count_others(root, &["header", "road", "junction"], skipped);
+    if network.roads.is_empty() {
+        return Err(bad(root, "road", "at least one road", "none"));
+    }
+    network.marks_known =
+        network.roads.iter().flat_map(|r| &r.sections).any(|s| {
+            !s.center_marks.is_empty() || s.lanes_left_to_right().any(|lane| !lane.marks.is_empty())
+        });
+    Ok(network)
+}
+
+fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
+    let length = number(node, "length")?;
+    if !(length > 0.0 && length <= MAX_LENGTH_M) {
+        let expected = format!("a length above 0 and up to {MAX_LENGTH_M:.0} m");
+        return Err(bad(node, "length", expected, &length.to_string()));
+    }
+    let reference = plan_view(node, skipped)?;
+    if (reference.end_s_m() - length).abs() > 0.1 + 1e-3 * length {
+        count(skipped, "road length that differs from its geometry");
+    }
+    let left_hand = match node.attribute("rule") {
+        None | Some("RHT") => false,
+        Some("LHT") => true,
+        Some(other) => {
+            count(skipped, format!("road rule {}", shown(other, 20)));
+            false
+        }
+    };
+    if let Some(profile) = child(node, "elevationProfile") {
+        count_others(profile, &["elevation"], skipped);
+        count_curved(profile, "elevation", skipped)?;
+    }
+    if let Some(profile) = child(node, "lateralProfile") {
+        count_others(profile, &["superelevation"], skipped);
+        count_curved(profile, "superelevation", skipped)?;
+    }
+    let lanes = parse_lanes::lanes(node, &reference, left_hand, skipped)?;
+    let marks = parse_objects::objects(node, skipped)?;
+    let known = [
+        "link",
+        "planView",
+        "elevationProfile",
+        "lateralProfile",
+        "lanes",
+        "objects",
+        "signals",
+    ];
+    count_others(node, &known, skipped);
+    let end = |name| {
+        let link = child(child(node, "link")?, name)?;
+        let id = link.attribute("elementId")?.to_owned();
+        Some(match link.attribute("elementType") {
+            Some("junction") => RoadEnd::Junction(id),
+            _ => RoadEnd::Road(id),
+        })
+    };
+    Ok(Road {
+        id: node.attribute("id").unwrap_or_default().to_owned(),
+        junction: node
+            .attribute("junction")
+            .filter(|id| !matches!(*id, "-1" | ""))
+            .map(str::to_owned),
+        left_hand,
+        predecessor: end("predecessor"),
+        successor: end("successor"),
+        lane_offset: lanes.offset,
+        sections: lanes.sections,
+        objects: marks,
+        reference,
+    })
+}
+
+/// Heights are not modelled: counts the records that are not flat zero.
+fn count_curved(profile: Node<'_, '_>, kind: &'static str, skipped: &mut Skipped) -> Result<()> {
+    for record in named(profile, kind) {
+        number(record, "s")?;
+        if four(record, ["a", "b", "c", "d"])?.iter().any(|k| *k != 0.0) {
+            count(skipped, kind);
+        }
+    }
+    Ok(())
+}
+
+fn plan_view(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<ReferenceLine> {
+    let view = child(road, "planView").ok_or_else(|| bad(road, "planView", "one element", "none"))?;
+    count_others(view, &["geometry"], skipped);
+    let mut records: Vec<Geometry> = Vec::new();
+    for node in named(view, "geometry") {
+        let record = geometry(node, skipped)?;
+        if let Some(before) = records.last() {
+            if record.s_m <= before.s_m {
+                let expected = format!("more than {}, where the record before begins", before.s_m);
+                return Err(bad(node, "s", expected, &record.s_m.to_string()));
+            }
+            if before
+                .at(before.length_m)
+                .position_m
+                .distance(record.at(0.0).position_m)
+                > 0.1
+            {
+                count(skipped, "gap in the reference line");
+            }
+        }
+        records.push(record);
+    }
+    ReferenceLine::new(records).ok_or_else(|| bad(view, "geometry", "at least one record", "none"))
+}
+
+fn geometry(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Geometry> {
+    const KINDS: &str = "one of line, arc, spiral, poly3, paramPoly3";
+    let s = number(node, "s")?;
+    if !(-1e-6..=MAX_LENGTH_M).contains(&s) {
+        return Err(bad(
+            node,
+            "s",
+            format!("0 to {MAX_LENGTH_M:.0} m"),
+            &s.to_string(),
+        ));
+    }
+    let start = DVec2::new(coordinate(node, "x")?, coordinate(node, "y")?);
+    let heading = coordinate(node, "hdg")?;
+    let length = number(node, "length")?;
+    let is_shape = |n: &Node<'_, '_>| n.tag_name().name() != "userData";
+    let kind = elements(node)
+        .find(is_shape)
+        .ok_or_else(|| bad(node, "shape", KINDS, "none"))?;
+    let make = |shape| {
+        Geometry::new(s, start, heading, length, shape).map_err(|(expected, found)| {
+            let field = if found == length.to_string() {
+                "length"
+            } else {
+                kind.tag_name().name()
+            };
+            bad(node, field, expected, &found)
+        })
+    };
+    let shape = match kind.tag_name().name() {
+        "line" => Shape::Line,
+        "arc" => Shape::Arc {
+            curvature_per_m: number(kind, "curvature")?,
+        },
+        "spiral" => Shape::Spiral {
+            start_per_m: number(kind, "curvStart")?,
+            end_per_m: number(kind, "curvEnd")?,
+        },
+        "poly3" => Shape::Poly3 {
+            v: four(kind, ["a", "b", "c", "d"])?,
+        },
+        "paramPoly3" => {
+            let u = four(kind, ["aU", "bU", "cU", "dU"])?;
+            let v = four(kind, ["aV", "bV", "cV", "dV"])?;
+            let normalized = match kind.attribute("pRange") {
+                Some("normalized") => true,
+                Some("arcLength") => false,
+                None => {
+                    count(skipped, "paramPoly3 without pRange (guessed)");
+                    looks_normalized(u[1].hypot(v[1]), length)
+                }
+                Some(other) => {
+                    return Err(bad(
+                        kind,
+                        "pRange",
+                        "arcLength or normalized",
+                        &format!("{other:?}"),
+                    ));
+                }
+            };
+            Shape::ParamPoly3 { u, v, normalized }
+        }
+        other => return Err(bad(node, "shape", KINDS, &format!("<{other}>"))),
+    };
+    count_others(node, &[kind.tag_name().name()], skipped);
+    make(shape)
+}
+
+/// Readers disagree on the range of p where none is given; the speed at the start tells: about 1 if p is an
+/// arc length, about the length of the record if p runs from 0 to 1.
+fn looks_normalized(speed: f64, length: f64) -> bool {
+    (speed / length).ln().abs() < speed.ln().abs()
+}
+
+fn coordinate(node: Node<'_, '_>, field: &str) -> Result<f64> {
+    let value = number(node, field)?;
+    if value.abs() > MAX_COORDINATE_M {
+        let expected = format!("a magnitude of at most {MAX_COORDINATE_M:e}");
+        return Err(bad(node, field, expected, &value.to_string()));
+    }
+    Ok(value)
+}
+
+fn junction(node: Node<'_, '_>, skipped: &mut Skipped) -> Junction {
+    let mut incoming: Vec<String> = Vec::new();
+    let mut connections = 0;
+    for connection in named(node, "connection") {
+        connections += 1;
+        if let Some(id) = connection.attribute("incomingRoad")
+            && incoming.last().is_none_or(|last| last != id)
+        {
+            incoming.push(id.to_owned());
+        }
+        count_others(connection, &["laneLink"], skipped);
+    }
+    incoming.sort();
+    incoming.dedup();
+    count_others(node, &["connection"], skipped);
+    if let Some(kind) = node.attribute("type")
+        && !matches!(kind, "default" | "direct")
+    {
+        count(skipped, format!("junction of type {}", shown(kind, 40)));
+    }
+    Junction {
+        id: node.attribute("id").unwrap_or_default().to_owned(),
+        incoming,
+        connections,
+    }
+}
+
+/// Cubic records of one element name, `s` in the attribute `start`.
+pub(super) fn cubics(parent: Node<'_, '_>, name: &'static str, start: &str) -> Result<super::lanes::Cubics> {
+    let mut out: Vec<super::lanes::CubicPiece> = Vec::new();
+    for node in named(parent, name) {
+        let s_m = number(node, start)?;
+        ascending(node, start, s_m, out.last().map(|p| p.s_m))?;
+        out.push(super::lanes::CubicPiece {
+            s_m,
+            k: four(node, ["a", "b", "c", "d"])?,
+        });
+    }
+    Ok(super::lanes::Cubics(out))
+}

@@ -1,0 +1,274 @@
+//! The project file `.loom`: a zip with the whole scene. Equal scenes give equal bytes.
+//!
+//! | entry | holds |
+//! |---|---|
+//! | `manifest.json` | `format`, `version`, `frames` |
+//! | `scene.json` | all but the grids: name, prompt, seed, rig, and of each frame time, pose, boxes, polylines |
+//! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
+//! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
+//! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
+//! | `frames/00000/source_layout.u32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+
+mod archive;
+mod check;
+mod error;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read, Seek};
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::grid::NOT_PAINTED;
+use crate::scene::{
+    BevLayout, BoxId, Frame, Polyline, Pose, Scene, SceneBox, SceneRev, SensorRig, SourceFrame, VoxelGrid,
+    VoxelPaint,
+};
+
+use super::atomic;
+use archive::{MAX_JSON, Reader, Writer, parse, within, wrong_voxels};
+use check::check;
+pub use error::ProjectError;
+
+/// Version written, and the only one read.
+pub const VERSION: u32 = 1;
+/// Frames a project may hold.
+pub const MAX_FRAMES: usize = 10_000;
+
+const FORMAT: &str = "sceneloom";
+const MANIFEST: &str = "manifest.json";
+const SCENE: &str = "scene.json";
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Manifest {
+    format: String,
+    version: u32,
+    frames: usize,
+}
+
+/// The part of a manifest that every version has.
+#[derive(Deserialize)]
+struct AnyManifest {
+    format: String,
+    version: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SceneHeader {
+    name: Arc<str>,
+    prompt: Arc<str>,
+    seed: u64,
+    current: usize,
+    rig: Arc<SensorRig>,
+    frames: Vec<FrameHeader>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FrameHeader {
+    time_s: f64,
+    world_from_ego: Pose,
+    boxes: Vec<SceneBox>,
+    polylines: Arc<Vec<Polyline>>,
+    /// Whether `painted.u8` is there.
+    painted: bool,
+    source: SourceHeader,
+}
+
+/// What is left out, or false, is as in the frame.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SourceHeader {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    boxes: Option<Vec<SceneBox>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    polylines: Option<Arc<Vec<Polyline>>>,
+    /// Whether `source_layout.u32` is there.
+    layout: bool,
+    /// Whether `source_occupancy.u8` is there.
+    occupancy: bool,
+}
+
+/// Writes the scene to `path`, whole or not at all; the number of bytes written.
+pub fn save(path: &Path, scene: &Scene) -> Result<u64, ProjectError> {
+    let bytes = to_bytes(scene).map_err(|e| e.at(path))?;
+    atomic::write(path, &bytes).map_err(|e| ProjectError::from(e).at(path))?;
+    Ok(bytes.len() as u64)
+}
+
+/// Reads the scene at `path`. It carries a fresh revision.
+pub fn load(path: &Path) -> Result<Scene, ProjectError> {
+    let file = File::open(path).map_err(|e| ProjectError::from(e).at(path))?;
+    read(BufReader::new(file)).map_err(|e| e.at(path))
+}
+
+/// The scene as the bytes of a project file.
+pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
+    check(scene)?;
+    let mut out = Writer::new();
+    let manifest = Manifest {
+        format: FORMAT.into(),
+        version: VERSION,
+        frames: scene.frames.len(),
+    };
+    out.json(MANIFEST, &manifest)?;
+    let header = SceneHeader {
+        name: scene.name.clone(),
+        prompt: scene.prompt.clone(),
+        seed: scene.seed,
+        current: scene.current,
+        rig: scene.rig.clone(),
+        frames: scene.frames.iter().map(|f| frame_header(f)).collect(),
+    };
+    out.json(SCENE, &header)?;
+    for ((index, frame), header) in scene.frames.iter().enumerate().zip(&header.frames) {
+        let name = |part: &str| entry_name(index, part);
+        out.put(&name("layout.u32"), &layout_bytes(&frame.layout))?;
+        out.labels(&name("occupancy.u8"), &frame.occupancy)?;
+        if header.painted {
+            out.labels(&name("painted.u8"), &frame.painted)?;
+        }
+        if header.source.layout {
+            out.put(&name("source_layout.u32"), &layout_bytes(&frame.source.layout))?;
+        }
+        if header.source.occupancy {
+            out.labels(&name("source_occupancy.u8"), &frame.source.occupancy)?;
+        }
+    }
+    out.finish()
+}
+
+/// The scene in the bytes of a project file. It carries a fresh revision.
+pub fn from_bytes(bytes: &[u8]) -> Result<Scene, ProjectError> {
+    read(Cursor::new(bytes))
+}
+
+fn entry_name(frame: usize, part: &str) -> String {
+    format!("frames/{frame:05}/{part}")
+}
+
+fn frame_header(frame: &Frame) -> FrameHeader {
+    let source = &frame.source;
+    let list = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.values().copied().collect::<Vec<_>>();
+    FrameHeader {
+        time_s: frame.time_s,
+        world_from_ego: frame.world_from_ego,
+        boxes: list(&frame.boxes),
+        polylines: frame.layout.polylines.clone(),
+        painted: frame.painted.count_set() > 0,
+        source: SourceHeader {
+            boxes: (source.boxes != frame.boxes).then(|| list(&source.boxes)),
+            polylines: (source.layout.polylines != frame.layout.polylines)
+                .then(|| source.layout.polylines.clone()),
+            layout: source.layout.cells() != frame.layout.cells(),
+            occupancy: source.occupancy != frame.occupancy,
+        },
+    }
+}
+
+fn layout_bytes(layout: &BevLayout) -> Vec<u8> {
+    layout.cells().iter().flat_map(|c| c.to_le_bytes()).collect()
+}
+
+fn read<R: Read + Seek>(reader: R) -> Result<Scene, ProjectError> {
+    let mut file = Reader::new(reader)?;
+    let any: AnyManifest = parse(MANIFEST, &file.bytes(MANIFEST, MAX_JSON)?)?;
+    if any.format != FORMAT {
+        return Err(ProjectError::Format { found: any.format });
+    }
+    if any.version != u64::from(VERSION) {
+        return Err(ProjectError::Version { found: any.version });
+    }
+    let manifest: Manifest = parse(MANIFEST, &file.bytes(MANIFEST, MAX_JSON)?)?;
+    within("the number of frames", manifest.frames as u64, MAX_FRAMES as u64)?;
+    let header: SceneHeader = parse(SCENE, &file.bytes(SCENE, MAX_JSON)?)?;
+    if header.frames.len() != manifest.frames {
+        return Err(ProjectError::Unsound(format!(
+            "scene.json: {} frames, expected {} as in manifest.json",
+            header.frames.len(),
+            manifest.frames
+        )));
+    }
+    let mut frames = Vec::with_capacity(header.frames.len());
+    for (index, frame) in header.frames.into_iter().enumerate() {
+        frames.push(Arc::new(read_frame(&mut file, index, frame)?));
+    }
+    file.expect_all_read()?;
+    let scene = Scene {
+        rev: SceneRev::fresh(),
+        name: header.name,
+        prompt: header.prompt,
+        rig: header.rig,
+        frames,
+        current: header.current,
+        seed: header.seed,
+    };
+    check(&scene)?;
+    Ok(scene)
+}
+
+fn read_frame<R: Read + Seek>(
+    file: &mut Reader<R>,
+    index: usize,
+    header: FrameHeader,
+) -> Result<Frame, ProjectError> {
+    let name = |part: &str| entry_name(index, part);
+    let source = header.source;
+    let layout = file.layout(&name("layout.u32"), header.polylines)?;
+    let occupancy = file.occupancy(&name("occupancy.u8"), &VoxelGrid::new())?;
+    let painted = match header.painted {
+        true => {
+            let entry = name("painted.u8");
+            let dense = file.labels(&entry, NOT_PAINTED)?;
+            VoxelPaint::from_dense(&dense).map_err(|found| wrong_voxels(&entry, found as u64))?
+        }
+        false => VoxelPaint::new(),
+    };
+    let boxes = unique(index, header.boxes)?;
+    let source_polylines = source.polylines.unwrap_or_else(|| layout.polylines.clone());
+    let source_layout = match source.layout {
+        true => file.layout(&name("source_layout.u32"), source_polylines)?,
+        false => {
+            let mut same_cells = layout.clone();
+            same_cells.polylines = source_polylines;
+            same_cells
+        }
+    };
+    let source = SourceFrame {
+        layout: source_layout,
+        boxes: match source.boxes {
+            Some(list) => unique(index, list)?,
+            None => boxes.clone(),
+        },
+        // Bricks in which the two agree stay one memory: "what changed" compares pointers.
+        occupancy: match source.occupancy {
+            true => file.occupancy(&name("source_occupancy.u8"), &occupancy)?,
+            false => occupancy.clone(),
+        },
+    };
+    Ok(Frame {
+        time_s: header.time_s,
+        world_from_ego: header.world_from_ego,
+        boxes,
+        layout,
+        occupancy,
+        painted,
+        source: Arc::new(source),
+    })
+}
+
+fn unique(frame: usize, list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>, ProjectError> {
+    let mut boxes = BTreeMap::new();
+    for b in list {
+        if boxes.insert(b.id, b).is_some() {
+            let id = b.id.0;
+            return Err(ProjectError::Unsound(format!(
+                "scene.json: frame {frame}: two boxes have the id {id}"
+            )));
+        }
+    }
+    Ok(boxes)
+}

@@ -1,0 +1,70 @@
+//! What a project may not hold, whether it comes from a file or goes into one.
+
+use crate::scene::{Frame, Scene};
+
+use super::archive::within;
+use super::{MAX_FRAMES, ProjectError};
+
+/// Errors on the first thing that is not sound; JSON could not even hold a NaN.
+pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
+    let unsound = |text: String| Err(ProjectError::Unsound(format!("scene.json: {text}")));
+    within(
+        "the number of frames",
+        scene.frames.len() as u64,
+        MAX_FRAMES as u64,
+    )?;
+    if scene.current >= scene.frames.len() {
+        let (found, frames) = (scene.current, scene.frames.len());
+        return unsound(format!(
+            "current is {found}, expected below the number of frames, {frames}"
+        ));
+    }
+    if let Some(problem) = scene.rig.problem() {
+        return unsound(format!("rig: {problem}"));
+    }
+    for (index, frame) in scene.frames.iter().enumerate() {
+        if let Some(problem) = frame_problem(frame) {
+            return unsound(format!("frame {index}: {problem}"));
+        }
+    }
+    Ok(())
+}
+
+fn frame_problem(frame: &Frame) -> Option<String> {
+    if !frame.time_s.is_finite() {
+        return Some(format!("time_s is {}, expected a finite number", frame.time_s));
+    }
+    let pose = &frame.world_from_ego;
+    if !pose.translation_m.is_finite() {
+        return Some(format!(
+            "world_from_ego is at {}, expected finite numbers",
+            pose.translation_m
+        ));
+    }
+    let norm = pose.rotation.length();
+    if norm.is_nan() || (norm - 1.0).abs() > 1e-3 {
+        return Some(format!(
+            "world_from_ego has a quaternion of length {norm}, expected 1"
+        ));
+    }
+    for (of, boxes, layout) in [
+        ("", &frame.boxes, &frame.layout),
+        ("source: ", &frame.source.boxes, &frame.source.layout),
+    ] {
+        for (id, b) in boxes {
+            if *id != b.id {
+                return Some(format!("{of}box {} is filed under id {}", b.id.0, id.0));
+            }
+            if let Some(problem) = b.problem() {
+                return Some(format!("{of}{problem}"));
+            }
+        }
+        let lines = layout.polylines.iter().enumerate();
+        for (i, line) in lines {
+            if line.points_m.iter().any(|p| !p.is_finite()) {
+                return Some(format!("{of}polyline {i}: a point is not finite"));
+            }
+        }
+    }
+    None
+}

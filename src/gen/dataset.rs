@@ -1,0 +1,119 @@
+//! Training and evaluation data from procedural worlds, as safetensors shards.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use safetensors::tensor::{Dtype, TensorView};
+
+use super::world::World;
+use super::world::draw::hash;
+use super::world::voxelize::{Drive, Vertical, complete, labels};
+use crate::scene::{GridSpec, SensorRig, VoxelGrid, draft, raster};
+
+/// Frames per shard.
+pub const SHARD_FRAMES: usize = 32;
+
+/// One training frame of the occupancy networks.
+pub struct OccupancyFrame {
+    /// Every voxel of the world.
+    pub dense: VoxelGrid,
+    /// What a labelling drive through the world saw.
+    pub labels: VoxelGrid,
+    /// The layout extruded naively: a condition of the diffusion transformer.
+    pub draft: VoxelGrid,
+    /// 18 BEV layers as bits, `[x][y]`.
+    pub bev: Vec<u32>,
+}
+
+/// Frame `index` of the data set of `seed`; the same arguments give the same frame.
+pub fn occupancy_frame(seed: u64, index: u64) -> OccupancyFrame {
+    let seed = hash(hash(seed) ^ index);
+    let world = World::random(seed);
+    let rig = SensorRig::default();
+    OccupancyFrame {
+        dense: complete(&world, Vertical::Occ3d),
+        labels: labels(&world, &rig.lidars[0], &Drive::default(), Vertical::Occ3d, seed),
+        draft: draft::draft(&world.layout, world.boxes.values()),
+        bev: raster::bev_channels(&world.layout, world.boxes.values()),
+    }
+}
+
+/// What was written.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct DatasetReport {
+    /// Frames in the folder.
+    pub frames: usize,
+    /// Bytes written by this run.
+    pub bytes: u64,
+    /// Shards that were there already and were left alone.
+    pub resumed_shards: usize,
+}
+
+/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
+/// [N,200,200,16] and i32 `bev` [N,200,200]. Shards that exist are kept, so an interrupted run resumes.
+/// `progress` gets the number of finished frames and may end the run by returning false.
+pub fn write_occupancy(
+    dir: &Path,
+    frames: usize,
+    seed: u64,
+    progress: impl Fn(usize) -> bool + Sync,
+) -> std::io::Result<DatasetReport> {
+    std::fs::create_dir_all(dir)?;
+    let mut report = DatasetReport {
+        frames,
+        ..Default::default()
+    };
+    let done = AtomicUsize::new(0);
+    for (shard, first) in (0..frames).step_by(SHARD_FRAMES).enumerate() {
+        let path = dir.join(format!("shard_{shard:05}.safetensors"));
+        let n = SHARD_FRAMES.min(frames - first);
+        if path.exists() {
+            report.resumed_shards += 1;
+            done.fetch_add(n, Ordering::Relaxed);
+            continue;
+        }
+        let made: Vec<OccupancyFrame> = (first..first + n)
+            .into_par_iter()
+            .map(|i| {
+                let frame = occupancy_frame(seed, i as u64);
+                done.fetch_add(1, Ordering::Relaxed);
+                frame
+            })
+            .collect();
+        report.bytes += write_shard(&path, &made)?;
+        if !progress(done.load(Ordering::Relaxed)) {
+            break;
+        }
+    }
+    Ok(report)
+}
+
+fn write_shard(path: &PathBuf, frames: &[OccupancyFrame]) -> std::io::Result<u64> {
+    let grids = |pick: fn(&OccupancyFrame) -> &VoxelGrid| -> Vec<u8> {
+        frames.iter().flat_map(|f| pick(f).to_dense()).collect()
+    };
+    let voxels = vec![frames.len(), GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    let (dense, labels, draft) = (grids(|f| &f.dense), grids(|f| &f.labels), grids(|f| &f.draft));
+    let bev: Vec<u8> = frames
+        .iter()
+        .flat_map(|f| f.bev.iter().flat_map(|b| b.to_le_bytes()))
+        .collect();
+    let view = |dtype, shape: &[usize], data| TensorView::new(dtype, shape.to_vec(), data);
+    let tensors = [
+        ("dense", view(Dtype::U8, &voxels, &dense)),
+        ("labels", view(Dtype::U8, &voxels, &labels)),
+        ("draft", view(Dtype::U8, &voxels, &draft)),
+        ("bev", view(Dtype::I32, &voxels[..3], &bev)),
+    ];
+    let tensors = tensors
+        .into_iter()
+        .map(|(name, t)| t.map(|t| (name, t)))
+        .collect::<Result<Vec<_>, _>>()
+        .and_then(|t| safetensors::serialize(t, None));
+    let bytes = tensors.map_err(std::io::Error::other)?;
+    let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(Path::new(".")))?;
+    std::io::Write::write_all(&mut file, &bytes)?;
+    file.persist(path)?;
+    Ok(bytes.len() as u64)
+}

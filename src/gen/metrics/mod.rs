@@ -1,0 +1,5 @@
+//! Figures of merit, each with its definition.
+
+pub mod agreement;
+pub mod iou;
+pub mod stats;

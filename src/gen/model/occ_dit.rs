@@ -1,0 +1,411 @@
+//! Latent diffusion transformer for occupancy: predicts v from a noisy latent, a timestep and a
+//! condition (mask, context, draft, layout). adaLN-Zero blocks of Peebles and Xie, arXiv 2212.09748,
+//! over 625 tokens of 2x2 cells. Twin of `training/models/occ_dit.py`.
+
+use rayon::prelude::*;
+use serde::Deserialize;
+
+use super::layers::{Head, Linear, NORM_EPS};
+use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
+use crate::generation::weights::{WeightFile, WeightsError};
+use crate::scene::GridSpec;
+
+const PATCH: usize = 2;
+const TOKENS_PER_SIDE: usize = SIDE / PATCH;
+const TOKENS: usize = TOKENS_PER_SIDE * TOKENS_PER_SIDE;
+const PATCH_CELLS: usize = PATCH * PATCH;
+const COLUMNS: usize = GridSpec::NX / SIDE;
+const LAYERS: usize = 18;
+/// Layout channels of a cell: one per column and layer, `(dx * 4 + dy) * 18 + layer`.
+const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
+/// Mask, context, draft, layout.
+const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT;
+/// Tokens that are worked on in one piece.
+const PIECE: usize = 40;
+
+/// Sizes, as in the file's metadata.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DitConfig {
+    /// Numbers per latent cell; 8.
+    pub latent: usize,
+    /// Channels of a token.
+    pub width: usize,
+    /// Blocks.
+    pub depth: usize,
+    /// Attention heads.
+    pub heads: usize,
+    /// Numbers of the timestep embedding.
+    pub frequencies: usize,
+}
+
+impl DitConfig {
+    fn check(&self) -> Result<(), String> {
+        if self.latent != CHANNELS {
+            Err(format!("latent: expected {CHANNELS}, found {}", self.latent))
+        } else if !(1..=4096).contains(&self.width) || !self.width.is_multiple_of(4) {
+            Err(format!(
+                "width: expected a multiple of 4 up to 4096, found {}",
+                self.width
+            ))
+        } else if !(1..=256).contains(&self.depth) {
+            Err(format!("depth: expected 1 to 256, found {}", self.depth))
+        } else if self.heads == 0 || !self.width.is_multiple_of(self.heads) {
+            Err(format!(
+                "heads: expected a divisor of {}, found {}",
+                self.width, self.heads
+            ))
+        } else if !(2..=4096).contains(&self.frequencies) || !self.frequencies.is_multiple_of(2) {
+            Err(format!(
+                "frequencies: expected an even number up to 4096, found {}",
+                self.frequencies
+            ))
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// What a scene is generated from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DitCondition {
+    /// Bits of the 18 layers, `[x][y]`, 200x200.
+    pub bev: Vec<u32>,
+    /// Latent of the layout extruded naively, 50x50x8.
+    pub draft_latent: Vec<f32>,
+    /// 1 where a cell is to be generated, 0 where it is kept, 50x50.
+    pub mask: Vec<f32>,
+    /// Latent of what is kept, 50x50x8; 0 where the mask is 1.
+    pub context: Vec<f32>,
+}
+
+/// The part of the token embedding that depends on neither state nor time, `[token][width]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared(Vec<f32>);
+
+struct Block {
+    ada: Linear,
+    qkv: Linear,
+    proj: Linear,
+    fc1: Linear,
+    fc2: Linear,
+}
+
+/// The network with its weights.
+pub struct OccDit {
+    config: DitConfig,
+    embed_x: Linear,
+    embed_condition: Linear,
+    time1: Linear,
+    time2: Linear,
+    blocks: Vec<Block>,
+    final_ada: Linear,
+    last: Linear,
+    positions: Vec<f32>, // [token][width]
+}
+
+impl OccDit {
+    /// Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    pub fn new(mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
+        let config: DitConfig = file.config("config")?;
+        config
+            .check()
+            .map_err(|reason| file.config_error("config", reason))?;
+        let (w, width) = (&mut file, config.width);
+        let block = |w: &mut WeightFile<'_>, i: usize| {
+            let mut linear = |name: &str, inputs, outputs| {
+                Linear::new(w, &format!("blocks.{i}.{name}"), inputs, outputs, &[])
+            };
+            Ok(Block {
+                ada: linear("ada", width, 6 * width)?,
+                qkv: linear("qkv", width, 3 * width)?,
+                proj: linear("proj", width, width)?,
+                fc1: linear("fc1", width, 4 * width)?,
+                fc2: linear("fc2", 4 * width, width)?,
+            })
+        };
+        let dit = Self {
+            embed_x: Linear::new(w, "embed_x", PATCH_CELLS * CHANNELS, width, &[])?,
+            embed_condition: Linear::without_bias(w, "embed_condition", PATCH_CELLS * CONDITION, width, &[])?,
+            time1: Linear::new(w, "time1", config.frequencies, width, &[])?,
+            time2: Linear::new(w, "time2", width, width, &[])?,
+            blocks: (0..config.depth)
+                .map(|i| block(w, i))
+                .collect::<Result<_, WeightsError>>()?,
+            final_ada: Linear::new(w, "final_ada", width, 2 * width, &[])?,
+            last: Linear::new(w, "final", width, PATCH_CELLS * CHANNELS, &[])?,
+            positions: positions(TOKENS_PER_SIDE, TOKENS_PER_SIDE, width),
+            config,
+        };
+        file.finish()?;
+        Ok(dit)
+    }
+
+    /// Sizes of the network.
+    pub fn config(&self) -> &DitConfig {
+        &self.config
+    }
+
+    /// The condition without layout and draft, for guidance: what training shows one time in ten.
+    pub fn null_condition(&self, condition: &DitCondition) -> DitCondition {
+        DitCondition {
+            bev: vec![0; condition.bev.len()],
+            draft_latent: vec![0.0; condition.draft_latent.len()],
+            ..condition.clone()
+        }
+    }
+
+    /// Embeds a condition, once per job.
+    pub fn prepare(&self, condition: &DitCondition) -> Result<Prepared, ModelError> {
+        check_length("layout", condition.bev.len(), GridSpec::COLUMNS)?;
+        check_length("draft latent", condition.draft_latent.len(), LATENT)?;
+        check_length("mask", condition.mask.len(), CELLS)?;
+        check_length("context", condition.context.len(), LATENT)?;
+        check_finite("draft latent", &condition.draft_latent)?;
+        check_finite("mask", &condition.mask)?;
+        check_finite("context", &condition.context)?;
+        let row = PATCH_CELLS * CONDITION;
+        let mut tokens = vec![0.0; TOKENS * row];
+        tokens
+            .par_chunks_mut(row)
+            .enumerate()
+            .for_each(|(token, values)| {
+                for (cell, values) in patch(token).zip(values.chunks_exact_mut(CONDITION)) {
+                    values[0] = condition.mask[cell];
+                    values[1..][..CHANNELS]
+                        .copy_from_slice(&condition.context[cell * CHANNELS..][..CHANNELS]);
+                    values[1 + CHANNELS..][..CHANNELS]
+                        .copy_from_slice(&condition.draft_latent[cell * CHANNELS..][..CHANNELS]);
+                    let layout = values[1 + 2 * CHANNELS..].chunks_exact_mut(LAYERS).enumerate();
+                    for (column, layers) in layout {
+                        let x = cell / SIDE * COLUMNS + column / COLUMNS;
+                        let y = cell % SIDE * COLUMNS + column % COLUMNS;
+                        let bits = condition.bev[x * GridSpec::NY + y];
+                        for (layer, value) in layers.iter_mut().enumerate() {
+                            *value = (bits >> layer & 1) as f32;
+                        }
+                    }
+                }
+            });
+        let mut embedded = self.embed_condition.parallel(&tokens, PIECE);
+        embedded
+            .iter_mut()
+            .zip(&self.positions)
+            .for_each(|(e, p)| *e += p);
+        Ok(Prepared(embedded))
+    }
+
+    /// v for the state `x` (50x50x8) at training step `t` (0 to 999, fractions allowed).
+    pub fn forward(&self, x: &[f32], t: f32, condition: &Prepared) -> Result<Vec<f32>, ModelError> {
+        check_length("state", x.len(), LATENT)?;
+        check_finite("state", x)?;
+        if !(0.0..1000.0).contains(&t) {
+            return Err(ModelError::Timestep(t));
+        }
+        let width = self.config.width;
+        check_length("condition", condition.0.len(), TOKENS * width)?;
+        let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
+        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
+        let mut time = self.time2.vector(&time);
+        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
+
+        let mut patches = Vec::with_capacity(LATENT);
+        for cell in (0..TOKENS).flat_map(patch) {
+            patches.extend_from_slice(&x[cell * CHANNELS..][..CHANNELS]);
+        }
+        let mut tokens = self.embed_x.parallel(&patches, PIECE);
+        tokens.iter_mut().zip(&condition.0).for_each(|(t, c)| *t += c);
+        let modulations: Vec<Vec<f32>> = self.blocks.par_iter().map(|b| b.ada.vector(&time)).collect();
+        for (block, ada) in self.blocks.iter().zip(&modulations) {
+            block.apply(&mut tokens, ada, self.config.heads);
+        }
+        let ada = self.final_ada.vector(&time);
+        let (shift, scale) = ada.split_at(width);
+        let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
+        let mut out = vec![0.0; LATENT];
+        for (token, row) in tokens.chunks_exact(width).enumerate() {
+            let mut normed = vec![0.0; width];
+            kernels::norm_rows(row, NORM_EPS, &scale, shift, &mut normed);
+            let values = self.last.vector(&normed);
+            for (cell, values) in patch(token).zip(values.chunks_exact(CHANNELS)) {
+                out[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
+            }
+        }
+        check_finite("predicted v", &out)?;
+        Ok(out)
+    }
+}
+
+impl Block {
+    /// In place over all tokens of one sequence. `ada` is shift, scale, gate for attention, then the same for the MLP.
+    fn apply(&self, tokens: &mut [f32], ada: &[f32], heads: usize) {
+        let width = ada.len() / 6;
+        let part = |i: usize| &ada[i * width..][..width];
+        let scale = |i: usize| part(i).iter().map(|s| 1.0 + s).collect::<Vec<f32>>();
+        let (scale1, scale2) = (scale(1), scale(4));
+        let count = tokens.len() / width;
+
+        let mut qkv = vec![0.0; count * 3 * width];
+        qkv.par_chunks_mut(PIECE * 3 * width)
+            .zip(tokens.par_chunks(PIECE * width))
+            .for_each(|(qkv, x)| {
+                let mut normed = vec![0.0; x.len()];
+                kernels::norm_rows(x, NORM_EPS, &scale1, part(0), &mut normed);
+                self.qkv.rows(&normed, qkv);
+            });
+        let head_width = width / heads;
+        let shrink = 1.0 / (head_width as f32).sqrt();
+        tokens
+            .par_chunks_mut(PIECE * width)
+            .enumerate()
+            .for_each(|(piece, x)| {
+                let rows = x.len() / width;
+                let mut attended = vec![0.0; x.len()];
+                let mut scores = vec![0.0; rows * count];
+                let mut queries = Vec::with_capacity(rows * head_width);
+                for head in 0..heads {
+                    queries.clear();
+                    for row in qkv[piece * PIECE * 3 * width..]
+                        .chunks_exact(3 * width)
+                        .take(rows)
+                    {
+                        queries.extend(row[head * head_width..][..head_width].iter().map(|q| q * shrink));
+                    }
+                    let head = Head {
+                        qkv: &qkv,
+                        stride: 3 * width,
+                        tokens: count,
+                        width: head_width,
+                        key_at: width + head * head_width,
+                        value_at: 2 * width + head * head_width,
+                    };
+                    head.attend(
+                        &queries,
+                        &mut scores,
+                        &mut attended[head.value_at - 2 * width..],
+                        width,
+                    );
+                }
+                let mut out = vec![0.0; x.len()];
+                self.proj.rows(&attended, &mut out);
+                kernels::add_gated(x, part(2), &out);
+                kernels::norm_rows(x, NORM_EPS, &scale2, part(3), &mut attended);
+                let mut hidden = vec![0.0; 4 * x.len()];
+                self.fc1.rows(&attended, &mut hidden);
+                kernels::gelu_all(&mut hidden);
+                self.fc2.rows(&hidden, &mut out);
+                kernels::add_gated(x, part(5), &out);
+            });
+    }
+}
+
+/// The four cells of a token, in the order of its channels.
+fn patch(token: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (token / TOKENS_PER_SIDE * PATCH, token % TOKENS_PER_SIDE * PATCH);
+    (0..PATCH_CELLS).map(move |i| (x + i / PATCH) * SIDE + y + i % PATCH)
+}
+
+/// Fixed positions, `[rows * columns][width]`: the first half of the channels encodes the column, the
+/// second half the row, each as [sin | cos] of pos / 10000^(i / (width / 4)).
+fn positions(rows: usize, columns: usize, width: usize) -> Vec<f32> {
+    let quarter = width / 4;
+    let mut out = Vec::with_capacity(rows * columns * width);
+    for token in 0..rows * columns {
+        for pos in [token % columns, token / columns] {
+            let angle = |i: usize| pos as f64 / 10000f64.powf(i as f64 / quarter as f64);
+            out.extend((0..quarter).map(|i| angle(i).sin() as f32));
+            out.extend((0..quarter).map(|i| angle(i).cos() as f32));
+        }
+    }
+    out
+}
+
+/// [cos | sin] of t * 10000^(-i / half).
+fn timestep_embedding(t: f32, numbers: usize) -> Vec<f32> {
+    let half = numbers / 2;
+    let angle = |i: usize| f64::from(t) * (-(10000f64.ln()) * i as f64 / half as f64).exp();
+    let cos = (0..half).map(|i| angle(i).cos() as f32);
+    cos.chain((0..half).map(|i| angle(i).sin() as f32)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::golden::{Golden, gap};
+    use super::*;
+
+    const WIDTH: usize = 16;
+    const HEADS: usize = 4;
+
+    fn linear(golden: &Golden, name: &str, inputs: usize) -> Linear {
+        Linear::from_parts(
+            &golden.f32(&format!("{name}.weight")),
+            golden.f32(&format!("{name}.bias")),
+            inputs,
+        )
+    }
+
+    fn block(golden: &Golden, ada: Linear) -> Block {
+        Block {
+            ada,
+            qkv: linear(golden, "dit.qkv", WIDTH),
+            proj: linear(golden, "dit.proj", WIDTH),
+            fc1: linear(golden, "dit.fc1", WIDTH),
+            fc2: linear(golden, "dit.fc2", 4 * WIDTH),
+        }
+    }
+
+    /// Runs the block over sequences of `length` tokens: x [2][..][length][16], c [2][16].
+    fn run(block: &Block, x: &[f32], c: &[f32], length: usize) -> Vec<f32> {
+        let mut out = x.to_vec();
+        for (half, c) in out.chunks_exact_mut(x.len() / 2).zip(c.chunks_exact(WIDTH)) {
+            let time: Vec<f32> = c.iter().map(|v| kernels::silu(*v)).collect();
+            for sequence in half.chunks_exact_mut(length * WIDTH) {
+                block.apply(sequence, &block.ada.vector(&time), HEADS);
+            }
+        }
+        out
+    }
+
+    /// Tolerance of nn.json: 2e-5 of the largest value.
+    #[test]
+    fn adaln_zero_block_against_torch() {
+        let golden = Golden::nn();
+        let (x, c) = (golden.f32("dit.x"), golden.f32("dit.c"));
+        let ours = block(&golden, linear(&golden, "dit.ada", WIDTH));
+        assert!(gap(&run(&ours, &x, &c, 12), &golden.f64("dit.spatial")) < 2e-5);
+        // One token each: the first one of every sequence of the first frame.
+        let single: Vec<f32> = x
+            .chunks_exact(3 * 12 * WIDTH)
+            .flat_map(|b| b[..WIDTH].to_vec())
+            .collect();
+        assert!(gap(&run(&ours, &single, &c, 1), &golden.f64("dit.single_token")) < 2e-5);
+        // Zero modulation gates both branches off: x comes back bit for bit.
+        let zero = Linear::from_parts(&vec![0.0; 6 * WIDTH * WIDTH], vec![0.0; 6 * WIDTH], WIDTH);
+        assert_eq!(run(&block(&golden, zero), &x, &c, 12), x);
+    }
+
+    #[test]
+    fn embeddings_against_torch() {
+        let golden = Golden::nn();
+        assert!(gap(&positions(3, 4, 16), &golden.f64("pos.grid")) < 2e-5);
+        let (first, second) = (linear(&golden, "time.fc1", 32), linear(&golden, "time.fc2", 16));
+        let (mut sinusoid, mut mlp) = (Vec::new(), Vec::new());
+        for t in golden.f32("time.t") {
+            let embedded = timestep_embedding(t, 32);
+            let mut hidden = first.vector(&embedded);
+            hidden.iter_mut().for_each(|v| *v = kernels::silu(*v));
+            mlp.extend(second.vector(&hidden));
+            sinusoid.extend(embedded);
+        }
+        assert!(gap(&sinusoid, &golden.f64("time.sinusoid32")) < 2e-5);
+        assert!(gap(&mlp, &golden.f64("time.mlp")) < 2e-5);
+    }
+
+    #[test]
+    fn patches_hold_every_cell_once() {
+        let mut cells: Vec<usize> = (0..TOKENS).flat_map(patch).collect();
+        assert_eq!(cells[..8], [0, 1, 50, 51, 2, 3, 52, 53]);
+        cells.sort_unstable();
+        assert_eq!(cells, (0..CELLS).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,301 @@
+//! The generation itself: from a layout alone, or by inverting the source of an edit and denoising
+//! the touched region under the new layout. UniScene (occupancy, C.1 editing) with trajectory replay
+//! outside the region and a composite in label space.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
+use super::job::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage};
+use super::model::{DitCondition, OccModels, Prepared};
+use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
+use super::region::{CELLS, Region};
+use super::replay::{RegionNoise, edit_with_replay};
+use super::rng::{Stream, normal_field};
+use super::schedule::{Schedule, Spacing};
+use super::solver::{Branch, Denoiser, Guidance, Prediction, Sampler};
+use crate::scene::{BevLayout, Frame, SceneBox, VoxelGrid, draft, raster};
+
+/// Numbers per latent cell.
+const CHANNELS: usize = 8;
+/// Trajectories kept; each is about 2 MB at ten steps.
+const KEPT_TRAJECTORIES: usize = 24;
+
+/// What a trajectory was made for. Equal keys, equal trajectories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct SourceKey {
+    occupancy: u64,
+    layout: u64,
+    draft: u64,
+    steps: u32,
+    iterations: u32,
+}
+
+#[derive(Clone)]
+struct Source {
+    key: SourceKey,
+    trajectory: Arc<Trajectory>,
+    report: Option<InversionReport>, // none for a trajectory that sampling made
+}
+
+/// A layout as the networks read it.
+struct Condition {
+    bev: Vec<u32>,
+    draft: VoxelGrid,
+}
+
+impl Condition {
+    fn of<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox> + Clone) -> Self {
+        Self { bev: raster::bev_channels(layout, boxes.clone()), draft: draft::draft(layout, boxes) }
+    }
+}
+
+/// The network as a solver sees it, under one condition.
+struct Network<'a> {
+    models: &'a OccModels,
+    condition: Prepared,
+    without: Option<Prepared>,
+}
+
+impl Denoiser for Network<'_> {
+    type Error = GenError;
+
+    fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
+        let condition = match (branch, &self.without) {
+            (Branch::Unconditional, Some(without)) => without,
+            _ => &self.condition,
+        };
+        let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
+        let v = self.models.dit.forward(&x, t as f32, condition).map_err(GenError::failed)?;
+        Ok(v.into_iter().map(f64::from).collect())
+    }
+}
+
+/// Generates occupancy. Keeps the trajectories of recent sources, its own results among them, so
+/// that the next edit of a scene needs no inversion.
+pub struct OccPipeline {
+    models: Arc<OccModels>,
+    schedule: Schedule,
+    sources: VecDeque<Source>,
+}
+
+impl OccPipeline {
+    /// With these networks.
+    pub fn new(models: Arc<OccModels>) -> Self {
+        Self { models, schedule: Schedule::standard(), sources: VecDeque::new() }
+    }
+
+    /// With the weights that ship with the program.
+    pub fn bundled() -> Result<Self, GenError> {
+        Ok(Self::new(OccModels::bundled().map_err(GenError::failed)?))
+    }
+
+    /// The networks in use.
+    pub fn models(&self) -> &OccModels {
+        &self.models
+    }
+
+    fn sampler(&self, params: &GenParams, guidance: Guidance) -> Result<Sampler, GenError> {
+        let levels = self.schedule.levels(params.steps as usize, Spacing::Trailing)?;
+        Ok(Sampler { levels, prediction: Prediction::V, guidance })
+    }
+
+    fn network(
+        &self,
+        condition: &Condition,
+        mask: Vec<f32>,
+        context: Vec<f32>,
+        guided: bool,
+    ) -> Result<Network<'_>, GenError> {
+        let draft_latent = self.models.vae.encode(&condition.draft).map_err(GenError::failed)?;
+        let full = DitCondition { bev: condition.bev.clone(), draft_latent, mask, context };
+        let prepared = self.models.dit.prepare(&full).map_err(GenError::failed)?;
+        let without = if guided {
+            let null = self.models.dit.null_condition(&full);
+            Some(self.models.dit.prepare(&null).map_err(GenError::failed)?)
+        } else {
+            None
+        };
+        Ok(Network { models: &self.models, condition: prepared, without })
+    }
+
+    fn key(&self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams) -> SourceKey {
+        SourceKey {
+            occupancy: label_hash(occupancy),
+            layout: condition.bev.iter().fold(0, |h, b| super::world::draw::hash(h ^ u64::from(*b))),
+            draft: label_hash(&condition.draft),
+            steps: params.steps,
+            iterations: params.inversion_iterations,
+        }
+    }
+
+    fn remember(&mut self, source: Source) {
+        self.sources.retain(|s| s.key != source.key);
+        self.sources.push_front(source);
+        self.sources.truncate(KEPT_TRAJECTORIES);
+    }
+
+    /// The trajectory of a frame's source: from memory, or inverted now.
+    fn source(
+        &mut self,
+        frame: &Frame,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<Source, GenError> {
+        let old = &*frame.source;
+        let condition = Condition::of(&old.layout, old.boxes.values());
+        let key = self.key(&old.occupancy, &condition, params);
+        if let Some(known) = self.sources.iter().find(|s| s.key == key) {
+            return Ok(known.clone());
+        }
+        let sampler = self.sampler(params, Guidance::NONE)?;
+        ctx.progress(Stage::Encode, 0, 1)?;
+        let latent = report.timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy)).map_err(GenError::failed)?;
+        let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
+        let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
+            let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
+            let refinement = Refinement::damped(params.inversion_iterations as usize);
+            invert(&sampler, &clean, refinement, &mut network, |k, n| ctx.progress(Stage::Invert, k, n))
+        })?;
+        report.inversion_calls = inversion.calls;
+        report.network_calls += inversion.calls;
+        let source = Source { key, trajectory: Arc::new(trajectory), report: Some(inversion) };
+        self.remember(source.clone());
+        Ok(source)
+    }
+
+    /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
+    pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
+        let mut report = GenReport::default();
+        self.source(job.scene.frame(), &job.params, &mut report, ctx)?;
+        Ok(report.network_calls)
+    }
+
+    /// Relative RMS error of inverting the source of the job's frame and sampling it again.
+    pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
+        let frame = job.scene.frame();
+        let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
+        let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
+        let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
+        let sampler = self.sampler(&job.params, Guidance::NONE)?;
+        round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| ctx.progress(Stage::Denoise, k, n))
+    }
+
+    fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let (frame, params) = (job.scene.frame(), &job.params);
+        let mut report = GenReport::default();
+        let condition = Condition::of(&frame.layout, frame.boxes.values());
+        let sampler = self.sampler(params, params.guidance())?;
+        ctx.progress(Stage::Encode, 0, 1)?;
+        let guided = sampler.guidance.calls() > 1;
+        let mut network = report.timed(Stage::Encode, |_| {
+            self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], guided)
+        })?;
+        let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
+        let states = report.timed(Stage::Denoise, |_| {
+            sampler.sample(start, &mut network, |view| ctx.progress(Stage::Denoise, view.step, view.steps))
+        })?;
+        report.network_calls = params.steps as usize * sampler.guidance.calls();
+        drop(network);
+        let trajectory = Trajectory { levels: sampler.levels.clone(), states };
+        ctx.progress(Stage::Decode, 0, 1)?;
+        let latent = trajectory.latent_f32();
+        let generated = report.timed(Stage::Decode, |_| self.models.vae.decode(&latent)).map_err(GenError::failed)?;
+        let region = Region::full();
+        let source = &frame.source.occupancy;
+        let result = self.finish(job, source, &generated, &region, &mut report);
+        self.adopt(&result.occupancy, &condition, params, trajectory);
+        Ok(result)
+    }
+
+    fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let (frame, params) = (job.scene.frame(), &job.params);
+        let mut report = GenReport::default();
+        let region = report.timed(Stage::Composite, |_| Region::of_edit(frame, params.halo_columns as usize));
+        let before = &frame.source.occupancy;
+        if region.is_empty() {
+            // Nothing to redraw: no network is asked.
+            return Ok(self.finish(job, before, before, &region, &mut report));
+        }
+        let source = self.source(frame, params, &mut report, ctx)?;
+        if let Some(inversion) = &source.report {
+            report.noise_std = Some(inversion.std);
+            report.noise_max_abs = Some(inversion.max_abs);
+            if !inversion.moments_ok() {
+                report.notes.push(format!(
+                    "the inverted noise is unusual (std {:.2}, max {:.1})",
+                    inversion.std, inversion.max_abs
+                ));
+            }
+        }
+        let condition = Condition::of(&frame.layout, frame.boxes.values());
+        let sampler = self.sampler(params, params.guidance())?;
+        let guided = sampler.guidance.calls() > 1;
+        let latent = source.trajectory.latent_f32();
+        let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
+        let context = latent.iter().enumerate().map(|(i, v)| v * (1.0 - mask[i / CHANNELS])).collect();
+        let models = self.models.clone();
+        let mut network = report.timed(Stage::Encode, |_| self.network(&condition, mask, context, guided))?;
+        let noise = RegionNoise { strength: params.strength, seed: params.seed };
+        let preview_at = if params.quality == Quality::Final { params.steps as usize / 2 } else { 0 };
+        let edited = report.timed(Stage::Denoise, |report| {
+            edit_with_replay(&sampler, &source.trajectory, &region.cells, CHANNELS, noise, &mut network, |view| {
+                ctx.progress(Stage::Denoise, view.step, view.steps)?;
+                if view.step == preview_at && view.step > 1 {
+                    let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
+                    let grid = models.vae.decode_cells(&clean, &region.cells).map_err(GenError::failed)?;
+                    let occupancy = composite(before, &grid, &region, &frame.painted);
+                    ctx.preview(GenResult { key: job.key(), frame: job.scene.current, occupancy, report: report.clone() });
+                }
+                Ok(())
+            })
+        })?;
+        drop(network);
+        report.network_calls += edited.calls;
+        ctx.progress(Stage::Decode, 0, 1)?;
+        let generated = report
+            .timed(Stage::Decode, |_| self.models.vae.decode_cells(&edited.latent, &region.cells))
+            .map_err(GenError::failed)?;
+        let result = self.finish(job, before, &generated, &region, &mut report);
+        self.adopt(&result.occupancy, &condition, params, edited.trajectory);
+        Ok(result)
+    }
+
+    /// A result's own trajectory is that of the scene that adopts it: no inversion next time.
+    fn adopt(&mut self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams, trajectory: Trajectory) {
+        let key = self.key(occupancy, condition, params);
+        self.remember(Source { key, trajectory: Arc::new(trajectory), report: None });
+    }
+
+    fn finish(
+        &self,
+        job: &Job,
+        source: &VoxelGrid,
+        generated: &VoxelGrid,
+        region: &Region,
+        report: &mut GenReport,
+    ) -> GenResult {
+        let painted = &job.scene.frame().painted;
+        let occupancy = report.timed(Stage::Composite, |_| composite(source, generated, region, painted));
+        report.region_columns = region.column_count();
+        report.region_share = region.share();
+        report.region_cells = region.cell_count();
+        report.tokens = if report.network_calls > 0 { CELLS / 4 } else { 0 };
+        report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
+        report.voxels_changed = source.count_different(&occupancy);
+        report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
+        GenResult { key: job.key(), frame: job.scene.current, occupancy, report: std::mem::take(report) }
+    }
+}
+
+impl Pipeline for OccPipeline {
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        job.params.check()?;
+        ctx.check()?;
+        match job.params.region {
+            RegionMode::Full => self.generate(job, ctx),
+            RegionMode::Auto => self.edit(job, ctx),
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! Reads a weight file (safetensors, f16 or f32) and checks all of it before a network sees it.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use safetensors::{Dtype, SafeTensors};
+use thiserror::Error;
+
+/// Why weights were refused. Every message is one line that names the file.
+#[derive(Debug, Error)]
+pub enum WeightsError {
+    /// The file could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not a safetensors file, or a damaged one.
+    #[error("{file}: not a usable safetensors file: {reason}")]
+    Malformed {
+        /// Name of the file.
+        file: String,
+        /// What the reader said.
+        reason: String,
+    },
+    /// The metadata does not describe a network that this build can run.
+    #[error("{file}: metadata \"{field}\": {reason}")]
+    Config {
+        /// Name of the file.
+        file: String,
+        /// Which entry.
+        field: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A tensor that the network needs is not there.
+    #[error("{file}: tensor \"{tensor}\" is missing, expected shape {expected:?}")]
+    Missing {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// The shape the network needs.
+        expected: Vec<usize>,
+    },
+    /// A tensor of another shape.
+    #[error("{file}: tensor \"{tensor}\": expected shape {expected:?}, found {found:?}")]
+    Shape {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// The shape the network needs.
+        expected: Vec<usize>,
+        /// The shape in the file.
+        found: Vec<usize>,
+    },
+    /// Numbers stored in a type that is not read.
+    #[error("{file}: tensor \"{tensor}\": expected f16 or f32, found {found:?}")]
+    Dtype {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// The type in the file.
+        found: Dtype,
+    },
+    /// NaN or infinity.
+    #[error("{file}: tensor \"{tensor}\": value {index} is {value}, {count} values are not finite")]
+    NotFinite {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// Index of the first such value.
+        index: usize,
+        /// That value.
+        value: f32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A tensor that the network does not know: the file belongs to another version.
+    #[error("{file}: tensor \"{tensor}\" of shape {found:?} is not part of this network")]
+    Unknown {
+        /// Name of the file.
+        file: String,
+        /// Name of the tensor.
+        tensor: String,
+        /// Its shape.
+        found: Vec<usize>,
+    },
+}
+
+/// A parsed weight file. Networks [`take`](Self::take) their tensors; [`finish`](Self::finish) checks
+/// that nothing is left over.
+pub struct WeightFile<'data> {
+    name: String,
+    tensors: SafeTensors<'data>,
+    metadata: HashMap<String, String>,
+    taken: BTreeMap<String, ()>,
+    hash: u64,
+}
+
+impl<'data> WeightFile<'data> {
+    /// Parses the header; sizes are checked against the bytes that are there, so a header that
+    /// promises more than the file holds allocates nothing.
+    pub fn parse(name: &str, bytes: &'data [u8]) -> Result<Self, WeightsError> {
+        let malformed = |reason: safetensors::SafeTensorError| WeightsError::Malformed {
+            file: name.to_owned(),
+            reason: reason.to_string(),
+        };
+        let (_, header) = SafeTensors::read_metadata(bytes).map_err(malformed)?;
+        let metadata = header.metadata().clone().unwrap_or_default();
+        let tensors = SafeTensors::deserialize(bytes).map_err(malformed)?;
+        Ok(Self {
+            name: name.to_owned(),
+            tensors,
+            metadata,
+            taken: BTreeMap::new(),
+            hash: fnv1a(bytes),
+        })
+    }
+
+    /// Name of the file, for messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// FNV-1a of the whole file: names the weights in reports.
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// The metadata entry as JSON of the wanted type.
+    pub fn config<T: serde::de::DeserializeOwned>(&self, field: &'static str) -> Result<T, WeightsError> {
+        let refuse = |reason: String| WeightsError::Config {
+            file: self.name.clone(),
+            field,
+            reason,
+        };
+        let text = self
+            .metadata
+            .get(field)
+            .ok_or_else(|| refuse("is missing".into()))?;
+        serde_json::from_str(text).map_err(|e| refuse(e.to_string()))
+    }
+
+    /// An error about a metadata entry of this file.
+    pub fn config_error(&self, field: &'static str, reason: String) -> WeightsError {
+        WeightsError::Config {
+            file: self.name.clone(),
+            field,
+            reason,
+        }
+    }
+
+    /// A metadata entry as it stands.
+    pub fn metadata(&self, field: &str) -> Option<&str> {
+        self.metadata.get(field).map(String::as_str)
+    }
+
+    /// One tensor as f32, in C order; checks presence, shape, type and finite values.
+    pub fn take(&mut self, tensor: &str, expected: &[usize]) -> Result<Vec<f32>, WeightsError> {
+        let (file, tensor) = (self.name.clone(), tensor.to_owned());
+        let Ok(view) = self.tensors.tensor(&tensor) else {
+            return Err(WeightsError::Missing {
+                file,
+                tensor,
+                expected: expected.to_vec(),
+            });
+        };
+        if view.shape() != expected {
+            return Err(WeightsError::Shape {
+                file,
+                tensor,
+                expected: expected.to_vec(),
+                found: view.shape().to_vec(),
+            });
+        }
+        let values: Vec<f32> = match view.dtype() {
+            Dtype::F16 => {
+                let pairs = view.data().chunks_exact(2);
+                pairs
+                    .map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32())
+                    .collect()
+            }
+            Dtype::F32 => {
+                let quads = view.data().chunks_exact(4);
+                quads
+                    .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                    .collect()
+            }
+            found => return Err(WeightsError::Dtype { file, tensor, found }),
+        };
+        if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+            return Err(WeightsError::NotFinite {
+                file,
+                tensor,
+                index,
+                value: values[index],
+                count: values.iter().filter(|v| !v.is_finite()).count(),
+            });
+        }
+        self.taken.insert(tensor, ());
+        Ok(values)
+    }
+
+    /// Fails if the file holds a tensor that nobody took.
+    pub fn finish(self) -> Result<(), WeightsError> {
+        let mut names = self.tensors.names();
+        names.sort_unstable();
+        match names.into_iter().find(|n| !self.taken.contains_key(*n)) {
+            None => Ok(()),
+            Some(tensor) => Err(WeightsError::Unknown {
+                tensor: tensor.to_owned(),
+                found: self
+                    .tensors
+                    .tensor(tensor)
+                    .map(|v| v.shape().to_vec())
+                    .unwrap_or_default(),
+                file: self.name,
+            }),
+        }
+    }
+}
+
+/// Reads a file whole.
+pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
+    std::fs::read(path).map_err(|source| WeightsError::Read {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| {
+        (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use safetensors::tensor::TensorView;
+
+    fn file(values: &[f32], shape: &[usize], name: &str) -> Vec<u8> {
+        let data: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        let view = TensorView::new(Dtype::F32, shape.to_vec(), &data).expect("data of that shape");
+        safetensors::serialize([(name, view)], None).expect("serializable")
+    }
+
+    #[test]
+    fn takes_what_is_there() {
+        let bytes = file(&[1.0, -2.5, 3.0, 0.0], &[2, 2], "a.weight");
+        let mut weights = WeightFile::parse("w", &bytes).expect("valid");
+        assert_eq!(
+            weights.take("a.weight", &[2, 2]).expect("there"),
+            [1.0, -2.5, 3.0, 0.0]
+        );
+        weights.finish().expect("nothing left");
+    }
+
+    #[test]
+    fn refusals_name_file_tensor_and_shapes() {
+        let bytes = file(&[1.0; 4], &[2, 2], "a.weight");
+        let mut weights = WeightFile::parse("w.safetensors", &bytes).expect("valid");
+        let text = |e: WeightsError| e.to_string();
+        assert_eq!(
+            text(weights.take("b.bias", &[7]).expect_err("not there")),
+            "w.safetensors: tensor \"b.bias\" is missing, expected shape [7]"
+        );
+        assert_eq!(
+            text(weights.take("a.weight", &[4, 1]).expect_err("misshapen")),
+            "w.safetensors: tensor \"a.weight\": expected shape [4, 1], found [2, 2]"
+        );
+        assert_eq!(
+            text(weights.finish().expect_err("left over")),
+            "w.safetensors: tensor \"a.weight\" of shape [2, 2] is not part of this network"
+        );
+        for bad in [f32::NAN, f32::INFINITY] {
+            let bytes = file(&[1.0, bad, 2.0, bad], &[4], "a");
+            let mut weights = WeightFile::parse("w", &bytes).expect("valid");
+            let error = text(weights.take("a", &[4]).expect_err("not finite"));
+            assert_eq!(
+                error,
+                format!("w: tensor \"a\": value 1 is {bad}, 2 values are not finite")
+            );
+        }
+        let bytes = {
+            let view = TensorView::new(Dtype::I32, vec![1], &[0; 4]).expect("four bytes");
+            safetensors::serialize([("a", view)], None).expect("serializable")
+        };
+        let mut weights = WeightFile::parse("w", &bytes).expect("valid");
+        assert!(matches!(
+            weights.take("a", &[1]),
+            Err(WeightsError::Dtype {
+                found: Dtype::I32,
+                ..
+            })
+        ));
+        assert!(matches!(
+            weights.config::<u32>("config"),
+            Err(WeightsError::Config { .. })
+        ));
+    }
+
+    /// Row 62 of the extremes table: every truncation, and a header that promises too much.
+    #[test]
+    fn row_62_files() {
+        let bytes = file(&[1.0; 64], &[8, 8], "a.weight");
+        for length in 0..bytes.len() {
+            let error = WeightFile::parse("cut", &bytes[..length])
+                .map(|_| ())
+                .expect_err("truncated");
+            assert!(
+                matches!(error, WeightsError::Malformed { .. }),
+                "{length}: {error}"
+            );
+            assert!(!error.to_string().contains('\n'));
+        }
+        for shape in [
+            "[1099511627776,1099511627776]",
+            "[4611686018427387904]",
+            "[18446744073709551615,2]",
+        ] {
+            let header = format!("{{\"a\":{{\"dtype\":\"F32\",\"shape\":{shape},\"data_offsets\":[0,16]}}}}");
+            let mut bomb = (header.len() as u64).to_le_bytes().to_vec();
+            bomb.extend(header.as_bytes());
+            bomb.extend([0; 16]);
+            assert!(WeightFile::parse("bomb", &bomb).is_err());
+        }
+        let missing = read(Path::new("/nowhere/at/all")).expect_err("no such file");
+        assert!(missing.to_string().starts_with("/nowhere/at/all: "));
+    }
+}

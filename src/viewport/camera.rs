@@ -1,0 +1,418 @@
+//! The camera of the 3D view: orbits a target in the ego frame (x forward, y left, z up).
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use crate::scene::{Camera, GridSpec};
+
+/// A viewpoint that orbits a target; perspective or orthographic.
+///
+/// Depth is reversed: 1 at the near plane, 0 infinitely far (perspective) or at the far plane
+/// (orthographic). The view frame is x right, y up, z backward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewCamera {
+    /// Point in the middle of the view, ego frame, m.
+    pub target_m: DVec3,
+    /// From the eye to the target, m.
+    pub distance_m: f64,
+    /// Direction of view about z, rad: 0 looks along ego x, pi/2 along ego y.
+    pub yaw_rad: f64,
+    /// Direction of view above the horizon, rad; -pi/2 looks straight down.
+    pub pitch_rad: f64,
+    /// Vertical field of view, rad. In an orthographic view it sets, with the distance, the height shown.
+    pub fov_y_rad: f64,
+    /// True for an orthographic view.
+    pub ortho: bool,
+}
+
+/// Standard viewpoints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ViewPreset {
+    /// From behind and above, perspective: the start view.
+    Perspective,
+    /// From above, orthographic, ego x up.
+    Top,
+    /// From the front toward the ego vehicle, orthographic.
+    Front,
+    /// From the ego vehicle's right side, orthographic.
+    Side,
+    /// From where the driver sits, perspective.
+    Ego,
+}
+
+impl ViewPreset {
+    /// Every preset.
+    pub const ALL: [ViewPreset; 5] = [
+        ViewPreset::Perspective,
+        ViewPreset::Top,
+        ViewPreset::Front,
+        ViewPreset::Side,
+        ViewPreset::Ego,
+    ];
+
+    /// Name as on a command line: `perspective`.
+    pub fn name(self) -> &'static str {
+        match self {
+            ViewPreset::Perspective => "perspective",
+            ViewPreset::Top => "top",
+            ViewPreset::Front => "front",
+            ViewPreset::Side => "side",
+            ViewPreset::Ego => "ego",
+        }
+    }
+
+    /// The preset of that name.
+    pub fn from_name(name: &str) -> Option<ViewPreset> {
+        Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+}
+
+impl Default for ViewCamera {
+    fn default() -> Self {
+        Self::preset(ViewPreset::Perspective)
+    }
+}
+
+/// Nearest visible distance in a perspective view, m.
+const NEAR_M: f64 = 0.1;
+/// Half of the depth that an orthographic view shows about its target, m.
+const ORTHO_HALF_DEPTH_M: f64 = 1000.0;
+const DISTANCE_M: std::ops::RangeInclusive<f64> = 0.2..=1500.0;
+const TARGET_LIMIT_M: f64 = 2000.0;
+const FOV_RAD: std::ops::RangeInclusive<f64> = 0.05..=2.6;
+
+impl ViewCamera {
+    /// One of the standard viewpoints.
+    pub fn preset(preset: ViewPreset) -> Self {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let fov_y_rad = 45f64.to_radians();
+        let base = Self {
+            target_m: DVec3::new(4.0, 0.0, 0.0),
+            distance_m: 58.0,
+            yaw_rad: 0.42,
+            pitch_rad: -0.56,
+            fov_y_rad,
+            ortho: false,
+        };
+        let flat = |target_m, yaw_rad, pitch_rad, height_m: f64| Self {
+            target_m,
+            yaw_rad,
+            pitch_rad,
+            ortho: true,
+            distance_m: height_m / 2.0 / (fov_y_rad / 2.0).tan(),
+            ..base
+        };
+        match preset {
+            ViewPreset::Perspective => base,
+            ViewPreset::Top => flat(DVec3::ZERO, 0.0, -FRAC_PI_2, 84.0),
+            ViewPreset::Front => flat(DVec3::new(0.0, 0.0, 1.5), PI, 0.0, 30.0),
+            ViewPreset::Side => flat(DVec3::new(0.0, 0.0, 1.5), FRAC_PI_2, 0.0, 30.0),
+            ViewPreset::Ego => Self {
+                target_m: DVec3::new(12.0, 0.0, 0.7),
+                distance_m: 11.0,
+                yaw_rad: 0.0,
+                pitch_rad: -0.05,
+                fov_y_rad: 62f64.to_radians(),
+                ortho: false,
+            },
+        }
+    }
+
+    /// Looks through a camera of the rig: its position, direction and vertical field of view.
+    /// The principal point and roll are not reproduced.
+    pub fn through(camera: &Camera) -> Self {
+        let pose = camera.ego_from_camera();
+        let forward = pose.rotation * DVec3::Z;
+        let distance_m = 10.0;
+        Self {
+            target_m: pose.translation_m + forward * distance_m,
+            distance_m,
+            yaw_rad: forward.y.atan2(forward.x),
+            pitch_rad: forward.z.clamp(-1.0, 1.0).asin(),
+            fov_y_rad: 2.0 * (f64::from(camera.height) / 2.0 / camera.focal_px[1]).atan(),
+            ortho: false,
+        }
+        .sane()
+    }
+
+    /// The same camera with every field finite and in its range; what is broken comes from the start view.
+    pub fn sane(&self) -> Self {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let start = Self::preset(ViewPreset::Perspective);
+        let or = |v: f64, other: f64| if v.is_finite() { v } else { other };
+        let limit = DVec3::splat(TARGET_LIMIT_M);
+        Self {
+            target_m: if self.target_m.is_finite() {
+                self.target_m.clamp(-limit, limit)
+            } else {
+                start.target_m
+            },
+            distance_m: or(self.distance_m, start.distance_m).clamp(*DISTANCE_M.start(), *DISTANCE_M.end()),
+            yaw_rad: (or(self.yaw_rad, start.yaw_rad) + PI).rem_euclid(2.0 * PI) - PI,
+            pitch_rad: or(self.pitch_rad, start.pitch_rad).clamp(-FRAC_PI_2, FRAC_PI_2),
+            fov_y_rad: or(self.fov_y_rad, start.fov_y_rad).clamp(*FOV_RAD.start(), *FOV_RAD.end()),
+            ortho: self.ortho,
+        }
+    }
+
+    /// Unit vectors right, up and forward of the view, ego frame.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let (sy, cy) = self.yaw_rad.sin_cos();
+        let (sp, cp) = self.pitch_rad.sin_cos();
+        // Right comes from the yaw alone, so that looking straight down is no special case.
+        let right = DVec3::new(sy, -cy, 0.0);
+        let forward = DVec3::new(cy * cp, sy * cp, sp);
+        [right, right.cross(forward), forward]
+    }
+
+    /// Position of the eye, ego frame, m.
+    pub fn eye_m(&self) -> DVec3 {
+        self.target_m - self.axes()[2] * self.distance_m
+    }
+
+    /// Turns about the target so that the scene follows a pointer: angles in rad, `dx` for a move to the
+    /// right, `dy` for a move down (the caller scales pixels, near 0.005 rad each).
+    pub fn orbit(&mut self, dx: f64, dy: f64) {
+        self.yaw_rad -= dx;
+        self.pitch_rad -= dy;
+        *self = self.sane();
+    }
+
+    /// Turns about the eye, as a head does: angles in rad, `dx` to the right, `dy` down.
+    pub fn look(&mut self, dx: f64, dy: f64) {
+        let eye = self.eye_m();
+        self.orbit(dx, dy);
+        self.target_m = eye + self.axes()[2] * self.distance_m;
+    }
+
+    /// Shifts the view so that the point at the target follows a pointer that moved by `delta_px`
+    /// (y down) in a view of `size_px`.
+    pub fn pan(&mut self, delta_px: DVec2, size_px: [u32; 2]) {
+        let [right, up, _] = self.axes();
+        let m_per_px = self.height_at_target_m() / f64::from(size_px[1].max(1));
+        self.target_m += (up * delta_px.y - right * delta_px.x) * m_per_px;
+        *self = self.sane();
+    }
+
+    /// Comes nearer by `factor` (2 halves the distance), keeping the point `toward` where it is on screen.
+    pub fn zoom(&mut self, factor: f64, toward: Option<DVec3>) {
+        if !(factor.is_finite() && factor > 0.0) {
+            return;
+        }
+        let old = self.distance_m;
+        self.distance_m = (old / factor).clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
+        if let Some(point) = toward.filter(|p| p.is_finite()) {
+            self.target_m = point + (self.target_m - point) * (self.distance_m / old);
+        }
+        *self = self.sane();
+    }
+
+    /// Moves eye and target by `step_m` in metres: x right, y up (ego z), z forward.
+    pub fn fly(&mut self, step_m: DVec3) {
+        let [right, _, forward] = self.axes();
+        self.target_m += right * step_m.x + DVec3::Z * step_m.y + forward * step_m.z;
+        *self = self.sane();
+    }
+
+    /// Puts a sphere (m) in the middle of the view and fits it in.
+    pub fn focus(&mut self, center_m: DVec3, radius_m: f64) {
+        self.target_m = center_m;
+        self.distance_m = radius_m.max(0.5) * 1.15 / (self.sane().fov_y_rad / 2.0).sin();
+        *self = self.sane();
+    }
+
+    /// Fits the whole grid in.
+    pub fn focus_all(&mut self) {
+        self.focus(DVec3::ZERO, GridSpec::MAX_M[0] * 1.1);
+    }
+
+    /// Height of the view at the target, m.
+    pub fn height_at_target_m(&self) -> f64 {
+        2.0 * self.distance_m * (self.fov_y_rad / 2.0).tan()
+    }
+
+    /// Takes points of the ego frame to the view frame.
+    pub fn view_from_world(&self) -> DMat4 {
+        let [right, up, forward] = self.axes();
+        let eye = self.eye_m();
+        let row = |axis: DVec3| axis.extend(-axis.dot(eye));
+        DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
+    }
+
+    /// Takes points of the view frame to clip space, reversed depth, 0 to 1.
+    pub fn clip_from_view(&self, size_px: [u32; 2]) -> DMat4 {
+        let aspect = aspect(size_px);
+        if self.ortho {
+            let half_h = self.height_at_target_m() / 2.0;
+            let half_w = half_h * aspect;
+            let (near, far) = (
+                self.distance_m - ORTHO_HALF_DEPTH_M,
+                self.distance_m + ORTHO_HALF_DEPTH_M,
+            );
+            // Depth 1 at `near`, 0 at `far`; z of the view frame points backward.
+            let depth = far - near;
+            DMat4::from_cols(
+                DVec4::new(1.0 / half_w, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, 1.0 / half_h, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, 1.0 / depth, 0.0),
+                DVec4::new(0.0, 0.0, far / depth, 1.0),
+            )
+        } else {
+            let f = 1.0 / (self.fov_y_rad / 2.0).tan();
+            DMat4::from_cols(
+                DVec4::new(f / aspect, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, f, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, 0.0, -1.0),
+                DVec4::new(0.0, 0.0, NEAR_M, 0.0),
+            )
+        }
+    }
+
+    /// Takes points of the ego frame to clip space.
+    pub fn clip_from_world(&self, size_px: [u32; 2]) -> DMat4 {
+        self.clip_from_view(size_px) * self.view_from_world()
+    }
+
+    /// Origin and unit direction, ego frame, of the ray through a point of the picture
+    /// (pixels, origin at the upper left corner, pixel centres at .5).
+    /// In an orthographic view the origin lies on the near plane.
+    pub fn ray_in_world(&self, pixel: DVec2, size_px: [u32; 2]) -> (DVec3, DVec3) {
+        let camera = self.sane();
+        let [right, up, forward] = camera.axes();
+        let size = DVec2::new(f64::from(size_px[0].max(1)), f64::from(size_px[1].max(1)));
+        let pixel = if pixel.is_finite() { pixel } else { size / 2.0 };
+        let ndc = DVec2::new(pixel.x / size.x * 2.0 - 1.0, 1.0 - pixel.y / size.y * 2.0);
+        let half_h = (camera.fov_y_rad / 2.0).tan();
+        let across = (right * (ndc.x * aspect(size_px)) + up * ndc.y) * half_h;
+        if camera.ortho {
+            let origin = camera.target_m + across * camera.distance_m - forward * ORTHO_HALF_DEPTH_M;
+            (origin, forward)
+        } else {
+            (camera.eye_m(), (forward + across).normalize())
+        }
+    }
+
+    /// Where a point of the ego frame appears, in pixels; `None` behind the near plane or for NaN.
+    pub fn project(&self, p_in_world: DVec3, size_px: [u32; 2]) -> Option<DVec2> {
+        let clip = self.sane().clip_from_world(size_px) * p_in_world.extend(1.0);
+        if !clip.is_finite() || clip.w <= NEAR_M * 0.5 {
+            return None;
+        }
+        let ndc = DVec2::new(clip.x, clip.y) / clip.w;
+        let size = DVec2::new(f64::from(size_px[0].max(1)), f64::from(size_px[1].max(1)));
+        Some(DVec2::new((ndc.x + 1.0) / 2.0, (1.0 - ndc.y) / 2.0) * size)
+    }
+}
+
+fn aspect(size_px: [u32; 2]) -> f64 {
+    f64::from(size_px[0].max(1)) / f64::from(size_px[1].max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [u32; 2] = [640, 360];
+
+    fn all() -> impl Iterator<Item = ViewCamera> {
+        ViewPreset::ALL.into_iter().map(ViewCamera::preset)
+    }
+
+    #[test]
+    fn ray_goes_through_what_is_projected() {
+        for camera in all() {
+            for p in [DVec3::new(12.0, 3.0, 1.0), DVec3::new(9.0, -2.5, 0.4)] {
+                let Some(pixel) = camera.project(p, SIZE) else {
+                    continue;
+                };
+                let (origin, dir) = camera.ray_in_world(pixel, SIZE);
+                assert!((dir.length() - 1.0).abs() < 1e-12);
+                let miss = (p - origin).cross(dir).length();
+                assert!(miss < 1e-9, "{camera:?}: {miss} m");
+                assert!((p - origin).dot(dir) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn target_is_in_the_middle_and_depth_is_reversed() {
+        for camera in all() {
+            let pixel = camera.project(camera.target_m, SIZE).expect("in front");
+            assert!((pixel - DVec2::new(320.0, 180.0)).length() < 1e-6);
+            let depth = |p: DVec3| {
+                let c = camera.clip_from_world(SIZE) * p.extend(1.0);
+                c.z / c.w
+            };
+            let forward = camera.axes()[2];
+            assert!(depth(camera.target_m) > depth(camera.target_m + forward));
+            assert!((0.0..=1.0).contains(&depth(camera.target_m)));
+        }
+        // From above, ego x points up on screen and ego y (left) to the left.
+        let top = ViewCamera::preset(ViewPreset::Top);
+        let ahead = top.project(DVec3::new(10.0, 0.0, 0.0), SIZE).expect("seen");
+        let left = top.project(DVec3::new(0.0, 10.0, 0.0), SIZE).expect("seen");
+        assert!(ahead.y < 180.0 && (ahead.x - 320.0).abs() < 1e-6);
+        assert!(left.x < 320.0 && (left.y - 180.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn zoom_keeps_the_point_under_the_cursor() {
+        for mut camera in all() {
+            let p = camera.target_m + camera.axes()[0] * 2.0;
+            let before = camera.project(p, SIZE).expect("in front");
+            camera.zoom(1.3, Some(p));
+            let after = camera.project(p, SIZE).expect("in front");
+            assert!((before - after).length() < 1e-6, "{camera:?}");
+        }
+    }
+
+    #[test]
+    fn pan_follows_the_pointer() {
+        let mut camera = ViewCamera::default();
+        let p = camera.target_m;
+        camera.pan(DVec2::new(30.0, -20.0), SIZE);
+        let moved = camera.project(p, SIZE).expect("in front") - DVec2::new(320.0, 180.0);
+        assert!((moved - DVec2::new(30.0, -20.0)).length() < 1e-6, "{moved}");
+    }
+
+    #[test]
+    fn nothing_non_finite_comes_out() {
+        let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 0.0];
+        for v in bad {
+            let camera = ViewCamera {
+                target_m: DVec3::splat(v),
+                distance_m: v,
+                yaw_rad: v,
+                pitch_rad: v,
+                fov_y_rad: v,
+                ortho: v == 0.0,
+            };
+            for size in [[0, 0], [1, 4000], SIZE] {
+                let matrix = camera.sane().clip_from_world(size);
+                assert!(matrix.is_finite(), "{v}: {matrix}");
+                let (origin, dir) = camera.ray_in_world(DVec2::splat(v), size);
+                assert!(origin.is_finite() && dir.is_finite());
+            }
+            let mut moved = ViewCamera::default();
+            moved.orbit(v, v);
+            moved.look(v, v);
+            moved.zoom(v, Some(DVec3::splat(v)));
+            moved.fly(DVec3::splat(v));
+            moved.pan(DVec2::splat(v), [0, 0]);
+            moved.focus(DVec3::splat(v), v);
+            assert!(moved.clip_from_world(SIZE).is_finite(), "{v}");
+            assert_eq!(ViewCamera::default().project(DVec3::splat(f64::NAN), SIZE), None);
+        }
+    }
+
+    #[test]
+    fn looks_through_the_rig() {
+        let rig = crate::scene::SensorRig::default();
+        for camera in &rig.cameras {
+            let view = ViewCamera::through(camera);
+            let eye = DVec3::from_array(camera.translation_m);
+            assert!((view.eye_m() - eye).length() < 1e-9);
+            let ahead = camera.ego_from_camera().rotation * DVec3::Z;
+            assert!(view.axes()[2].dot(ahead) > 0.9999);
+        }
+    }
+}

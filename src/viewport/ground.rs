@@ -1,0 +1,148 @@
+//! The layout: road markings painted on ground voxels, and a thin plane with all of its layers.
+
+use super::shared::{PipelineSpec, Shared};
+use super::{LayoutPlane, ViewOptions};
+use crate::scene::{BevLayer, Class, GridSpec, VoxelGrid};
+
+/// Layers that lie on ground voxels as paint, later ones on top, with their opacity.
+const PAINT: [(BevLayer, f32); 5] = [
+    (BevLayer::CarparkArea, 0.35),
+    (BevLayer::PedCrossing, 0.62),
+    (BevLayer::StopLine, 0.85),
+    (BevLayer::LaneDivider, 0.72),
+    (BevLayer::RoadDivider, 0.80),
+];
+
+/// Layers of the plane, later ones on top.
+const PLANE: [BevLayer; 8] = [
+    BevLayer::DrivableArea,
+    BevLayer::CarparkArea,
+    BevLayer::Walkway,
+    BevLayer::PedCrossing,
+    BevLayer::StopLine,
+    BevLayer::LaneDivider,
+    BevLayer::RoadDivider,
+    BevLayer::RoadBlock,
+];
+
+/// Both textures as uploaded last; compared to learn what changed.
+#[derive(Debug, Default)]
+pub(super) struct Ground {
+    markings: Vec<[u8; 4]>,
+    plane: Vec<[u8; 4]>,
+}
+
+impl Ground {
+    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
+        PipelineSpec {
+            shader: "ground",
+            blend: true,
+            depth_write: false,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..PipelineSpec::OPAQUE
+        }
+        .build(device, shared, samples)
+    }
+
+    /// Uploads the textures if they differ from the last ones.
+    pub fn update(
+        &mut self,
+        queue: &wgpu::Queue,
+        shared: &Shared,
+        bev: &[u32],
+        grid: &VoxelGrid,
+        options: &ViewOptions,
+    ) {
+        let markings = marking_texels(bev);
+        let plane = plane_texels(bev, grid, options);
+        if markings != self.markings || plane != self.plane {
+            shared.write_layout(queue, &markings, &plane);
+            (self.markings, self.plane) = (markings, plane);
+        }
+    }
+
+    /// True if the plane would show anything.
+    pub fn is_visible(&self) -> bool {
+        self.plane.iter().any(|t| t[3] != 0)
+    }
+}
+
+/// Cells of the layout, `[x][y]`, read as texels `[y][x]`; a layout of another size shows nothing.
+fn texels(bev: &[u32], texel: impl Fn(usize, usize, u32) -> [u8; 4]) -> Vec<[u8; 4]> {
+    let mut out = vec![[0; 4]; GridSpec::COLUMNS];
+    if bev.len() == GridSpec::COLUMNS {
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                out[y * GridSpec::NX + x] = texel(x, y, bev[x * GridSpec::NY + y]);
+            }
+        }
+    }
+    out
+}
+
+fn marking_texels(bev: &[u32]) -> Vec<[u8; 4]> {
+    texels(bev, |_, _, bits| {
+        let top = PAINT.iter().rev().find(|(layer, _)| bits & layer.bit() != 0);
+        top.map_or([0; 4], |(layer, opacity)| {
+            let [r, g, b] = layer.color();
+            [r, g, b, (opacity * 255.0) as u8]
+        })
+    })
+}
+
+fn plane_texels(bev: &[u32], grid: &VoxelGrid, options: &ViewOptions) -> Vec<[u8; 4]> {
+    if options.layout_plane == LayoutPlane::Off {
+        return vec![[0; 4]; GridSpec::COLUMNS];
+    }
+    let only_empty = options.layout_plane == LayoutPlane::WhereEmpty && options.voxels;
+    texels(bev, |x, y, bits| {
+        if only_empty && grid.column(x, y).iter().any(|c| *c < Class::FREE) {
+            return [0; 4];
+        }
+        let map = PLANE.into_iter().rev().find(|layer| bits & layer.bit() != 0);
+        let objects = Class::OBJECTS
+            .into_iter()
+            .filter_map(BevLayer::of_object)
+            .find(|layer| bits & layer.bit() != 0);
+        match (objects, map) {
+            (Some(layer), _) | (None, Some(layer)) => {
+                let [r, g, b] = layer.color();
+                [r, g, b, 255]
+            }
+            (None, None) => [0; 4],
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn textures_follow_the_layout() {
+        let mut bev = vec![0; GridSpec::COLUMNS];
+        bev[30 * GridSpec::NY + 70] = BevLayer::DrivableArea.bit() | BevLayer::RoadDivider.bit();
+        bev[31 * GridSpec::NY + 70] = BevLayer::DrivableArea.bit() | BevLayer::Car.bit();
+        let at = |x: usize| 70 * GridSpec::NX + x;
+        let paint = marking_texels(&bev);
+        assert_eq!(paint[at(30)][..3], BevLayer::RoadDivider.color());
+        assert_eq!(paint[at(31)], [0; 4]);
+        let mut grid = VoxelGrid::new();
+        let mut options = ViewOptions {
+            layout_plane: LayoutPlane::WhereEmpty,
+            ..ViewOptions::default()
+        };
+        assert_eq!(
+            plane_texels(&bev, &grid, &options)[at(31)][..3],
+            BevLayer::Car.color()
+        );
+        grid.set(31, 70, 0, 11);
+        assert_eq!(plane_texels(&bev, &grid, &options)[at(31)], [0; 4]);
+        options.layout_plane = LayoutPlane::Always;
+        assert_eq!(plane_texels(&bev, &grid, &options)[at(31)][3], 255);
+        options.layout_plane = LayoutPlane::Off;
+        assert!(plane_texels(&bev, &grid, &options).iter().all(|t| t[3] == 0));
+        // A layout of another size is not read past its end.
+        assert!(marking_texels(&[1; 7]).iter().all(|t| t[3] == 0));
+    }
+}

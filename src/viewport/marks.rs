@@ -1,0 +1,224 @@
+//! What is drawn over the voxels as lines and fills: boxes, frusta, the metre grid, brush cells.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+
+use super::faces::{FaceList, FaceStyle};
+use super::lines::LineList;
+use super::meshing::NORMALS;
+use super::{GROUND_TOP_M, ViewScene, drop_m, ego};
+use crate::scene::{Camera, GridSpec, SceneBox, SensorRig};
+
+/// All marks of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Marks {
+    /// Lines that show through what hides them.
+    pub see_through: LineList,
+    /// Other lines.
+    pub plain: LineList,
+    /// Fills.
+    pub faces: FaceList,
+}
+
+const SELECTED: [u8; 3] = [255, 255, 255];
+const FRUSTUM: [u8; 3] = [122, 196, 255];
+/// Side of the square that a soft shadow's blob covers, relative to the vehicle.
+const SHADOW_SPREAD: f64 = 1.5;
+
+impl Marks {
+    /// Of a scene, under its options.
+    pub fn of(scene: &ViewScene<'_>) -> Self {
+        let mut marks = Self::default();
+        let options = scene.options;
+        let down = DVec3::Z * drop_m(options);
+        if options.grid_lines {
+            marks.metre_grid();
+        }
+        if options.ego {
+            marks.ego_shadow(scene.rig, down.z);
+        }
+        if options.frusta {
+            for camera in &scene.rig.cameras {
+                marks.frustum(camera, down);
+            }
+        }
+        if options.boxes {
+            for b in scene.boxes.iter().filter(|b| b.problem().is_none()) {
+                let selected = scene.selected.contains(&b.id);
+                let lowered = SceneBox {
+                    center_m: b.center_m - down,
+                    ..**b
+                };
+                marks.scene_box(&lowered, selected, scene.hovered == Some(b.id));
+            }
+        }
+        if let Some(brush) = scene.brush {
+            marks.cells(brush.cells, brush.color);
+        }
+        marks
+    }
+
+    fn metre_grid(&mut self) {
+        let z = GROUND_TOP_M + 0.005;
+        let end = GridSpec::MAX_M[0];
+        for i in -4i32..=4 {
+            let at = f64::from(i) * 10.0;
+            let alpha = if i.abs() == 4 { 70 } else { 34 };
+            let grey = [206, 214, 226, alpha];
+            if i != 0 {
+                self.plain
+                    .add(DVec3::new(-end, at, z), DVec3::new(end, at, z), grey, 1.0);
+                self.plain
+                    .add(DVec3::new(at, -end, z), DVec3::new(at, end, z), grey, 1.0);
+            }
+        }
+        // Axes: x forward red, y left green, stronger ahead and to the left than behind.
+        let axis = |dir: DVec3, color: [u8; 3], list: &mut LineList| {
+            let o = DVec3::new(0.0, 0.0, z);
+            let [r, g, b] = color;
+            list.add(o, o - dir * end, [r, g, b, 50], 1.0);
+            list.add(o, o + dir * end, [r, g, b, 130], 1.4);
+        };
+        axis(DVec3::X, [240, 104, 96], &mut self.plain);
+        axis(DVec3::Y, [120, 200, 110], &mut self.plain);
+    }
+
+    fn ego_shadow(&mut self, rig: &SensorRig, drop_m: f64) {
+        let (size, center) = ego::measures(rig);
+        let (l, w) = (size.x / 2.0 * SHADOW_SPREAD, size.y / 2.0 * SHADOW_SPREAD);
+        let at = |x: f64, y: f64| DVec3::new(center.x + x, center.y + y, 0.01 - drop_m);
+        self.faces.add(
+            [at(l, w), at(-l, w), at(-l, -w), at(l, -w)],
+            [8, 10, 14, 170],
+            FaceStyle::Blob,
+        );
+    }
+
+    fn frustum(&mut self, camera: &Camera, down: DVec3) {
+        const DEPTH_M: f64 = 2.2;
+        let pose = camera.ego_from_camera();
+        let [w, h] = [f64::from(camera.width), f64::from(camera.height)];
+        let at = |u: f64, v: f64| {
+            let x = (u - camera.center_px[0]) / camera.focal_px[0];
+            let y = (v - camera.center_px[1]) / camera.focal_px[1];
+            pose.apply(DVec3::new(x, y, 1.0) * DEPTH_M) - down
+        };
+        let apex = pose.translation_m - down;
+        let corners = [at(0.0, 0.0), at(w, 0.0), at(w, h), at(0.0, h)];
+        let [r, g, b] = FRUSTUM;
+        for i in 0..4 {
+            self.see_through.add(apex, corners[i], [r, g, b, 120], 1.0);
+            self.see_through
+                .add(corners[i], corners[(i + 1) % 4], [r, g, b, 230], 1.4);
+        }
+        // A tick on the upper edge says which way is up.
+        let up = at(w / 2.0, -0.22 * h);
+        self.see_through
+            .path(&[at(0.42 * w, 0.0), up, at(0.58 * w, 0.0)], [r, g, b, 230], 1.2);
+        self.faces.add(corners, [r, g, b, 16], FaceStyle::Plain);
+    }
+
+    fn scene_box(&mut self, b: &SceneBox, selected: bool, hovered: bool) {
+        let [r, g, bl] = lighter(b.class.color(), if hovered { 0.55 } else { 0.22 });
+        let color = if selected {
+            [SELECTED[0], SELECTED[1], SELECTED[2], 255]
+        } else {
+            [r, g, bl, 255]
+        };
+        let width = match (selected, hovered) {
+            (true, _) => 2.8,
+            (false, true) => 2.2,
+            _ => 1.4,
+        };
+        let half = b.size_m / 2.0;
+        let corner = |sx: f64, sy: f64, sz: f64| b.to_ego(DVec3::new(sx, sy, sz) * half);
+        let ring = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+        let low = ring.map(|(x, y)| corner(x, y, -1.0));
+        let high = ring.map(|(x, y)| corner(x, y, 1.0));
+        let lines = &mut self.see_through;
+        for i in 0..4 {
+            let j = (i + 1) % 4;
+            lines.add(low[i], low[j], color, width);
+            lines.add(high[i], high[j], color, width);
+            lines.add(low[i], high[i], color, width);
+        }
+        // Heading: a chevron on the roof, its tip at the front edge, and a tick ahead of the box.
+        let tip = corner(1.0, 0.0, 1.0);
+        let back = 1.0 - (b.size_m.y / b.size_m.x).min(1.2);
+        lines.path(
+            &[corner(back, 1.0, 1.0), tip, corner(back, -1.0, 1.0)],
+            color,
+            width,
+        );
+        let nose = corner(1.0, 0.0, -1.0);
+        let ahead = b.heading().extend(0.0) * (0.25 * b.size_m.x).clamp(0.3, 1.5);
+        lines.add(nose, nose + ahead, color, width + 0.8);
+        if selected || hovered {
+            let fill = [color[0], color[1], color[2], if selected { 30 } else { 18 }];
+            for i in 0..4 {
+                let j = (i + 1) % 4;
+                self.faces
+                    .add([low[i], low[j], high[j], high[i]], fill, FaceStyle::Plain);
+            }
+            self.faces.add(high, fill, FaceStyle::Plain);
+        }
+    }
+
+    /// The outer faces of a set of voxels, each with a rim.
+    fn cells(&mut self, cells: &[[usize; 3]], color: [u8; 3]) {
+        const LIMIT: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+        let inside: HashSet<[usize; 3]> = cells
+            .iter()
+            .copied()
+            .filter(|c| (0..3).all(|i| c[i] < LIMIT[i]))
+            .collect();
+        let mut order: Vec<_> = inside.iter().copied().collect();
+        order.sort_unstable();
+        let [r, g, b] = color;
+        for cell in order {
+            for normal in NORMALS {
+                let next = [0, 1, 2].map(|i| cell[i].wrapping_add_signed(normal[i] as isize));
+                if inside.contains(&next) {
+                    continue;
+                }
+                let n = DVec3::from_array(normal.map(f64::from));
+                let u = DVec3::new(n.y, n.z, n.x);
+                let v = n.cross(u);
+                let half = GridSpec::VOXEL_M / 2.0;
+                let middle = GridSpec::center(cell[0], cell[1], cell[2]) + n * (half + 0.012);
+                let at = |a: f64, b: f64| middle + (u * a + v * b) * half;
+                self.faces.add(
+                    [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)],
+                    [r, g, b, 84],
+                    FaceStyle::Rim,
+                );
+            }
+        }
+    }
+}
+
+fn lighter(color: [u8; 3], by: f32) -> [u8; 3] {
+    color.map(|c| c + (f32::from(255 - c) * by) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brush_cells_show_their_outer_faces_only() {
+        let faces = |cells: &[[usize; 3]]| {
+            let mut marks = Marks::default();
+            marks.cells(cells, [255; 3]);
+            marks.faces.vertices.len() / 4
+        };
+        assert_eq!(faces(&[]), 0);
+        assert_eq!(faces(&[[5, 5, 5]]), 6);
+        assert_eq!(faces(&[[5, 5, 5], [6, 5, 5]]), 10);
+        assert_eq!(faces(&[[5, 5, 5], [5, 5, 5]]), 6);
+        assert_eq!(faces(&[[0, 0, 0]]), 6);
+        // Cells outside of the grid are left out.
+        assert_eq!(faces(&[[200, 0, 0], [0, 0, 16]]), 0);
+    }
+}

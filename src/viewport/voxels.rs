@@ -1,0 +1,239 @@
+//! Occupancy as voxel faces, brick by brick; only bricks whose memory changed are meshed again.
+
+use std::sync::Arc;
+
+use super::light::{LightBlock, LightRays, REACH};
+use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
+use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::{ViewCamera, ViewOptions};
+use crate::scene::grid::{BRICK, BRICKS};
+use crate::scene::{GridSpec, VoxelGrid};
+
+/// A vertex is one word; see [`BrickMesh::vertices`].
+const STRIDE: usize = 4;
+
+/// Drawable of the occupancy.
+#[derive(Debug)]
+pub(super) struct Voxels {
+    grid: VoxelGrid, // as last uploaded; holding it keeps the addresses of its bricks unique
+    visible: Visible,
+    solid: Solidity,
+    rays: LightRays,
+    bricks: Vec<BrickBuffer>,
+}
+
+#[derive(Debug, Default)]
+struct BrickBuffer {
+    vertices: VertexBuffer,
+    quads: [std::ops::Range<u32>; 6],
+}
+
+/// What is shown under these options.
+pub(super) fn visible(options: &ViewOptions) -> Visible {
+    if !options.voxels {
+        return Visible {
+            hidden_classes: u32::MAX,
+            below_clip: 0,
+        };
+    }
+    let bins = match options.clip_above_m {
+        // The bin that holds the height is still shown; NaN clips nothing.
+        Some(z) if z.is_finite() => ((z - GridSpec::MIN_M[2]) * 2.5).ceil().clamp(0.0, 16.0) as u32,
+        _ => GridSpec::NZ as u32,
+    };
+    Visible {
+        hidden_classes: options.hidden_classes,
+        below_clip: ((1u32 << bins) - 1) as u16,
+    }
+}
+
+impl Voxels {
+    pub fn new() -> Self {
+        let grid = VoxelGrid::new();
+        let visible = Visible::ALL;
+        Self {
+            solid: Solidity::of(&grid, visible),
+            grid,
+            visible,
+            rays: LightRays::new(),
+            bricks: (0..BRICKS * BRICKS).map(|_| BrickBuffer::default()).collect(),
+        }
+    }
+
+    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
+        PipelineSpec {
+            shader: "voxels",
+            stride: STRIDE,
+            attributes: &wgpu::vertex_attr_array![0 => Uint32],
+            cull: true,
+            ..PipelineSpec::OPAQUE
+        }
+        .build(device, shared, samples)
+    }
+
+    /// Takes over a grid; true if anything had to be uploaded.
+    pub fn update(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        shared: &Shared,
+        grid: &VoxelGrid,
+        options: &ViewOptions,
+    ) -> bool {
+        let visible = visible(options);
+        let changed: Vec<usize> = if visible == self.visible {
+            grid.changed_bricks(&self.grid)
+        } else {
+            (0..BRICKS * BRICKS).collect()
+        };
+        self.visible = visible;
+        if changed.is_empty() {
+            return false;
+        }
+        let mut stale = [false; BRICKS * BRICKS];
+        let mut shape_changed = None;
+        for &b in &changed {
+            stale[b] = true;
+            let columns = self.solid.update(b, &grid.bricks()[b], visible);
+            if columns.is_some() {
+                // Faces at a brick's border depend on its neighbours.
+                neighbours(b).for_each(|n| stale[n] = true);
+            }
+            shape_changed = join(shape_changed, columns);
+        }
+        self.grid = grid.clone();
+        let stale: Vec<usize> = (0..BRICKS * BRICKS).filter(|&b| stale[b]).collect();
+        let meshes = mesh_bricks(grid, &self.solid, &stale);
+        for (&b, mesh) in stale.iter().zip(meshes) {
+            let BrickMesh { vertices, quads } = mesh;
+            self.bricks[b].quads = quads;
+            self.bricks[b]
+                .vertices
+                .write(device, queue, "voxel brick", &vertices);
+        }
+        if let Some((origin, size)) = shape_changed.map(lit_area) {
+            let block: LightBlock = self.rays.bake(&self.solid, origin, size);
+            shared.write_light(queue, &block);
+        }
+        true
+    }
+
+    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        shared: &Shared,
+        camera: &ViewCamera,
+        size: [u32; 2],
+    ) {
+        for (b, _) in self.in_view(camera, size) {
+            let brick = &self.bricks[b];
+            for range in facing(b, &brick.quads, camera) {
+                brick.vertices.draw_quads(pass, shared, range);
+            }
+        }
+    }
+
+    /// Rectangles held, seen or not.
+    pub fn quads(&self) -> usize {
+        self.bricks.iter().map(|b| b.vertices.quads() as usize).sum()
+    }
+
+    fn in_view(&self, camera: &ViewCamera, size: [u32; 2]) -> Vec<(usize, f64)> {
+        let clip = camera.clip_from_world(size);
+        let (eye, forward) = (camera.eye_m(), camera.axes()[2]);
+        let mut seen: Vec<(usize, f64)> = (0..self.bricks.len())
+            .filter(|&b| self.bricks[b].vertices.quads() > 0)
+            .filter_map(|b| {
+                let (low, high) = bounds_m(b);
+                let corners = (0..8).map(|i| {
+                    let pick = |axis: usize| {
+                        if i >> axis & 1 == 0 { low[axis] } else { high[axis] }
+                    };
+                    clip * glam::DVec4::new(pick(0), pick(1), pick(2), 1.0)
+                });
+                // Out of view if all corners are beyond one and the same edge of the picture.
+                let mut beyond = 0b11111u32;
+                for c in corners {
+                    let sides = [c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0];
+                    beyond &= sides
+                        .iter()
+                        .enumerate()
+                        .fold(0, |m, (i, s)| m | u32::from(*s) << i);
+                }
+                let middle = (low + high) / 2.0;
+                let distance = if camera.ortho {
+                    middle.dot(forward)
+                } else {
+                    (middle - eye).length()
+                };
+                (beyond == 0).then_some((b, distance))
+            })
+            .collect();
+        seen.sort_by(|a, b| a.1.total_cmp(&b.1));
+        seen
+    }
+}
+
+fn bounds_m(brick: usize) -> (glam::DVec3, glam::DVec3) {
+    let [x, y] = brick_origin(brick).map(|v| v as f64);
+    let side = BRICK as f64;
+    let corner = |dx: f64, z: f64| GridSpec::from_voxel_units(glam::DVec3::new(x + dx, y + dx, z));
+    (corner(0.0, 0.0), corner(side, side))
+}
+
+/// Ranges of rectangles whose side can be seen at all, neighbouring ranges joined.
+fn facing(brick: usize, quads: &[std::ops::Range<u32>; 6], camera: &ViewCamera) -> Vec<std::ops::Range<u32>> {
+    let (low, high) = bounds_m(brick);
+    let (eye, forward) = (camera.eye_m(), camera.axes()[2]);
+    let mut out: Vec<std::ops::Range<u32>> = Vec::with_capacity(6);
+    for (direction, range) in quads.iter().enumerate() {
+        let (axis, positive) = (direction / 2, NORMALS[direction][direction / 2] > 0);
+        let seen = match (camera.ortho, positive) {
+            (true, true) => forward[axis] < 0.0,
+            (true, false) => forward[axis] > 0.0,
+            (false, true) => eye[axis] > low[axis],
+            (false, false) => eye[axis] < high[axis],
+        };
+        if !seen || range.is_empty() {
+            continue;
+        }
+        match out.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => out.push(range.clone()),
+        }
+    }
+    out
+}
+
+fn neighbours(brick: usize) -> impl Iterator<Item = usize> {
+    let (bx, by) = (brick / BRICKS, brick % BRICKS);
+    [
+        (bx.wrapping_sub(1), by),
+        (bx + 1, by),
+        (bx, by.wrapping_sub(1)),
+        (bx, by + 1),
+    ]
+    .into_iter()
+    .filter(|(x, y)| *x < BRICKS && *y < BRICKS)
+    .map(|(x, y)| x * BRICKS + y)
+}
+
+/// Columns whose light may differ, lower corner and size: as far as light looks.
+fn lit_area((low, high): ColumnBox) -> ([usize; 2], [usize; 2]) {
+    let n = [GridSpec::NX, GridSpec::NY];
+    let low = low.map(|v| v.saturating_sub(REACH));
+    (low, [0, 1].map(|i| (high[i] + REACH).min(n[i]) - low[i]))
+}
+
+/// True if both hold the same bricks in memory.
+pub(super) fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
+    a.bricks().iter().zip(b.bricks()).all(|(a, b)| Arc::ptr_eq(a, b))
+}
+
+impl Voxels {
+    /// True if `grid` under `options` is what is uploaded.
+    pub fn holds(&self, grid: &VoxelGrid, options: &ViewOptions) -> bool {
+        visible(options) == self.visible && same_bricks(grid, &self.grid)
+    }
+}

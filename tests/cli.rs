@@ -1,0 +1,214 @@
+//! The built command on real input, and on bad input: one clear line, exit 2, nothing written.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn sceneloom(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .args(args)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output()
+        .expect("the built program runs")
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("one JSON object expected: {e}: {text}"))
+}
+
+/// The command fails with exit 2 and one line that holds every one of `needles`.
+fn refused(args: &[&str], needles: &[&str]) {
+    let output = sceneloom(args);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
+    assert_eq!(error.trim_end().lines().count(), 1, "{args:?}: {error}");
+    for needle in needles {
+        assert!(error.contains(needle), "{args:?}: {needle:?} is not in {error}");
+    }
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).display().to_string()
+    }
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, bytes).expect("writable");
+        path
+    }
+    fn scene(&self) -> String {
+        let path = self.path("scene.loom");
+        json(&sceneloom(&["new", "--template", "straight", "--seed", "3", "-o", &path, "--json"]));
+        path
+    }
+}
+
+#[test]
+fn templates_make_scenes_that_repeat() {
+    let dir = Folder::new();
+    let list = json(&sceneloom(&["new", "--template", "list", "--json"]));
+    for name in list["templates"].as_array().expect("a list") {
+        let name = name.as_str().expect("a name");
+        let (a, b) = (dir.path("a.loom"), dir.path("b.loom"));
+        let report = json(&sceneloom(&["new", "--template", name, "--seed", "5", "-o", &a, "--json"]));
+        assert!(report["occupied_voxels"].as_u64() > Some(30_000), "{report}");
+        assert!(report["classes"]["driveable_surface"].as_u64() > Some(2000), "{report}");
+        sceneloom(&["new", "--template", name, "--seed", "5", "-o", &b]);
+        assert_eq!(std::fs::read(&a).expect("written"), std::fs::read(&b).expect("written"), "{name}");
+    }
+}
+
+#[test]
+fn own_roads_import_with_traffic() {
+    let dir = Folder::new();
+    let roads = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/roads");
+    let files: Vec<PathBuf> = std::fs::read_dir(roads)
+        .expect("bundled roads")
+        .map(|e| e.expect("an entry").path())
+        .filter(|p| p.extension().is_some_and(|e| e == "xodr"))
+        .collect();
+    assert!(files.len() >= 3);
+    for file in files {
+        let report = json(&sceneloom(&["import", &file.display().to_string(), "-o", &dir.path("r.loom"), "--json"]));
+        assert_eq!(report["format"], "opendrive");
+        assert!(report["roads"].as_u64() > Some(0) && report["lanes"].as_u64() > Some(0), "{report}");
+    }
+}
+
+#[test]
+fn edits_keep_what_they_do_not_touch() {
+    let dir = Folder::new();
+    let scene = dir.scene();
+    let edits = dir.write(
+        "edits.json",
+        r#"[{"add_box": {"class": "traffic_cone", "center_m": [8.0, 0.5, 0.4], "size_m": [0.5, 0.5, 0.8], "yaw_deg": 0}},
+            {"paint_voxels": {"cells": [[100, 90, 3]], "class": "barrier"}}, {"set_prompt": {"prompt": "night"}}]"#,
+    );
+    let (a, b) = (dir.path("a.loom"), dir.path("b.loom"));
+    let args = |out: &str| {
+        let args = ["edit", &scene, "--edits", &edits, "--steps", "4", "--verify", "--json", "-o", out];
+        args.map(String::from)
+    };
+    let run = |out: &str| {
+        let args = args(out);
+        json(&sceneloom(&args.each_ref().map(String::as_str)))
+    };
+    let report = run(&a);
+    assert_eq!(report["untouched_voxels_changed"], 0);
+    assert!(report["network_calls"].as_u64() >= Some(4));
+    assert!(report["round_trip_error"].as_f64().is_some());
+    run(&b);
+    assert_eq!(std::fs::read(&a).expect("written"), std::fs::read(&b).expect("written"));
+}
+
+#[test]
+fn sensors_and_views_render() {
+    let dir = Folder::new();
+    let scene = dir.scene();
+    let out = dir.path("out");
+    let what = "semantic,depth,lidar,bev,view";
+    let report = json(&sceneloom(&["render", &scene, "--what", what, "--size", "160x90", "-o", &out, "--json"]));
+    let files = report["files"].as_array().expect("a list");
+    assert_eq!(files.len(), 6 + 12 + 2 + 2 + 1, "{files:?}");
+    assert!(report["lidar"]["returns"].as_u64() > Some(10_000));
+    let front = image::open(Path::new(&out).join("CAM_FRONT_semantic.png")).expect("a picture").to_rgb8();
+    assert_eq!(front.dimensions(), (160, 90));
+    let colors: std::collections::HashSet<_> = front.pixels().collect();
+    assert!(colors.len() > 8, "{} colours", colors.len());
+    let shot = dir.path("shot.png");
+    json(&sceneloom(&["shot", &scene, "--size", "320x200", "--transparent", "-o", &shot, "--json"]));
+    let shot = image::open(shot).expect("a picture").to_rgba8();
+    assert!(shot.pixels().any(|p| p[3] == 0) && shot.pixels().any(|p| p[3] == 255));
+}
+
+#[test]
+fn bad_arguments_are_named() {
+    let dir = Folder::new();
+    let scene = dir.scene();
+    let out = dir.path("never.loom");
+    refused(&["new", "--template", "spaceport", "-o", &out], &["spaceport", "straight"]);
+    refused(&["generate", &dir.path("missing.loom"), "-o", &out], &["missing.loom"]);
+    refused(&["generate", &scene, "--steps", "0", "-o", &out], &["steps", "0"]);
+    refused(&["render", &scene, "--what", "smell", "-o", &dir.path("x")], &["smell", "semantic"]);
+    refused(&["shot", &scene, "--view", "behind", "-o", &dir.path("x.png")], &["behind", "CAM_FRONT"]);
+    for (text, needles) in [
+        (r#"[{"remove_box": {"id": 99999}}]"#, ["99999", "edits.json"]),
+        (r#"[{"remove_box": {"id": 1, "why": 2}}]"#, ["why", "edits.json"]),
+        (r#"[{"paint_voxels": {"cells": [[200, 0, 0]], "class": "car"}}]"#, ["200", "edits.json"]),
+        (r#"[{"add_box": {"class": "terrain", "center_m": [1,1,1], "size_m": [1,1,1], "yaw_deg": 0}}]"#, ["terrain", "edits.json"]),
+        ("[{", ["edits.json", "line 1"]),
+    ] {
+        let edits = dir.write("edits.json", text);
+        refused(&["edit", &scene, "--edits", &edits, "-o", &out], &needles);
+    }
+    assert!(!Path::new(&out).exists(), "nothing may be written");
+}
+
+#[test]
+fn bad_files_are_named() {
+    let dir = Folder::new();
+    let whole = std::fs::read(dir.scene()).expect("written");
+    let out = dir.path("never.loom");
+    let truncated = dir.write("truncated.loom", &whole[..whole.len() / 2]);
+    refused(&["generate", &truncated, "-o", &out], &["truncated.loom"]);
+    let empty = dir.write("empty.loom", b"");
+    refused(&["generate", &empty, "-o", &out], &["empty.loom"]);
+    let road = |body: &str| {
+        format!(
+            r#"<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="7" length="10" junction="-1"><planView>{body}</planView>
+               <lanes><laneSection s="0"><right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right>
+               </laneSection></lanes></road></OpenDRIVE>"#
+        )
+    };
+    let line = |length: &str, x: &str| format!(r#"<geometry s="0" x="{x}" y="0" hdg="0" length="{length}"><line/></geometry>"#);
+    for (name, body) in [
+        ("nan.xodr", line("10", "NaN")),
+        ("zero.xodr", line("0", "0")),
+        ("none.xodr", String::new()),
+    ] {
+        let file = dir.write(name, road(&body));
+        refused(&["import", &file, "-o", &out], &[name, "7"]);
+    }
+    let good = dir.write("good.xodr", road(&line("10", "0")));
+    refused(&["import", &good, "--at", "5000,5000", "-o", &out], &["good.xodr", "5000"]);
+    let scene = dir.path("scene.loom");
+    let weights = dir.path("weights");
+    std::fs::create_dir(&weights).expect("writable");
+    refused(&["generate", &scene, "--weights", &weights, "-o", &out], &["occ_vae.safetensors"]);
+    std::fs::write(Path::new(&weights).join("occ_vae.safetensors"), b"not weights").expect("writable");
+    refused(&["generate", &scene, "--weights", &weights, "-o", &out], &["occ_vae.safetensors"]);
+    assert!(!Path::new(&out).exists(), "nothing may be written");
+}
+
+#[test]
+fn doctor_reports_and_no_display_means_demo() {
+    let report = json(&sceneloom(&["doctor", "--json"]));
+    assert_eq!(report["display"], false);
+    assert_eq!(report["weights"]["ok"], true, "{report}");
+    assert!(report["adapter"]["name"].is_string(), "a software adapter at least: {report}");
+    let dir = Folder::new();
+    let output = Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .current_dir(dir.0.path())
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output()
+        .expect("the built program runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no display"));
+    let report = std::fs::read(dir.0.path().join("sceneloom-demo/report.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    let edits = report["edits"].as_array().expect("a list");
+    assert!(edits.len() >= 5);
+    assert!(edits.iter().all(|e| e["untouched_voxels_changed"] == 0), "{report}");
+    for file in report["files"].as_array().expect("a list") {
+        let path = dir.0.path().join("sceneloom-demo").join(file.as_str().expect("a name"));
+        assert!(path.metadata().is_ok_and(|m| m.len() > 500), "{}", path.display());
+    }
+}

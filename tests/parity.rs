@@ -1,0 +1,343 @@
+//! The Rust networks against the Python ones that trained the shipped weights: goldens written by
+//! training/export.py (PyTorch, f32) for exactly these files.
+
+use std::sync::Arc;
+
+use safetensors::{Dtype, SafeTensors};
+use sceneloom::generation::model::{CELLS, CHANNELS, DitCondition, LATENT, ModelError, OccModels};
+use sceneloom::scene::VoxelGrid;
+
+const TOLERANCE: f32 = 1e-4;
+
+fn models() -> Arc<OccModels> {
+    OccModels::bundled().expect("the shipped weights")
+}
+
+struct Golden(Vec<u8>);
+
+impl Golden {
+    fn open(name: &str) -> Self {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/reference")
+            .join(name);
+        Self(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
+    }
+
+    fn bytes(&self, name: &str, dtype: Dtype) -> Vec<u8> {
+        let file = SafeTensors::deserialize(&self.0).expect("a safetensors file");
+        let tensor = file.tensor(name).expect("a tensor of the golden");
+        assert_eq!(tensor.dtype(), dtype, "{name}");
+        tensor.data().to_vec()
+    }
+
+    fn f32(&self, name: &str) -> Vec<f32> {
+        let bytes = self.bytes(name, Dtype::F32);
+        bytes
+            .chunks_exact(4)
+            .map(|b| f32::from_le_bytes(b.try_into().expect("4 bytes")))
+            .collect()
+    }
+
+    fn i32(&self, name: &str) -> Vec<i32> {
+        let bytes = self.bytes(name, Dtype::I32);
+        bytes
+            .chunks_exact(4)
+            .map(|b| i32::from_le_bytes(b.try_into().expect("4 bytes")))
+            .collect()
+    }
+}
+
+fn assert_close(what: &str, found: impl IntoIterator<Item = f32>, truth: &[f32]) {
+    let found: Vec<f32> = found.into_iter().collect();
+    assert_eq!(found.len(), truth.len(), "{what}");
+    let scale = truth.iter().fold(1.0f32, |m, v| m.max(v.abs()));
+    let worst = found
+        .iter()
+        .zip(truth)
+        .map(|(f, t)| (f - t).abs())
+        .fold(0.0f32, f32::max);
+    println!("{what}: largest difference {worst:.1e}, largest value {scale:.1}");
+    assert!(
+        worst <= TOLERANCE * scale,
+        "{what}: {worst} apart, values up to {scale}"
+    );
+}
+
+/// The scene of the VAE's golden.
+fn scene(golden: &Golden) -> VoxelGrid {
+    let mut grid = VoxelGrid::new();
+    for (at, label) in golden
+        .i32("voxels")
+        .into_iter()
+        .zip(golden.bytes("labels", Dtype::U8))
+    {
+        let at = at as usize;
+        grid.set(at / 3200, at / 16 % 200, at % 16, label);
+    }
+    grid
+}
+
+/// Numbers in [-1.75, 1.75), as `uniform` in training/export.py makes them.
+fn uniform(count: usize, stream: u64) -> Vec<f32> {
+    let number = |i: u64| {
+        let h = (i * 2_654_435_761 + stream * 40_503 + 12_345) % (1 << 32);
+        let h = (h ^ (h >> 15)) * 2_246_822_519 % (1 << 32);
+        (h as f64 / 4_294_967_296.0 * 3.5 - 1.75) as f32
+    };
+    (0..count as u64).map(number).collect()
+}
+
+/// `golden_condition` of training/export.py.
+fn condition() -> DitCondition {
+    let inside = |cell: usize| (10..31).contains(&(cell / 50)) && (17..40).contains(&(cell % 50));
+    let mask: Vec<f32> = (0..CELLS).map(|c| f32::from(u8::from(inside(c)))).collect();
+    let context = uniform(LATENT, 2)
+        .into_iter()
+        .enumerate()
+        .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]));
+    let bits = |x: usize, y: usize| {
+        (0..18)
+            .map(|l| u32::from((x * 3 + y * 5 + l * 37) % 97 < 11) << l)
+            .sum()
+    };
+    DitCondition {
+        bev: (0..40_000).map(|c| bits(c / 200, c % 200)).collect(),
+        draft_latent: uniform(LATENT, 3),
+        context: context.collect(),
+        mask,
+    }
+}
+
+#[test]
+fn vae_agrees_with_python() {
+    let (models, golden) = (models(), Golden::open("parity_vae.safetensors"));
+    let latent = golden.f32("latent");
+    assert_close(
+        "latent",
+        models.vae.encode(&scene(&golden)).expect("labels"),
+        &latent,
+    );
+    let logits = golden.f32("logits");
+    for (cell, truth) in golden.i32("cells").into_iter().zip(logits.chunks_exact(256 * 18)) {
+        let found = models
+            .vae
+            .logits(&latent, cell as usize)
+            .expect("a finite latent");
+        assert_close(&format!("logits of cell {cell}"), found, truth);
+    }
+}
+
+#[test]
+fn dit_agrees_with_python() {
+    let (models, golden) = (models(), Golden::open("parity_dit.safetensors"));
+    let prepared = models.dit.prepare(&condition()).expect("a condition");
+    let truth = golden.f32("every_fifth_v");
+    for (t, truth) in golden.f32("t").into_iter().zip(truth.chunks_exact(LATENT / 5)) {
+        let v = models
+            .dit
+            .forward(&uniform(LATENT, 1), t, &prepared)
+            .expect("a finite state");
+        assert_close(&format!("v at t = {t}"), v.into_iter().step_by(5), truth);
+    }
+}
+
+/// The labels are the lowest class among the largest logits (row 33), for every cell asked.
+#[test]
+fn row_33_decode() {
+    let models = models();
+    let latent = uniform(LATENT, 7);
+    let grid = models.vae.decode(&latent).expect("a finite latent");
+    for cell in [0, 49, 1275, 2499] {
+        let logits = models.vae.logits(&latent, cell).expect("a finite latent");
+        for (voxel, logits) in logits.chunks_exact(18).enumerate() {
+            let best = sceneloom::generation::model::kernels::argmax(logits).expect("no NaN");
+            let (x, y) = (cell / 50 * 4 + voxel / 64, cell % 50 * 4 + voxel / 16 % 4);
+            let found = usize::from(grid.get(x, y, voxel % 16));
+            assert!(
+                found == best || logits[best] - logits[found] < 1e-4,
+                "cell {cell}, voxel {voxel}"
+            );
+        }
+    }
+    for bad in [f32::NAN, f32::INFINITY, 1e38] {
+        let mut latent = latent.clone();
+        latent[777] = bad;
+        let error = models.vae.decode(&latent).expect_err("not finite");
+        assert!(
+            matches!(
+                error,
+                ModelError::NotFinite {
+                    what: "latent",
+                    index: 777,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+    assert!(matches!(
+        models.vae.decode(&latent[1..]),
+        Err(ModelError::Length {
+            found: 19_999,
+            expected: LATENT,
+            ..
+        })
+    ));
+    assert!(matches!(
+        models.vae.decode_cells(&latent, &[true]),
+        Err(ModelError::Length { found: 1, .. })
+    ));
+}
+
+/// Decoding some cells gives the labels of decoding all of them, also at the map's edge.
+#[test]
+fn decode_cells_is_a_part_of_decode() {
+    let models = models();
+    let latent = uniform(LATENT, 9);
+    let all = models.vae.decode(&latent).expect("a finite latent");
+    for (xs, ys) in [(0..1, 0..1), (20..24, 30..41), (47..50, 0..50), (12..13, 49..50)] {
+        let wanted: Vec<bool> = (0..CELLS)
+            .map(|c| xs.contains(&(c / 50)) && ys.contains(&(c % 50)))
+            .collect();
+        let some = models
+            .vae
+            .decode_cells(&latent, &wanted)
+            .expect("a finite latent");
+        for x in 0..200 {
+            for y in 0..200 {
+                if wanted[x / 4 * 50 + y / 4] {
+                    assert_eq!(some.column(x, y), all.column(x, y), "column ({x}, {y})");
+                } else {
+                    assert_eq!(some.column(x, y), &[17; 16], "column ({x}, {y})");
+                }
+            }
+        }
+    }
+    assert_eq!(
+        models
+            .vae
+            .decode_cells(&latent, &[false; CELLS])
+            .expect("nothing to do")
+            .count_set(),
+        0
+    );
+}
+
+/// An edit changes latents only within the encoder's reach, bit for bit.
+#[test]
+fn encoding_is_local() {
+    let models = models();
+    let mut grid = scene(&Golden::open("parity_vae.safetensors"));
+    let before = models.vae.encode(&grid).expect("labels");
+    for z in 0..5 {
+        grid.set(120, 101, z, 4);
+    }
+    let after = models.vae.encode(&grid).expect("labels");
+    let reach = models.vae.encoder_reach();
+    let mut changed = 0;
+    for i in 0..LATENT {
+        let (x, y) = (i / CHANNELS / 50, i / CHANNELS % 50);
+        if before[i] != after[i] {
+            assert!(
+                x.abs_diff(30) <= reach && y.abs_diff(25) <= reach,
+                "cell ({x}, {y}) changed"
+            );
+            changed += 1;
+        }
+    }
+    assert!(changed > 0);
+}
+
+/// Row 17: the number of threads changes no bit.
+#[test]
+fn row_17_same_bits_on_any_number_of_threads() {
+    let models = models();
+    let grid = scene(&Golden::open("parity_vae.safetensors"));
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
+        pool.install(|| {
+            let latent = models.vae.encode(&grid).expect("labels");
+            let prepared = models.dit.prepare(&condition()).expect("a condition");
+            let v = models
+                .dit
+                .forward(&uniform(LATENT, 1), 321.0, &prepared)
+                .expect("a finite state");
+            let bits = |values: Vec<f32>| values.into_iter().map(f32::to_bits).collect::<Vec<u32>>();
+            let labels = models.vae.decode(&latent).expect("a finite latent").to_dense();
+            (bits(latent), bits(v), labels)
+        })
+    };
+    let one = run(1);
+    assert!(one == run(2) && one == run(5));
+}
+
+#[test]
+fn conditions_are_checked() {
+    let models = models();
+    let good = condition();
+    let refusal = |change: &dyn Fn(&mut DitCondition)| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        models.dit.prepare(&bad).expect_err("refused").to_string()
+    };
+    assert_eq!(
+        refusal(&|c| c.bev.truncate(3)),
+        "layout has 3 values, expected 40000"
+    );
+    assert_eq!(
+        refusal(&|c| c.mask.push(0.0)),
+        "mask has 2501 values, expected 2500"
+    );
+    assert!(refusal(&|c| c.context[5] = f32::NAN).starts_with("context: value 5 is NaN"));
+    let prepared = models.dit.prepare(&good).expect("a condition");
+    for t in [-1.0, 1000.0, f32::NAN] {
+        assert!(matches!(
+            models.dit.forward(&good.context, t, &prepared),
+            Err(ModelError::Timestep(_))
+        ));
+    }
+    let null = models.dit.null_condition(&good);
+    assert!(null.mask == good.mask && null.context == good.context);
+    assert!(null.bev.iter().all(|b| *b == 0) && null.draft_latent.iter().all(|v| *v == 0.0));
+    assert_ne!(models.dit.prepare(&null).expect("a condition"), prepared);
+    let mut grid = VoxelGrid::new();
+    grid.set(3, 4, 5, 18);
+    assert_eq!(
+        models.vae.encode(&grid),
+        Err(ModelError::Label {
+            x: 3,
+            y: 4,
+            z: 5,
+            found: 18
+        })
+    );
+}
+
+#[test]
+fn weights_from_a_folder() {
+    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/weights");
+    let read = OccModels::from_dir(&shipped).expect("the shipped weights");
+    assert_eq!(read.card, models().card);
+    let folder = tempfile::tempdir().expect("a folder");
+    let refusal = || {
+        OccModels::from_dir(folder.path())
+            .map(|_| ())
+            .expect_err("refused")
+            .to_string()
+    };
+    assert!(refusal().contains("occ_vae.safetensors: "));
+    let vae = std::fs::read(shipped.join("occ_vae.safetensors")).expect("the file");
+    std::fs::write(folder.path().join("occ_vae.safetensors"), &vae).expect("written");
+    assert!(refusal().contains("occ_dit.safetensors: "));
+    std::fs::write(folder.path().join("occ_dit.safetensors"), &vae).expect("written");
+    assert!(
+        refusal().starts_with("occ_dit.safetensors: metadata"),
+        "{}",
+        refusal()
+    );
+    std::fs::write(folder.path().join("occ_vae.safetensors"), &vae[..vae.len() / 2]).expect("written");
+    assert!(refusal().starts_with("occ_vae.safetensors: not a usable safetensors file"));
+}

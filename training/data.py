@@ -1,0 +1,97 @@
+"""Shards written by `sceneloom dataset occupancy`: shard_NNNNN.safetensors with u8 dense, labels, draft
+[N,200,200,16] and i32 bev [N,200,200]. Memory-mapped; one frame is read at a time."""
+import json
+import queue
+import threading
+from pathlib import Path
+
+import numpy as np
+import torch
+
+GRIDS = {"dense": (200, 200, 16), "labels": (200, 200, 16), "draft": (200, 200, 16), "bev": (200, 200)}
+DTYPES = {"U8": np.uint8, "I32": np.int32, "U32": np.uint32}
+
+
+class Shard:
+    def __init__(self, path):
+        self.path = Path(path)
+        with open(path, "rb") as f:
+            length = int.from_bytes(f.read(8), "little")
+            header = json.loads(f.read(length))
+        self.arrays = {}
+        for name, shape in GRIDS.items():
+            entry = header.get(name)
+            if entry is None or tuple(entry["shape"][1:]) != shape or entry["dtype"] not in DTYPES:
+                raise SystemExit(f"{path}: tensor {name}: expected [N, {shape}], found {entry}")
+            self.arrays[name] = np.memmap(path, DTYPES[entry["dtype"]], "r", 8 + length + entry["data_offsets"][0],
+                                          tuple(entry["shape"]))
+        self.frames = len(self.arrays["dense"])
+
+
+class Frames:
+    """All frames of a folder; `rescan` adds shards that were written since."""
+
+    def __init__(self, folder):
+        self.folder, self.shards, self.index = Path(folder), [], []
+        self.rescan()
+        if not self.index:
+            raise SystemExit(f"{folder}: no shard_*.safetensors with frames in it")
+
+    def rescan(self):
+        known = {s.path for s in self.shards}
+        for path in sorted(self.folder.glob("shard_*.safetensors")):
+            if path not in known:
+                self.shards.append(Shard(path))
+                self.index += [(self.shards[-1], i) for i in range(self.shards[-1].frames)]
+
+    def __len__(self):
+        return len(self.index)
+
+    def read(self, frame, name):
+        shard, i = self.index[frame]
+        return shard.arrays[name][i]
+
+
+def turned(grid, symmetry):
+    """One of the 8 symmetries of the top view: 0..3 quarter turns, then a mirror image for 4..7."""
+    grid = np.rot90(grid, symmetry % 4, (0, 1))
+    return np.ascontiguousarray(grid[:, ::-1] if symmetry >= 4 else grid)
+
+
+def as_tensor(grids):
+    """Frames to one batch; u32 bits become i32, which torch can shift."""
+    batch = np.stack(grids)
+    return torch.from_numpy(batch.view(np.int32) if batch.dtype == np.uint32 else batch)
+
+
+def prefetch(make, depth=3):
+    """Endless batches made by one background thread."""
+    ready = queue.Queue(depth)
+
+    def work():
+        try:
+            while True:
+                ready.put(make())
+        except BaseException as error:  # hand it to the consumer, who would wait forever otherwise
+            ready.put(error)
+
+    threading.Thread(target=work, daemon=True).start()
+    while True:
+        batch = ready.get()
+        if isinstance(batch, BaseException):
+            raise batch
+        yield batch
+
+
+def draw_masks(rng, batch):
+    """Edit masks [B,50,50]: 40 % all ones, else one to four rectangles, as small as a box or as large as a block."""
+    masks = np.zeros((batch, 50, 50), np.float32)
+    for mask in masks:
+        if rng.random() < 0.4:
+            mask[:] = 1
+            continue
+        for _ in range(rng.integers(1, 5)):
+            size = np.exp(rng.uniform(np.log(2), np.log(30), 2)).astype(int)
+            at = [rng.integers(0, 50 - s + 1) for s in size]
+            mask[at[0] : at[0] + size[0], at[1] : at[1] + size[1]] = 1
+    return masks

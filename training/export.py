@@ -1,0 +1,144 @@
+"""Trained f32 weights -> f16 files that ship, their card, and goldens for tests/parity.rs.
+
+python export.py --vae RUNS/occ_vae.safetensors --dit RUNS/occ_dit.safetensors --data DIR --data-command "..."
+The goldens are computed from the f16 values, in f32, as the Rust program computes.
+"""
+import argparse
+import csv
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import torch
+from safetensors import safe_open
+from safetensors.torch import load_file, save_file
+
+from data import Frames, as_tensor
+from models.occ_dit import DitConfig, OccDit, unshuffle_layout
+from models.occ_vae import OccVae, VaeConfig
+
+ROOT = Path(__file__).resolve().parent.parent
+GOLDEN_TIMES = (0.0, 437.5, 999.0)
+GOLDEN_CELLS = (0, 515, 1275, 2499)
+
+
+def read(path):
+    with safe_open(path, "pt") as f:
+        return load_file(path), f.metadata()
+
+
+def halved(tensors):
+    """Matrices in f16; vectors (biases, norms, latent statistics) stay f32: they are few."""
+    return {k: (v.half() if v.ndim >= 2 else v.float()).contiguous() for k, v in tensors.items()}
+
+
+def uniform(count, stream):
+    """Numbers in [-1.75, 1.75) that any language makes alike: a multiplicative hash of the index."""
+    i = np.arange(count, dtype=np.uint64)
+    h = (i * np.uint64(2654435761) + np.uint64(stream * 40503 + 12345)) % np.uint64(2**32)
+    h = (h ^ (h >> np.uint64(15))) * np.uint64(2246822519) % np.uint64(2**32)
+    return torch.from_numpy((h.astype(np.float64) / 2**32 * 3.5 - 1.75).astype(np.float32))
+
+
+@torch.no_grad()
+def vae_golden(vae, frames):
+    """The front right quarter of a frame: occupied voxels, its latent, logits of a few cells."""
+    grid = np.full((200, 200, 16), 17, np.uint8)
+    grid[100:160, 70:130] = frames.read(0, "labels")[100:160, 70:130]
+    where = np.flatnonzero(grid.reshape(-1) != 17)
+    latent = vae.encode(as_tensor([grid]))
+    features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2))
+    return {
+        "voxels": torch.from_numpy(where.astype(np.int32)),
+        "labels": torch.from_numpy(grid.reshape(-1)[where]),
+        "latent": latent.reshape(-1),
+        "cells": torch.tensor(GOLDEN_CELLS, dtype=torch.int32),
+        "logits": vae.logits(features[list(GOLDEN_CELLS)]),
+    }
+
+
+def golden_condition():
+    """Mask, context, draft, layout bits from `uniform`."""
+    mask = torch.zeros(50, 50)
+    mask[10:31, 17:40] = 1
+    context = uniform(20000, 2).view(50, 50, 8) * (1 - mask[..., None])
+    x, y = torch.meshgrid(torch.arange(200), torch.arange(200), indexing="ij")
+    bev = torch.zeros(200, 200, dtype=torch.int32)
+    for layer in range(18):
+        bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
+    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None]
+
+
+@torch.no_grad()
+def dit_golden(dit):
+    mask, context, draft, bev = golden_condition()
+    condition = dit.condition(mask, context, draft, unshuffle_layout(bev))
+    x = uniform(20000, 1).view(1, 50, 50, 8)
+    out = [dit(x, torch.tensor([t]), condition).reshape(-1)[::5] for t in GOLDEN_TIMES]
+    return {"t": torch.tensor(GOLDEN_TIMES), "every_fifth_v": torch.stack(out)}
+
+
+def last_row(weights):
+    log = Path(weights).with_suffix(".csv")
+    if not log.exists():
+        return {}
+    with open(log) as f:
+        return list(csv.DictReader(f))[-1]
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--vae", type=Path, required=True)
+    p.add_argument("--dit", type=Path, required=True)
+    p.add_argument("--data", type=Path, required=True, help="the data set; the VAE's golden is a held-out frame")
+    p.add_argument("--data-command", required=True, help="how the data were made, for the card")
+    p.add_argument("--weights", type=Path, default=ROOT / "assets/weights")
+    p.add_argument("--goldens", type=Path, default=ROOT / "tests/reference")
+    args = p.parse_args()
+    args.weights.mkdir(parents=True, exist_ok=True)
+    args.goldens.mkdir(parents=True, exist_ok=True)
+
+    name = hashlib.sha256(args.vae.read_bytes()).hexdigest()[:12]
+    card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
+    for kind, path in (("occ_vae", args.vae), ("occ_dit", args.dit)):
+        tensors, meta = read(path)
+        if meta.get("kind") != kind:
+            raise SystemExit(f"{path}: expected weights of {kind}, found {meta.get('kind')}")
+        if kind == "occ_dit" and meta["vae"] != name:
+            raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
+        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae")
+        meta = {k: meta[k] for k in keep if k in meta} | ({"name": name} if kind == "occ_vae" else {})
+        out = args.weights / f"{kind}.safetensors"
+        save_file(halved(tensors), out, meta)
+        log = Path(path).with_suffix(".csv")
+        if log.exists():
+            (args.weights / f"{kind}.csv").write_text(log.read_text())
+        card[kind] = meta | {"config": json.loads(meta["config"]), "bytes": out.stat().st_size,
+                             "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
+                             "parameters": sum(v.numel() for v in tensors.values()), "held_out": last_row(path)}
+        shipped = {k: v.float() for k, v in load_file(out).items()}
+        if kind == "occ_vae":
+            net = OccVae(VaeConfig(**json.loads(meta["config"])))
+            golden = (lambda: vae_golden(net, Frames(args.data / "val")))
+        else:
+            net = OccDit(DitConfig(**json.loads(meta["config"])))
+            golden = (lambda: dit_golden(net))
+        net.load_state_dict(shipped)
+        net.eval()
+        save_file(golden(), args.goldens / f"parity_{kind.removeprefix('occ_')}.safetensors")
+        print(f"{out}: {card[kind]['bytes'] / 1e6:.1f} MB, {card[kind]['parameters']} parameters")
+
+    (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
+    lines = ["# Weights", "", "Trained from scratch on this project's own procedural worlds; no real data went in.", "",
+             f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`; logs: the CSV files beside this card.", ""]
+    for kind in ("occ_vae", "occ_dit"):
+        c = card[kind]
+        lines += [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.1f} MB; config `{json.dumps(c['config'])}`",
+                  f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {float(c['minutes']) / 60:.2f} h",
+                  "- held-out at the end of training: " + (", ".join(f"{k} {v}" for k, v in c["held_out"].items()) or "no log"), ""]
+    (args.weights / "CARD.md").write_text("\n".join(lines))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+"""Latents of every frame under a few symmetries, encoded when first asked for and kept on disk in f16."""
+import numpy as np
+import torch
+
+from data import as_tensor, turned
+
+
+class LatentCache:
+    """One sparse file per shard: [frames, 8 symmetries, (dense, draft), 2500*8] f16, and one byte each: filled or not."""
+
+    def __init__(self, frames, vae, folder, device):
+        self.frames, self.vae, self.device, self.maps = frames, vae, device, {}
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def _map(self, shard):
+        if shard.path not in self.maps:
+            made = []
+            for suffix, dtype, shape in ((".f16", np.float16, (shard.frames, 8, 2, 20000)), (".done", np.uint8, (shard.frames, 8))):
+                path = self.folder / (shard.path.stem + suffix)
+                made.append(np.memmap(path, dtype, "r+" if path.exists() else "w+", shape=shape))
+            self.maps[shard.path] = made
+        return self.maps[shard.path]
+
+    def one(self, frame, symmetry):
+        """f16 [2, 20000]: the latent of the complete frame and of its draft, both turned."""
+        shard, i = self.frames.index[frame]
+        latents, done = self._map(shard)
+        if not done[i, symmetry]:
+            grids = as_tensor([turned(self.frames.read(frame, kind), symmetry) for kind in ("dense", "draft")])
+            with torch.no_grad():
+                latent = self.vae.encode(grids.to(self.device))
+            latents[i, symmetry] = latent.reshape(2, -1).clamp(-60000, 60000).half().cpu().numpy()
+            done[i, symmetry] = 1
+        return latents[i, symmetry]
+
+    def batch(self, frames, symmetries):
+        """Two tensors [B,50,50,8] f32: targets and drafts."""
+        both = np.stack([self.one(f, s) for f, s in zip(frames, symmetries)]).astype(np.float32)
+        both = torch.from_numpy(both).view(-1, 2, 50, 50, 8).to(self.device)
+        return both[:, 0], both[:, 1]

@@ -1,0 +1,102 @@
+"""What both trainings share: device, clock, EMA, checkpoints, CSV."""
+import copy
+import csv
+import math
+import os
+import time
+from pathlib import Path
+
+import torch
+from safetensors.torch import save_file
+
+
+def pick_device(threads):
+    """(device, autocast dtype or None). bf16 pays on CUDA and on CPUs with AMX; elsewhere it is several times slower."""
+    torch.set_num_threads(threads)
+    if torch.cuda.is_available():
+        return torch.device("cuda"), torch.bfloat16
+    amx = getattr(torch.cpu, "_is_amx_tile_supported", lambda: False)()
+    return torch.device("cpu"), torch.bfloat16 if amx else None
+
+
+class Run:
+    """A training run measured by the wall clock: learning rate, EMA, checkpoints, log."""
+
+    def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup):
+        self.out, self.minutes, self.lr, self.warmup, self.ema_decay = Path(args.output), args.minutes, lr, warmup, ema
+        self.model, self.ema = model, copy.deepcopy(model).requires_grad_(False).eval()
+        decay = [p for p in model.parameters() if p.ndim >= 2]
+        rest = [p for p in model.parameters() if p.ndim < 2]
+        groups = [{"params": decay, "weight_decay": weight_decay}, {"params": rest, "weight_decay": 0.0}]
+        self.optimizer = torch.optim.AdamW(groups, lr=lr, betas=betas, fused=True)
+        self.step, self.samples, self.spent, self.started = 0, 0, 0.0, time.monotonic()
+        self.checkpoint = self.out.with_suffix(".checkpoint.pt")
+        self.log = self.out.with_suffix(".csv")
+        self.out.parent.mkdir(parents=True, exist_ok=True)
+        if args.resume and self.checkpoint.exists():
+            self.load()
+        elif self.log.exists():
+            self.log.unlink()
+        self.saved_at = self.elapsed()
+
+    def elapsed(self):
+        """Minutes of training so far, earlier runs included."""
+        return self.spent + (time.monotonic() - self.started) / 60
+
+    def done(self):
+        return self.elapsed() >= self.minutes
+
+    def rate(self):
+        done = min(1.0, self.elapsed() / self.minutes)
+        return self.lr * min(1.0, (self.step + 1) / self.warmup) * 0.5 * (1 + math.cos(math.pi * done))
+
+    def update(self, loss, samples):
+        """One optimiser step; a loss that is not finite is skipped and reported."""
+        self.step, self.samples = self.step + 1, self.samples + samples
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.rate()
+        self.optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        norm = torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
+        if not math.isfinite(norm.item()):
+            print(f"step {self.step}: gradient not finite, skipped", flush=True)
+            return
+        self.optimizer.step()
+        decay = min(self.ema_decay, (1 + self.step) / (10 + self.step))
+        with torch.no_grad():
+            torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
+
+    def load(self):
+        state = torch.load(self.checkpoint, weights_only=True)
+        self.model.load_state_dict(state["model"])
+        self.ema.load_state_dict(state["ema"])
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.step, self.samples, self.spent = state["step"], state["samples"], state["minutes"]
+        torch.set_rng_state(state["rng"])
+        print(f"resumed at step {self.step}, {self.spent:.1f} min", flush=True)
+
+    def save(self, metadata):
+        """Checkpoint and f32 weights (EMA), each replaced in one go."""
+        state = {"model": self.model.state_dict(), "ema": self.ema.state_dict(), "optimizer": self.optimizer.state_dict(),
+                 "step": self.step, "samples": self.samples, "minutes": self.elapsed(), "rng": torch.get_rng_state()}
+        part = self.checkpoint.with_suffix(".part")
+        torch.save(state, part)
+        os.replace(part, self.checkpoint)
+        metadata = {k: str(v) for k, v in metadata.items()} | {"steps": str(self.step), "samples": str(self.samples),
+                                                               "minutes": f"{self.elapsed():.1f}"}
+        part = self.out.with_suffix(".part")
+        save_file({k: v.contiguous().cpu() for k, v in self.ema.state_dict().items()}, part, metadata)
+        os.replace(part, self.out)
+        self.saved_at = self.elapsed()
+
+    def note(self, row):
+        """One line of the CSV log and of the terminal."""
+        row = {"minutes": round(self.elapsed(), 2), "step": self.step, "samples": self.samples, "lr": f"{self.rate():.2e}"} | {
+            k: f"{v:.4f}" for k, v in row.items()}
+        new = not self.log.exists()
+        with open(self.log, "a", newline="") as f:
+            writer = csv.DictWriter(f, row.keys())
+            if new:
+                writer.writeheader()
+            writer.writerow(row)
+        print("  ".join(f"{k} {v}" for k, v in row.items()), flush=True)

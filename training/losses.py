@@ -1,0 +1,108 @@
+"""Losses and held-out figures of the occupancy VAE."""
+import math
+
+import torch
+from torch.nn import functional as F
+
+from models.occ_vae import CLASSES, FREE
+
+# Voxels per class in the Occ3D training split (design/models.md section 3): rarer classes weigh more, 1 to 4.
+_COUNTS = [2.1e6, 3.0e6, 2.3e5, 5.4e6, 3.41e7, 2.0e6, 3.3e5, 3.3e6, 5.4e5, 5.8e6, 1.35e7, 1.98e8, 4.9e6, 5.65e7, 6.65e7,
+           2.28e8, 2.52e8]
+RARITY = torch.tensor([1 + 3 * math.log(max(_COUNTS) / c) / math.log(max(_COUNTS) / min(_COUNTS)) for c in _COUNTS])
+CAR = 4
+FREE_NEAR, FREE_ANYWHERE = 3.5, 8.0  # weights of the two kinds of free voxels: few are drawn out of many
+
+
+def sample_voxels(cells, limit):
+    """Flat indices and weights of the voxels that are trained on: up to `limit` occupied ones, 1.5x as many free ones
+    out of cells that hold something, half as many out of anywhere."""
+    occupied = cells != FREE
+    taken = occupied.view(-1).nonzero().squeeze(1)
+    if len(taken) > limit:
+        # Objects other than cars are a fiftieth of what is occupied and half of the classes: keep them all.
+        label = cells.view(-1)[taken]
+        rare = (label < 11) & (label != CAR)
+        rest = taken[~rare]
+        rest = rest[torch.randint(len(rest), (limit,), device=cells.device)]
+        taken = torch.cat([taken[rare][: 2 * limit], rest])
+    n = len(taken)
+    full = occupied.any(1).nonzero().squeeze(1)
+    parts, weights = [taken], [RARITY.to(cells.device)[cells.view(-1)[taken].long()]]
+    if len(full):
+        near = full[torch.randint(len(full), (int(1.5 * n),), device=cells.device)] * cells.shape[1]
+        parts.append(near + torch.randint(cells.shape[1], near.shape, device=cells.device))
+        weights.append(torch.full(near.shape, FREE_NEAR, device=cells.device))
+    anywhere = torch.randint(cells.numel(), (n // 2 + 64,), device=cells.device)
+    parts.append(anywhere)
+    weights.append(torch.full(anywhere.shape, FREE_ANYWHERE, device=cells.device))
+    index, weight = torch.cat(parts), torch.cat(weights)
+    # A drawn "free" voxel that is occupied counts as what it is.
+    drawn = torch.arange(len(index), device=cells.device) >= n
+    label = cells.view(-1)[index].long()
+    hit = drawn & (label != FREE)
+    weight[hit] = RARITY.to(cells.device)[label[hit]]
+    return index, label, weight
+
+
+def lovasz_softmax(probabilities, labels):
+    """Berman et al. 1705.08790: probabilities [N, C], labels [N]; mean over the classes present (free included)."""
+    losses = []
+    for c in labels.unique():
+        foreground = (labels == c).to(probabilities.dtype)
+        errors, order = (foreground - probabilities[:, c]).abs().sort(descending=True)
+        foreground = foreground[order]
+        union = foreground.sum() + (1 - foreground).cumsum(0)
+        jaccard = 1 - (foreground.sum() - foreground.cumsum(0)) / union
+        jaccard = torch.cat([jaccard[:1], jaccard[1:] - jaccard[:-1]])
+        losses.append(errors @ jaccard)
+    return torch.stack(losses).mean() if losses else probabilities.sum() * 0
+
+
+def kl_to_normal(mean, logvar):
+    """KL(N(mean, exp(logvar)) || N(0, 1)), mean over all numbers; expm1 keeps it exact near 0."""
+    logvar = logvar.clamp(-30.0, 20.0)
+    return 0.5 * (mean**2 + torch.expm1(logvar) - logvar).mean()
+
+
+def vae_loss(model, cells, kl_weight=1e-6, voxels_per_frame=12_000, lovasz_voxels=12_000, latent_noise=0.05):
+    """Cross-entropy and Lovasz on sampled voxels, and the KL term. Returns the loss and its parts."""
+    mean, logvar = model.moments(cells)
+    latent = mean
+    if model.training:
+        latent = mean + torch.randn_like(mean) * (0.5 * logvar).exp()
+        # A little of the latent's own spread, so that the decoder forgives what diffusion gets slightly wrong.
+        spread = mean.detach().std((0, 2, 3), keepdim=True)
+        latent = latent + torch.randn_like(mean) * spread * latent_noise
+    frames = mean.shape[0]
+    index, label, weight = sample_voxels(cells, voxels_per_frame * frames)
+    logits = model.logits(model.features(latent).reshape(-1, 8)[index])
+    ce = (F.cross_entropy(logits, label, reduction="none") * weight).sum() / weight.sum()
+    pick = torch.randint(len(label), (min(lovasz_voxels, len(label)),), device=label.device)
+    lovasz = lovasz_softmax(logits[pick].softmax(-1), label[pick])
+    kl = kl_to_normal(mean, logvar)
+    return ce + 0.5 * lovasz + kl_weight * kl, {"ce": ce.item(), "lovasz": lovasz.item(), "kl": kl.item()}
+
+
+class Confusion:
+    """Counts over frames; IoU = occupied against free, mIoU = mean over the classes that the truth holds."""
+
+    def __init__(self):
+        self.counts = torch.zeros(CLASSES, CLASSES, dtype=torch.long)
+
+    def add(self, truth, found):
+        joint = truth.reshape(-1).long() * CLASSES + found.reshape(-1).long()
+        self.counts += torch.bincount(joint.cpu(), minlength=CLASSES**2).view(CLASSES, CLASSES)
+
+    def iou(self):
+        free = self.counts[FREE, FREE].item()
+        both = self.counts[:FREE, :FREE].sum().item()
+        return both / max(1, self.counts.sum().item() - free)
+
+    def per_class(self):
+        hit = self.counts.diagonal()[:FREE].double()
+        truth, found = self.counts.sum(1)[:FREE].double(), self.counts.sum(0)[:FREE].double()
+        return torch.where(truth > 0, hit / (truth + found - hit).clamp(min=1), torch.nan)
+
+    def miou(self):
+        return self.per_class().nanmean().item()

@@ -1,0 +1,236 @@
+"""Trains one network: python train.py vae|dit --data DIR --minutes M -o W.safetensors [--resume]. See README.md."""
+import argparse
+import hashlib
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+import torch
+from safetensors import safe_open
+from safetensors.torch import load_file
+
+import losses
+from data import Frames, as_tensor, draw_masks, prefetch, turned
+from latents import LatentCache
+from loop import Run, pick_device
+from models.occ_dit import DitConfig, OccDit, unshuffle_layout
+from models.occ_vae import OccVae, VaeConfig, to_cells
+from schedule import STEPS, alpha_bar, ddim_sample
+
+SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
+
+
+def load_vae(path, device):
+    with safe_open(path, "pt") as f:
+        config = VaeConfig(**json.loads(f.metadata()["config"]))
+    vae = OccVae(config)
+    vae.load_state_dict({k: v.float() for k, v in load_file(path).items()})
+    return vae.to(device, memory_format=torch.channels_last).eval().requires_grad_(False)
+
+
+# ---- VAE ----
+
+
+@torch.no_grad()
+def measure_latents(vae, frames, device, count=48):
+    """Sets the mean and spread of each latent channel over `count` frames (complete, labels, drafts)."""
+    total, square, n = torch.zeros(8, dtype=torch.float64), torch.zeros(8, dtype=torch.float64), 0
+    pick = np.linspace(0, len(frames) - 1, min(count, len(frames))).astype(int)
+    for i, frame in enumerate(pick):
+        grid = as_tensor([frames.read(frame, ("dense", "dense", "labels", "draft")[i % 4])]).to(device)
+        mean = vae.moments(to_cells(grid))[0].double().cpu()
+        total, square, n = total + mean.sum((0, 2, 3)), square + (mean**2).sum((0, 2, 3)), n + 2500
+    mean = total / n
+    vae.latent_mean.copy_(mean)
+    vae.latent_std.copy_((square / n - mean**2).clamp(min=1e-8).sqrt())
+
+
+@torch.no_grad()
+def vae_figures(vae, frames, device, count):
+    out = {}
+    for kind in ("dense", "labels"):
+        confusion, loss = losses.Confusion(), 0.0
+        for frame in range(min(count, len(frames))):
+            grid = as_tensor([frames.read(frame, kind)]).to(device)
+            confusion.add(grid, vae.decode(vae.encode(grid)))
+            loss += losses.vae_loss(vae, to_cells(grid))[0].item()
+        out |= {f"{kind}_loss": loss / min(count, len(frames)), f"{kind}_miou": confusion.miou(), f"{kind}_iou": confusion.iou()}
+        out_per_class = confusion.per_class()
+        print(f"  {kind} per class " + " ".join(f"{x:.2f}" for x in out_per_class.tolist()), flush=True)
+    return out
+
+
+def train_vae(args, device, dtype):
+    train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
+    model = OccVae(VaeConfig(encoder_width=args.width, decoder_width=args.width)).to(device, memory_format=torch.channels_last)
+    run = Run(model, args, lr=args.lr or 2e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100)
+    rng = np.random.default_rng([args.seed, run.step])
+    kinds = ("dense", "labels", "draft")
+
+    def make():
+        grids = []
+        for _ in range(args.batch):
+            kind = rng.choice(3, p=(0.65, 0.22, 0.13))
+            grids.append(turned(train.read(rng.integers(len(train)), kinds[kind]), rng.integers(8)))
+        return as_tensor(grids)
+
+    meta = {"kind": "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
+    mean, noted, since = {}, time.monotonic(), (run.samples, time.monotonic())
+
+    def note():
+        measure_latents(run.ema, train, device)
+        rate = (run.samples - since[0]) / (time.monotonic() - since[1])
+        run.note(vae_figures(run.ema, held_out, device, args.held_out) | mean | {"per_s": rate})
+        run.save(meta)
+        train.rescan()
+
+    for grid in prefetch(make):
+        model.train()
+        with torch.autocast(device.type, dtype, enabled=dtype is not None):
+            loss, parts = losses.vae_loss(model, to_cells(grid.to(device)))
+        run.update(loss, len(grid))
+        mean = {k: mean.get(k, v) * 0.95 + v * 0.05 for k, v in parts.items()}
+        if run.step % 20 == 0:
+            rate = (run.samples - since[0]) / (time.monotonic() - since[1])
+            print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s " + " ".join(f"{k} {v:.4f}" for k, v in mean.items()), flush=True)
+        if run.done():
+            break
+        if time.monotonic() - noted > 60 * NOTE_MINUTES:
+            note()
+            noted, since = time.monotonic(), (run.samples, time.monotonic())
+        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
+            measure_latents(run.ema, train, device)
+            run.save(meta)
+    note()
+
+
+# ---- DiT ----
+
+
+def dit_loss(model, abar, target, condition_parts, mask, generator):
+    """v-prediction, weight min(SNR + 1, 5) in x0 space (2303.09556, finite at SNR 0); generated cells count fully, kept
+    cells a tenth: at inference they are replayed, not predicted."""
+    b = len(target)
+    # Stratified over the batch: less noise in the loss than independent draws.
+    u = (torch.arange(b) + torch.rand(b, generator=generator)) / b
+    t = (u * STEPS).long().clamp(max=STEPS - 1).to(target.device)
+    a = abar[t].to(target.device)
+    alpha, sigma = a.sqrt().float().view(b, 1, 1, 1), (1 - a).sqrt().float().view(b, 1, 1, 1)
+    noise = torch.randn(target.shape, generator=generator).to(target.device)
+    v = model(alpha * target + sigma * noise, t.float(), model.condition(mask, *condition_parts))
+    error = ((v - (alpha * noise - sigma * target)) ** 2).mean(-1)
+    cell = mask + 0.1 * (1 - mask)
+    error = (error * cell).sum((1, 2)) / cell.sum((1, 2))
+    snr1 = 1 / (1 - a)  # SNR + 1
+    return (error * (snr1.clamp(max=5.0) / snr1).float()).mean(), error.detach().mean().item()
+
+
+@torch.no_grad()
+def dit_figures(model, vae, abar, cache, frames, device, count, sample):
+    generator, total, count = torch.Generator().manual_seed(1), 0.0, min(count, len(frames))
+    masks = torch.from_numpy(draw_masks(np.random.default_rng(1), count))
+    target, draft = cache.batch(range(count), [0] * count)
+    layout = unshuffle_layout(as_tensor([frames.read(i, "bev") for i in range(count)]).to(device))
+    for part in torch.arange(count).split(8):
+        mask = masks[part].to(device)
+        parts = (target[part] * (1 - mask[..., None]), draft[part], layout[part])
+        # Four passes over the noise levels: one has too much noise of its own.
+        total += sum(dit_loss(model, abar, target[part], parts, mask, generator)[1] for _ in range(4)) / 4 * len(part)
+    out = {"held_out_v": total / count, "miou": 0.0, "iou": 0.0, "draft_miou": 0.0}
+    if sample:
+        n = min(sample, count)
+        ones, zeros = torch.ones(n, 50, 50, device=device), torch.zeros_like(target[:n])
+        condition = model.condition(ones, zeros, draft[:n], layout[:n])
+        noise = torch.randn(target[:n].shape, generator=generator).to(device)
+        found = vae.decode(ddim_sample(lambda x, t: model(x, t, condition), noise, 20))
+        truth = as_tensor([frames.read(i, "dense") for i in range(n)])
+        made, drafted = losses.Confusion(), losses.Confusion()
+        made.add(truth, found.cpu())
+        drafted.add(truth, as_tensor([frames.read(i, "draft") for i in range(n)]))
+        out |= {"miou": made.miou(), "iou": made.iou(), "draft_miou": drafted.miou()}
+        print("  generated per class " + " ".join(f"{x:.2f}" for x in made.per_class().tolist()), flush=True)
+    return out
+
+
+def train_dit(args, device, dtype):
+    train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
+    vae, abar = load_vae(args.vae, device), alpha_bar()
+    name = hashlib.sha256(Path(args.vae).read_bytes()).hexdigest()[:12]
+    cache, held_cache = (LatentCache(f, vae, args.data / f"latents-{name}" / f.folder.name, device) for f in (train, held_out))
+    model = OccDit(DitConfig(width=args.width, depth=args.depth)).to(device)
+    run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=300)
+    rng = np.random.default_rng([args.seed, run.step])
+
+    def make():
+        pick = [(int(rng.integers(len(train))), int(rng.choice(args.symmetries))) for _ in range(args.batch)]
+        bev = as_tensor([turned(train.read(i, "bev"), s) for i, s in pick])
+        return pick, unshuffle_layout(bev), torch.from_numpy(draw_masks(rng, args.batch)), rng.random(args.batch) < 0.1
+
+    meta = {"kind": "occ_dit", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "vae": name}
+    mean, noted, since = 0.0, time.monotonic(), (run.samples, time.monotonic())
+    sampled = time.monotonic()
+
+    def note(last=False):
+        nonlocal sampled
+        sample = 8 if last else 4 if time.monotonic() - sampled > 60 * 15 else 0
+        sampled = time.monotonic() if sample else sampled
+        rate = (run.samples - since[0]) / (time.monotonic() - since[1])
+        figures = dit_figures(run.ema, vae, abar, held_cache, held_out, device, args.held_out, sample)
+        run.note(figures | {"train_v": mean, "per_s": rate})
+        run.save(meta)
+
+    for pick, layout, mask, drop in prefetch(make):
+        target, draft = cache.batch(*zip(*pick))
+        layout, mask = layout.to(device), mask.to(device)
+        keep = torch.from_numpy(~drop).to(device).float().view(-1, 1, 1, 1)
+        context = target * (1 - mask[..., None])
+        with torch.autocast(device.type, dtype, enabled=dtype is not None):
+            loss, v = dit_loss(model, abar, target, (context, draft * keep, layout * keep), mask, None)
+        run.update(loss, len(pick))
+        mean = mean * 0.98 + v * 0.02 if mean else v
+        if run.step % 20 == 0:
+            rate = (run.samples - since[0]) / (time.monotonic() - since[1])
+            print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s v {mean:.4f}", flush=True)
+        if run.done():
+            break
+        if time.monotonic() - noted > 60 * NOTE_MINUTES:
+            note()
+            noted, since = time.monotonic(), (run.samples, time.monotonic())
+        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
+            run.save(meta)
+    note(last=True)
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__)
+    p.add_argument("kind", choices=["vae", "dit"])
+    p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards")
+    p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
+    p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
+    p.add_argument("--vae", help="weights of the VAE (dit only)")
+    p.add_argument("--resume", action="store_true")
+    p.add_argument("--seed", type=int, default=0)
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--batch", type=int, default=8)
+    p.add_argument("--lr", type=float)
+    p.add_argument("--width", type=int)
+    p.add_argument("--depth", type=int, default=8)
+    p.add_argument("--held-out", type=int, help="frames of the held-out figures")
+    p.add_argument("--symmetries", type=int, nargs="+", default=[0, 1, 2, 7], help="of the 8, those whose latents are cached")
+    args = p.parse_args()
+    torch.manual_seed(args.seed)
+    device, dtype = pick_device(args.threads)
+    print(f"device {device}, {'f32' if dtype is None else dtype}, {args.threads} threads", flush=True)
+    if args.kind == "vae":
+        args.width, args.held_out = args.width or 128, args.held_out or 8
+        train_vae(args, device, dtype)
+    else:
+        if not args.vae:
+            p.error("dit needs --vae")
+        args.width, args.held_out = args.width or 256, args.held_out or 24
+        train_dit(args, device, dtype)
+
+
+if __name__ == "__main__":
+    main()
