@@ -10,6 +10,7 @@ use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_tr
 use super::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
+use super::keep_objects::keep_objects;
 use super::model::{DitCondition, OccModels, Prepared};
 use super::region::{CELLS, Region};
 use super::replay::{RegionNoise, edit_with_replay};
@@ -250,10 +251,13 @@ impl OccPipeline {
         };
         ctx.progress(Stage::Decode, 0, 1)?;
         let latent = trajectory.latent_f32();
-        let generated = report
+        let mut generated = report
             .timed(Stage::Decode, |_| self.models.vae.decode(&latent))
             .map_err(GenError::failed)?;
         let region = Region::full();
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, true, &mut generated);
+        }
         let source = &frame.source.occupancy;
         let result = self.finish(job, source, &generated, &region, &mut report);
         self.adopt(&result.occupancy, &condition, params, trajectory);
@@ -334,11 +338,14 @@ impl OccPipeline {
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
-        let generated = report
+        let mut generated = report
             .timed(Stage::Decode, |_| {
                 self.models.vae.decode_cells(&edited.latent, &region.cells)
             })
             .map_err(GenError::failed)?;
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, false, &mut generated);
+        }
         let result = self.finish(job, before, &generated, &region, &mut report);
         self.adopt(&result.occupancy, &condition, params, edited.trajectory);
         Ok(result)

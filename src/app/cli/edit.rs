@@ -79,6 +79,7 @@ impl EditCommand {
             "inversion_calls": r.inversion_calls,
             "wall_s": r.wall_s,
             "peak_rss_mb": output::peak_rss_mb(),
+            "objects_kept": r.objects_kept,
             "seed": params.seed,
             "steps": params.steps,
             "model": pipeline.models().card.name,

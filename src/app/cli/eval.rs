@@ -1,4 +1,5 @@
-//! `sceneloom eval`: quality on held-out worlds, with 95 % intervals over scenes.
+//! `sceneloom eval`: quality on held-out worlds, with 95 % intervals over scenes. The networks' own
+//! output is judged: drafts are not put in for boxes that they left out.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -143,7 +144,10 @@ impl Eval {
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let (mut all, mut world_all) = (AgreementCount::default(), AgreementCount::default());
         let (mut drivable, mut vehicles, mut wall_s) = (Vec::new(), Vec::new(), Vec::new());
-        let mut params = self.generation.params(full_params());
+        let mut params = GenParams {
+            keep_objects: false,
+            ..self.generation.params(full_params())
+        };
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
             let scene = scene(i as u64);
@@ -180,7 +184,10 @@ impl Eval {
 
     /// One car removed, one truck added on free road, per world.
     fn editing(&self, pipeline: &mut OccPipeline, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
-        let params = self.generation.params(GenParams::default());
+        let params = GenParams {
+            keep_objects: false,
+            ..self.generation.params(GenParams::default())
+        };
         let ctx = JobCtx::detached();
         let mut gone = Vec::new();
         let mut filled = Vec::new();

@@ -101,6 +101,7 @@ impl Generate {
             "network_calls": result.report.network_calls,
             "wall_s": wall_s,
             "peak_rss_mb": output::peak_rss_mb(),
+            "objects_kept": result.report.objects_kept,
             "seed": params.seed,
             "steps": params.steps,
             "guidance": params.guidance,

@@ -22,9 +22,18 @@ pub fn one_line(error: &anyhow::Error) -> String {
     let mut text = String::new();
     for cause in error.chain() {
         let lines = cause.to_string();
-        let line = lines.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
+        let line = lines
+            .lines()
+            .map(str::trim)
+            .filter(|l| !l.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         if !text.contains(&line) {
-            text = if text.is_empty() { line } else { format!("{text}: {line}") };
+            text = if text.is_empty() {
+                line
+            } else {
+                format!("{text}: {line}")
+            };
         }
     }
     text

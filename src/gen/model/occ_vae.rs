@@ -201,8 +201,9 @@ impl OccVae {
         let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
         let pieces = wanted.par_chunks(PIECE_CELLS);
-        let labels: Vec<[u8; VOXELS]> =
-            pieces.flat_map_iter(|cells| self.label_cells(&map, window, cells)).collect();
+        let labels: Vec<[u8; VOXELS]> = pieces
+            .flat_map_iter(|cells| self.label_cells(&map, window, cells))
+            .collect();
         for (cell, labels) in wanted.iter().zip(&labels) {
             let (x0, y0) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
             for (column, labels) in labels.chunks_exact(GridSpec::NZ).enumerate() {
@@ -274,7 +275,10 @@ impl OccVae {
         let rows: Vec<f32> = cells.iter().flat_map(|c| map.cell(window, *c)).copied().collect();
         let mut features = vec![0.0; cells.len() * VOXELS * FEATURES];
         self.decoder_head.rows(&rows, &mut features);
-        features.chunks_exact(VOXELS * FEATURES).map(|f| self.label_cell(f)).collect()
+        features
+            .chunks_exact(VOXELS * FEATURES)
+            .map(|f| self.label_cell(f))
+            .collect()
     }
 
     /// Dot product of a cell's voxel features `[feature][voxel]` with the class table, and argmax.
