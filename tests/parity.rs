@@ -352,8 +352,13 @@ fn speed() {
         None => models(),
     };
     let grid = scene(&Golden::open("parity_vae.safetensors"));
-    let (latent, prepared) = (uniform(LATENT, 1), models.dit.prepare(&condition()).expect("a condition"));
-    let some: Vec<bool> = (0..CELLS).map(|c| (20..26).contains(&(c / 50)) && (20..26).contains(&(c % 50))).collect();
+    let (latent, prepared) = (
+        uniform(LATENT, 1),
+        models.dit.prepare(&condition()).expect("a condition"),
+    );
+    let some: Vec<bool> = (0..CELLS)
+        .map(|c| (20..26).contains(&(c / 50)) && (20..26).contains(&(c % 50)))
+        .collect();
     let report = |what: &str, work: &dyn Fn()| {
         work();
         let mut ms: Vec<f64> = (0..15)
@@ -368,7 +373,11 @@ fn speed() {
     };
     report("encode", &|| drop(models.vae.encode(&grid)));
     report("decode", &|| drop(models.vae.decode(&latent)));
-    report("decode 36 cells", &|| drop(models.vae.decode_cells(&latent, &some)));
+    report("decode 36 cells", &|| {
+        drop(models.vae.decode_cells(&latent, &some))
+    });
     report("prepare", &|| drop(models.dit.prepare(&condition())));
-    report("DiT forward", &|| drop(models.dit.forward(&latent, 500.0, &prepared)));
+    report("DiT forward", &|| {
+        drop(models.dit.forward(&latent, 500.0, &prepared))
+    });
 }
