@@ -21,7 +21,7 @@ const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 /// Mask, context, draft, layout.
 const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT;
 /// Tokens that are worked on in one piece.
-const PIECE: usize = 40;
+const PIECE: usize = 80;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]

@@ -275,34 +275,13 @@ impl OccVae {
         let rows: Vec<f32> = cells.iter().flat_map(|c| map.cell(window, *c)).copied().collect();
         let mut features = vec![0.0; cells.len() * VOXELS * FEATURES];
         self.decoder_head.rows(&rows, &mut features);
-        features
-            .chunks_exact(VOXELS * FEATURES)
-            .map(|f| self.label_cell(f))
-            .collect()
-    }
-
-    /// Dot product of a cell's voxel features `[feature][voxel]` with the class table, and argmax.
-    /// Weights and normed features are finite and small, so no logit can be NaN.
-    fn label_cell(&self, features: &[f32]) -> [u8; VOXELS] {
-        let mut labels = [0; VOXELS];
-        kernels::vectorised(&mut labels, |labels| {
-            let mut best = [f32::NEG_INFINITY; VOXELS];
-            let mut logits = [0.0; VOXELS];
-            for class in 0..CLASSES {
-                logits.fill(self.class_bias[class]);
-                let row = &self.class_table[class * FEATURES..][..FEATURES];
-                for (t, feature) in row.iter().zip(features.chunks_exact(VOXELS)) {
-                    logits.iter_mut().zip(feature).for_each(|(l, f)| *l += t * f);
-                }
-                for ((label, best), l) in labels.iter_mut().zip(&mut best).zip(&logits) {
-                    // Strictly more: the lowest class keeps a tie.
-                    let better = *l > *best;
-                    *best = if better { *l } else { *best };
-                    *label = if better { class as u8 } else { *label };
-                }
-            }
-        });
-        labels
+        // Weights and normed features are finite and small, so no logit can be NaN.
+        let label = |features: &[f32]| {
+            let mut labels = [0; VOXELS];
+            kernels::likeliest(features, &self.class_table, &self.class_bias, &mut labels);
+            labels
+        };
+        features.chunks_exact(VOXELS * FEATURES).map(label).collect()
     }
 }
 
