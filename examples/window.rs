@@ -59,7 +59,10 @@ fn main() -> anyhow::Result<()> {
         path: None,
         build_pipeline: Box::new(|| Ok(Box::new(StandIn))),
         params: GenParams::default(),
-        full_params: GenParams { region: RegionMode::Full, ..GenParams::default() },
+        full_params: GenParams {
+            region: RegionMode::Full,
+            ..GenParams::default()
+        },
         warm_up: false,
         open: Arc::new(|path| anyhow::bail!("this example opens nothing, not {}", path.display())),
         save: Arc::new(|_, path| anyhow::bail!("this example saves nothing, not {}", path.display())),

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
+use image::GenericImageView;
 use sceneloom::app::state::{Pane, Tool, VoxelVerb};
 use sceneloom::app::{AppConfig, SceneloomApp};
 use sceneloom::formats::project;
@@ -67,7 +69,12 @@ impl Pipeline for Scripted {
             untouched_voxels_changed: untouched_voxels_changed(source, &occupancy, &region, &frame.painted),
             ..GenReport::default()
         };
-        Ok(GenResult { key: job.key(), frame: job.scene.current, occupancy, report })
+        Ok(GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy,
+            report,
+        })
     }
 }
 
@@ -94,7 +101,12 @@ fn scene() -> Scene {
     let layout = template::layout("straight", 5).expect("a template");
     let boxes = [(BoxId(7), car())].into();
     let occupancy = draft::draft(&layout, [car()].iter());
-    Scene::single("Test road", Frame::new(layout, boxes, occupancy), Arc::default(), 5)
+    Scene::single(
+        "Test road",
+        Frame::new(layout, boxes, occupancy),
+        Arc::default(),
+        5,
+    )
 }
 
 /// Longest wait for another thread, so that a broken one fails the test instead of hanging it.
@@ -118,22 +130,35 @@ impl Bench {
             scene: scene(),
             path: None,
             build_pipeline: Box::new(move || {
-                Ok(Box::new(Scripted { orders: orders_in.clone(), started: started_out.clone() }))
+                Ok(Box::new(Scripted {
+                    orders: orders_in.clone(),
+                    started: started_out.clone(),
+                }))
             }),
             params: GenParams::default(),
-            full_params: GenParams { region: RegionMode::Full, ..GenParams::default() },
+            full_params: GenParams {
+                region: RegionMode::Full,
+                ..GenParams::default()
+            },
             warm_up: false,
             open: Arc::new(|path| Ok(project::load(path)?)),
             save: Arc::new(|scene, path| Ok(project::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,
         };
-        let builder = Harness::builder().with_size(egui::vec2(1400.0, 900.0)).with_step_dt(1.0 / 60.0);
+        let builder = Harness::builder()
+            .with_size(egui::vec2(1400.0, 900.0))
+            .with_step_dt(1.0 / 60.0);
         let builder = if gpu { builder.wgpu() } else { builder };
         let harness = builder.build_eframe(|cc| {
             SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx).expect("threads")
         });
-        let mut bench = Self { harness, orders, started, folder };
+        let mut bench = Self {
+            harness,
+            orders,
+            started,
+            folder,
+        };
         bench.steps(4);
         Some(bench)
     }
@@ -150,6 +175,10 @@ impl Bench {
         self.harness.state().document.scene().frame().clone()
     }
 
+    fn pane(&self, name: &str) -> egui::Rect {
+        self.harness.get_by_role_and_label(Role::Canvas, name).rect()
+    }
+
     fn click(&mut self, label: &str) {
         self.harness.get_by_label(label).click();
         self.steps(3);
@@ -161,12 +190,25 @@ impl Bench {
     }
 
     fn bev(&self, x_m: f64, y_m: f64) -> Pos2 {
-        self.harness.state().canvas.map.expect("drawn").to_screen(DVec2::new(x_m, y_m))
+        self.harness
+            .state()
+            .canvas
+            .map
+            .expect("drawn")
+            .to_screen(DVec2::new(x_m, y_m))
     }
 
     fn button(&mut self, at: Pos2, pressed: bool, modifiers: Modifiers) {
         let button = PointerButton::Primary;
-        self.harness.event_modifiers(egui::Event::PointerButton { pos: at, button, pressed, modifiers }, modifiers);
+        self.harness.event_modifiers(
+            egui::Event::PointerButton {
+                pos: at,
+                button,
+                pressed,
+                modifiers,
+            },
+            modifiers,
+        );
         self.steps(1);
     }
 
@@ -212,12 +254,18 @@ fn a_stroke_is_one_undo_step_and_shows_at_once() {
     let mut bench = Bench::new();
     bench.off();
     bench.click("Paint carpark area");
-    assert_eq!((bench.app().state.tool, bench.app().state.layer), (Tool::Brush, BevLayer::CarparkArea));
+    assert_eq!(
+        (bench.app().state.tool, bench.app().state.layer),
+        (Tool::Brush, BevLayer::CarparkArea)
+    );
     let before = bench.frame();
     let way = [bench.bev(-20.0, 25.0), bench.bev(0.0, 25.0), bench.bev(0.0, 32.0)];
     bench.press_and_move(&way, Modifiers::NONE);
     assert!(bench.app().document.is_dragging());
-    assert!(bench.frame().layout.count(BevLayer::CarparkArea) > 300, "shown while painting");
+    assert!(
+        bench.frame().layout.count(BevLayer::CarparkArea) > 300,
+        "shown while painting"
+    );
     bench.button(way[2], false, Modifiers::NONE);
     bench.steps(2);
     assert_eq!(bench.history(), ["Open", "Paint layer"]);
@@ -256,23 +304,43 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
     bench.drag(&[at], Modifiers::NONE);
     let truck = bench.frame().boxes[&BoxId(8)];
     assert_eq!(truck.class, Class::Truck);
-    assert!((truck.center_m.truncate() - DVec2::new(-15.0, 2.0)).length() < 0.1, "{truck:?}");
-    assert!((truck.center_m.z - truck.size_m.z / 2.0).abs() < 1e-9, "stands on the ground");
+    assert!(
+        (truck.center_m.truncate() - DVec2::new(-15.0, 2.0)).length() < 0.1,
+        "{truck:?}"
+    );
+    assert!(
+        (truck.center_m.z - truck.size_m.z / 2.0).abs() < 1e-9,
+        "stands on the ground"
+    );
     assert!(bench.app().state.selected == Some(BoxId(8)));
     let [x, y] = GridSpec::column_at(-15.0, 2.0).expect("inside");
-    assert_eq!(bench.frame().occupancy.get(x, y, 1), Class::Truck.id(), "voxels at once");
+    assert_eq!(
+        bench.frame().occupancy.get(x, y, 1),
+        Class::Truck.id(),
+        "voxels at once"
+    );
 
     bench.key(Modifiers::NONE, Key::V);
     let way = [bench.bev(-15.0, 2.0), bench.bev(-9.0, 4.0)];
     bench.drag(&way, Modifiers::NONE);
     let moved = bench.frame().boxes[&BoxId(8)];
-    assert!((moved.center_m - truck.center_m).truncate().distance(DVec2::new(6.0, 2.0)) < 0.15, "{moved:?}");
+    assert!(
+        (moved.center_m - truck.center_m)
+            .truncate()
+            .distance(DVec2::new(6.0, 2.0))
+            < 0.15,
+        "{moved:?}"
+    );
     let knob = sceneloom::editor::pick::rotate_knob(&moved);
     let aim = moved.center_m.truncate() + DVec2::new(0.0, 6.0);
     let way = [bench.bev(knob.x, knob.y), bench.bev(aim.x, aim.y)];
     bench.drag(&way, Modifiers::NONE);
     let turned = bench.frame().boxes[&BoxId(8)];
-    assert!((turned.yaw_rad.to_degrees() - 90.0).abs() < 1.5, "{}", turned.yaw_rad.to_degrees());
+    assert!(
+        (turned.yaw_rad.to_degrees() - 90.0).abs() < 1.5,
+        "{}",
+        turned.yaw_rad.to_degrees()
+    );
 
     bench.key(Modifiers::NONE, Key::ArrowUp);
     let nudged = bench.frame().boxes[&BoxId(8)];
@@ -285,7 +353,15 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
     assert_eq!(bench.app().state.selected, None);
     assert_eq!(
         bench.history(),
-        ["Open", "Add box", "Move box", "Turn box", "Nudge box", "Duplicate box", "Delete box"]
+        [
+            "Open",
+            "Add box",
+            "Move box",
+            "Turn box",
+            "Nudge box",
+            "Duplicate box",
+            "Delete box"
+        ]
     );
     // Chosen by name in the list, deleted by the button of the inspector, brought back.
     bench.click("Box 7 car");
@@ -294,8 +370,9 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
     bench.click("Undo");
     assert!(bench.frame().boxes.contains_key(&BoxId(7)));
     // A step of the history is one click away.
-    bench.click("History 0 Open");
-    assert_eq!(bench.frame().boxes.len(), 1);
+    bench.click("History 3 Turn box");
+    assert_eq!(bench.frame().boxes[&BoxId(8)], turned);
+    assert_eq!(bench.app().document.position(), 3);
 }
 
 #[test]
@@ -309,7 +386,9 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
     bench.wait_until("the job", |b| !b.started.is_empty());
     assert_eq!(bench.started.recv(), Ok(RegionMode::Auto));
     bench.orders.send(Do::Step).expect("listens");
-    bench.wait_until("progress", |b| b.harness.query_by_label_contains("Denoising 1/3").is_some());
+    bench.wait_until("progress", |b| {
+        b.harness.query_by_label_contains("Denoising 1/3").is_some()
+    });
     assert!(bench.harness.query_by_label("Generation progress").is_some());
     assert_eq!(bench.frame(), rough, "nothing changes before it is done");
     bench.orders.send(Do::Finish).expect("listens");
@@ -318,10 +397,18 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
     let frame = bench.frame();
     let [x, y] = GridSpec::column_at(14.0, 3.0).expect("inside");
     assert_eq!(frame.occupancy.get(x, y, 0), Class::Vegetation.id(), "adopted");
-    assert_eq!(frame.occupancy, frame.source.occupancy, "the source of what comes next");
+    assert_eq!(
+        frame.occupancy, frame.source.occupancy,
+        "the source of what comes next"
+    );
     let receipt = bench.app().receipt.clone().expect("a receipt");
     assert_eq!((receipt.network_calls, receipt.untouched_voxels_changed), (20, 0));
-    assert!(bench.harness.query_by_label_contains("untouched voxels changed: 0").is_some());
+    assert!(
+        bench
+            .harness
+            .query_by_label_contains("untouched voxels changed: 0")
+            .is_some()
+    );
     // No second job for the same state; undo and redo need none either.
     bench.key(Modifiers::CTRL, Key::Z);
     assert_eq!(bench.frame().boxes.len(), 1);
@@ -329,7 +416,11 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
     bench.steps(10);
     assert!(bench.started.is_empty());
     assert_eq!(bench.frame().occupancy.get(x, y, 0), Class::Vegetation.id());
-    assert_eq!(bench.history(), ["Open", "Delete box"], "adopting is no undo step");
+    assert_eq!(
+        bench.history(),
+        ["Open", "Delete box"],
+        "adopting is no undo step"
+    );
 }
 
 #[test]
@@ -343,7 +434,10 @@ fn everything_is_generated_on_request_and_cancelled_on_request() {
     bench.wait_until("its end", |b| b.app().live.running.is_none());
     bench.steps(5);
     assert_eq!(bench.frame(), before);
-    assert!(bench.started.is_empty(), "a cancelled job does not come back by itself");
+    assert!(
+        bench.started.is_empty(),
+        "a cancelled job does not come back by itself"
+    );
     bench.click("Generate everything");
     bench.wait_until("the job", |b| !b.started.is_empty());
     bench.started.recv().expect("it started");
@@ -381,7 +475,12 @@ fn a_failure_is_told_once_and_live_stops() {
     assert!(!bench.app().live.on);
     let told = "Generation failed: weights are missing. Live is off now.";
     assert!(bench.harness.query_by_label(told).is_some());
-    assert!(bench.harness.query_by_label("Edited, not generated: live is off").is_some());
+    assert!(
+        bench
+            .harness
+            .query_by_label("Edited, not generated: live is off")
+            .is_some()
+    );
     assert_eq!(bench.started.len(), 1, "never a loop");
     bench.key(Modifiers::CTRL, Key::Space);
     assert!(bench.app().live.on);
@@ -446,7 +545,9 @@ fn a_scene_is_saved_and_opened_again_by_the_path_field() {
     let stays = bench.frame();
     bench.key(Modifiers::CTRL, Key::O);
     bench.give_path(&path, "Open file");
-    bench.wait_until("the error", |b| b.app().toasts.last().is_some_and(|t| t.contains("scene.loom")));
+    bench.wait_until("the error", |b| {
+        b.app().toasts.last().is_some_and(|t| t.contains("scene.loom"))
+    });
     assert_eq!(bench.frame(), stays);
     assert!(bench.app().toasts.last().is_some_and(|t| !t.contains('\n')));
 }
@@ -472,7 +573,11 @@ fn a_dropped_file_opens_and_closing_asks_first() {
     let mut other = scene();
     other.name = "Dropped".into();
     project::save(&path, &other).expect("saved");
-    bench.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    bench
+        .harness
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(Dropped(path)));
     bench.steps(1);
     bench.harness.input_mut().dropped_files.clear();
     bench.wait_until("the scene", |b| &*b.app().document.scene().name == "Dropped");
@@ -482,7 +587,11 @@ fn a_dropped_file_opens_and_closing_asks_first() {
         viewports.entry(egui::ViewportId::ROOT).or_default().events = vec![egui::ViewportEvent::Close];
         bench.steps(1);
         let viewports = &mut bench.harness.input_mut().viewports;
-        viewports.entry(egui::ViewportId::ROOT).or_default().events.clear();
+        viewports
+            .entry(egui::ViewportId::ROOT)
+            .or_default()
+            .events
+            .clear();
         let output = &bench.harness.output().viewport_output[&egui::ViewportId::ROOT];
         output.commands.contains(&egui::ViewportCommand::CancelClose)
     };
@@ -502,9 +611,9 @@ fn views_and_layers_answer_their_controls() {
     assert!(bench.harness.query_by_label("No GPU adapter").is_some());
     bench.click("Show walkway");
     assert!(!bench.app().state.shows(BevLayer::Walkway));
-    let bev = bench.harness.get_by_label("Bird's-eye view").rect();
+    let bev = bench.pane("Bird's-eye view");
     bench.key(Modifiers::NONE, Key::Tab);
-    let swapped = bench.harness.get_by_label("Bird's-eye view").rect();
+    let swapped = bench.pane("Bird's-eye view");
     assert!(swapped.left() > bev.left() + 100.0, "{bev:?} {swapped:?}");
     bench.key(Modifiers::NONE, Key::Tab);
     bench.key(Modifiers::NONE, Key::G);
@@ -516,6 +625,7 @@ fn views_and_layers_answer_their_controls() {
         unit: egui::MouseWheelUnit::Point,
         delta: egui::vec2(0.0, 120.0),
         phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
         modifiers: Modifiers::NONE,
     });
     bench.steps(30);
@@ -535,14 +645,19 @@ fn views_and_layers_answer_their_controls() {
 
 #[test]
 fn voxels_are_painted_and_shot_in_the_3d_view() {
-    let Some(mut bench) = Bench::with(true) else { return };
+    let Some(mut bench) = Bench::with(true) else {
+        return;
+    };
     bench.off();
-    let pane = bench.harness.get_by_label("3D view").rect();
+    let pane = bench.pane("3D view");
     bench.harness.hover_at(pane.center());
     bench.steps(2);
     assert_eq!(bench.app().state.hovered_pane, Some(Pane::View3d));
     bench.key(Modifiers::NONE, Key::B);
-    assert_eq!((bench.app().state.tool, bench.app().state.verb), (Tool::Voxel, VoxelVerb::Attach));
+    assert_eq!(
+        (bench.app().state.tool, bench.app().state.verb),
+        (Tool::Voxel, VoxelVerb::Attach)
+    );
     let before = bench.frame();
     let middle = pane.center() + egui::vec2(0.0, 60.0);
     bench.drag(&[middle, middle + egui::vec2(60.0, 0.0)], Modifiers::NONE);
@@ -573,16 +688,23 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     bench.wait_until("sensors", |b| b.app().sensors_are_current());
     bench.steps(20);
     let picture = bench.harness.render().expect("drawn");
-    let pane = picture.view(pane.left() as u32, pane.top() as u32, 300, 300).to_image();
+    let pane = picture
+        .view(pane.left() as u32, pane.top() as u32, 300, 300)
+        .to_image();
     let colors: std::collections::HashSet<_> = pane.pixels().copied().collect();
     assert!(colors.len() > 100, "{} colours", colors.len());
     let path = bench.folder.path().join("scene.loom");
     project::save(&path, bench.app().document.scene()).expect("saved");
     bench.app().document.mark_saved();
-    bench.app().execute(sceneloom::app::Command::OpenPath(path.clone()), &egui::Context::default());
+    bench.app().execute(
+        sceneloom::app::Command::OpenPath(path.clone()),
+        &egui::Context::default(),
+    );
     bench.wait_until("the scene", |b| b.app().path().is_some());
     bench.key(Modifiers::NONE, Key::F12);
-    let shot = image::open(path.with_extension("png")).expect("a picture").to_rgba8();
+    let shot = image::open(path.with_extension("png"))
+        .expect("a picture")
+        .to_rgba8();
     let colors: std::collections::HashSet<_> = shot.pixels().copied().collect();
     assert!(colors.len() > 100, "{} colours", colors.len());
 }

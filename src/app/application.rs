@@ -266,7 +266,10 @@ impl SceneloomApp {
                     if running.purpose == Purpose::WarmUp {
                         let calls = result.report.network_calls;
                         let took_s = now_s - running.submitted_s;
-                        self.toasts.log(format!("Ready to edit after {took_s:.1} s, {calls} network calls"), now_s);
+                        self.toasts.log(
+                            format!("Ready to edit after {took_s:.1} s, {calls} network calls"),
+                            now_s,
+                        );
                         return;
                     }
                     if !full {
@@ -484,7 +487,7 @@ impl SceneloomApp {
             Pane::Bev => {
                 panes::bev_header(ui, &mut self.state, commands);
                 ui.spacing_mut().item_spacing.y = 0.0;
-                                let input = CanvasInput {
+                let input = CanvasInput {
                     scene,
                     lidar: self.sensing.lidar().map(|l| &**l),
                     unsettled: self.unsettled,

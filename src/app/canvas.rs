@@ -204,7 +204,11 @@ impl Canvas {
             StrokeKind::Outside,
         );
         if state.show_lines && state.underlay != Underlay::Occupancy {
-            draw_lines(&painter.with_clip_rect(painter.clip_rect().intersect(grid)), map, scene);
+            draw_lines(
+                &painter.with_clip_rect(painter.clip_rect().intersect(grid)),
+                map,
+                scene,
+            );
         }
         if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
             draw_points(ui, map, sweep, state);
@@ -244,11 +248,12 @@ impl Canvas {
                     _ => state.erase || shift,
                 };
                 let radius = (state.brush_m / 2.0 * map.scale) as f32;
-                let color = if erase {
-                    theme::BAD
-                } else {
-                    theme::rgb(state.layer.color())
+                let layer = state.layer.color();
+                let (color, fill) = match erase {
+                    true => (theme::BAD, theme::BAD.gamma_multiply(0.12)),
+                    false => (theme::TEXT_STRONG, theme::rgba(layer, 0.35)),
                 };
+                painter.circle_filled(pointer, radius, fill);
                 painter.circle_stroke(pointer, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));
                 painter.circle_stroke(pointer, radius, Stroke::new(1.5, color));
                 painter.circle_filled(pointer, 1.5, color);
@@ -358,7 +363,8 @@ fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
     let tip = pair[0] + along * 4.0;
     let wings = [tip - along * 6.0 + side * 3.0, tip - along * 6.0 - side * 3.0];
     let head = vec![tip, wings[0], wings[1]];
-    painter.add(Shape::convex_polygon(head,
+    painter.add(Shape::convex_polygon(
+        head,
         color.gamma_multiply(1.6),
         Stroke::NONE,
     ));
@@ -476,15 +482,27 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
 
 /// A dashed frame around what is still to be generated.
 fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
-    let Some((low, high)) = input.unsettled else { return };
-    let color = if input.generating { theme::ACCENT } else { theme::WARN };
+    let Some((low, high)) = input.unsettled else {
+        return;
+    };
+    let color = if input.generating {
+        theme::ACCENT
+    } else {
+        theme::WARN
+    };
     let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
     let rect = map.rect_of(corner(low) - half, corner(high) + half).expand(2.0);
     ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
-    let [a, b, c, d] = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
+    let [a, b, c, d] = [
+        rect.left_top(),
+        rect.right_top(),
+        rect.right_bottom(),
+        rect.left_bottom(),
+    ];
     let stroke = Stroke::new(1.3, color);
-    ui.painter().extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
+    ui.painter()
+        .extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
 }
 
 fn draw_scale_bar(ui: &Ui, map: &ScreenMap) {

@@ -118,7 +118,11 @@ impl Live {
             true => (self.full_params, RegionMode::Full),
             false => (self.params, RegionMode::Auto),
         };
-        GenParams { seed: scene.seed, region, ..params }
+        GenParams {
+            seed: scene.seed,
+            region,
+            ..params
+        }
     }
 
     /// What the state shown asks for. `scene` is the settled one; `now_s` never runs backward.
@@ -141,7 +145,11 @@ impl Live {
         };
         if self.on && touched.is_empty && self.cold && self.running.is_none() {
             let ready_s = self.last_edit_s + WARM_UP_AFTER_S;
-            return if now_s < ready_s { Advice::Wait(ready_s - now_s) } else { Advice::WarmUp(params) };
+            return if now_s < ready_s {
+                Advice::Wait(ready_s - now_s)
+            } else {
+                Advice::WarmUp(params)
+            };
         }
         if !self.on || touched.is_empty || self.asked.is_some_and(|k| k.rev == key.rev) {
             return Advice::Rest;
@@ -255,7 +263,10 @@ mod tests {
 
     #[test]
     fn an_edit_is_generated_once_and_not_while_dragging() {
-        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
+        let (mut live, mut scene) = (
+            Live::new(GenParams::default(), GenParams::default(), false),
+            scene(),
+        );
         assert_eq!(live.advise(&scene, false, 0.0), Advice::Rest);
         paint(&mut scene, 40);
         assert_eq!(live.advise(&scene, true, 1.0), Advice::Rest);
@@ -274,7 +285,10 @@ mod tests {
 
     #[test]
     fn slow_runs_get_a_grace_that_ends() {
-        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
+        let (mut live, mut scene) = (
+            Live::new(GenParams::default(), GenParams::default(), false),
+            scene(),
+        );
         (0..3).for_each(|_| live.took(4.0));
         live.advise(&scene, false, 0.0);
         let mut now_s = 10.0;
@@ -294,7 +308,10 @@ mod tests {
 
     #[test]
     fn what_became_useless_is_cancelled() {
-        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
+        let (mut live, mut scene) = (
+            Live::new(GenParams::default(), GenParams::default(), false),
+            scene(),
+        );
         let before = scene.clone();
         paint(&mut scene, 40);
         let Advice::Submit(params) = live.advise(&scene, false, 1.0) else {
@@ -309,7 +326,10 @@ mod tests {
 
     #[test]
     fn off_means_off() {
-        let (mut live, mut scene) = (Live::new(GenParams::default(), GenParams::default(), false), scene());
+        let (mut live, mut scene) = (
+            Live::new(GenParams::default(), GenParams::default(), false),
+            scene(),
+        );
         live.on = false;
         paint(&mut scene, 40);
         assert_eq!(live.advise(&scene, false, 1.0), Advice::Rest);
@@ -322,7 +342,9 @@ mod tests {
         let mut scene = scene();
         let mut live = Live::new(GenParams::default(), GenParams::default(), true);
         assert!(matches!(live.advise(&scene, false, 0.0), Advice::Wait(_)));
-        let Advice::WarmUp(params) = live.advise(&scene, false, 1.0) else { panic!() };
+        let Advice::WarmUp(params) = live.advise(&scene, false, 1.0) else {
+            panic!()
+        };
         submit(&mut live, &scene, params, 1.0, 1);
         assert_eq!(live.running.as_ref().map(|r| r.purpose), Some(Purpose::WarmUp));
         assert_eq!(live.advise(&scene, false, 2.0), Advice::Rest);

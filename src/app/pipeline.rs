@@ -28,7 +28,11 @@ impl Pipeline for WarmPipeline {
             key: job.key(),
             frame: job.scene.current,
             occupancy: frame.occupancy.clone(),
-            report: GenReport { network_calls, inversion_calls: network_calls, ..GenReport::default() },
+            report: GenReport {
+                network_calls,
+                inversion_calls: network_calls,
+                ..GenReport::default()
+            },
         })
     }
 }

@@ -84,7 +84,10 @@ impl View3d {
         });
         Self {
             camera: ViewCamera::default(),
-            options: ViewOptions { point_px: 1.8, ..ViewOptions::default() },
+            options: ViewOptions {
+                point_px: 1.8,
+                ..ViewOptions::default()
+            },
             gpu,
             gesture: Gesture3d::None,
             rect: Rect::NOTHING,

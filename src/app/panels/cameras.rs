@@ -79,7 +79,8 @@ impl CameraStrip {
         let since_s = *self.stale_since_s.get_or_insert(now_s);
         self.looks_stale = now_s - since_s >= AFTER_S;
         if !self.looks_stale {
-            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(AFTER_S));
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_secs_f64(AFTER_S));
         }
     }
 

@@ -160,7 +160,11 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         Purpose::WarmUp => ("Getting ready to edit  ·  ", String::new()),
         _ => ("", format!("  ·  {x:.0} × {y:.0} m")),
     };
-    say(ui, &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"), theme::TEXT);
+    say(
+        ui,
+        &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
+        theme::TEXT,
+    );
     let cancel = ui.add(egui::Button::new("Cancel").small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {
