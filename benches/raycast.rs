@@ -2,31 +2,13 @@
 //! sweep with new masks. Run: `cargo bench --bench raycast`. Open3D 0.20 needs 3.19 ms on two
 //! threads for the same rays, after 68.6 ms to build its tree.
 
-use std::time::Instant;
-
 use glam::DVec3;
 use rayon::prelude::*;
 use sceneloom::generation::sensors::{lidar, raycast::ColumnMasks};
 use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
 
-fn time_ms(what: &str, mut run: impl FnMut() -> usize) {
-    for _ in 0..5 {
-        run();
-    }
-    let mut times = Vec::new();
-    let mut returned = 0;
-    for _ in 0..60 {
-        let start = Instant::now();
-        returned = run();
-        times.push(start.elapsed().as_secs_f64() * 1e3);
-    }
-    times.sort_by(f64::total_cmp);
-    println!(
-        "{what}: median {:.2} ms, least {:.2} ms ({returned})",
-        times[times.len() / 2],
-        times[0]
-    );
-}
+#[path = "timing.rs"]
+mod timing;
 
 fn main() {
     let path = concat!(
@@ -55,11 +37,11 @@ fn main() {
             .cast_in_voxels(origin, *d, f64::INFINITY)
             .map_or(0.0, |h| h.0)
     };
-    time_ms("cast, one thread", || {
+    timing::time("cast, one thread", 60, || {
         rays.iter().map(cast).filter(|t| *t > 0.0).count()
     });
     let mut ranges = vec![0.0f32; rays.len()];
-    time_ms("cast, all threads", || {
+    timing::time("cast, all threads", 60, || {
         let pairs = ranges.par_chunks_mut(512).zip(rays.par_chunks(512));
         pairs.for_each(|(out, rays)| {
             for (out, d) in out.iter_mut().zip(rays) {
@@ -68,12 +50,12 @@ fn main() {
         });
         ranges.iter().filter(|t| **t > 0.0).count()
     });
-    time_ms("masks of the whole grid", || {
+    timing::time("masks of the whole grid", 60, || {
         let masks = ColumnMasks::from_grid(&grid);
         usize::from(masks.column(3, 4))
     });
     let pattern = &SensorRig::default().lidars[0];
-    time_ms("sweep with masks", || {
+    timing::time("sweep with masks", 60, || {
         lidar::sweep(&grid, pattern, None).points.len()
     });
 }

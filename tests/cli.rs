@@ -14,7 +14,11 @@ fn sceneloom(args: &[&str]) -> Output {
 
 fn json(output: &Output) -> serde_json::Value {
     let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("one JSON object expected: {e}: {text}"))
 }
 
@@ -45,7 +49,16 @@ impl Folder {
     }
     fn scene(&self) -> String {
         let path = self.path("scene.loom");
-        json(&sceneloom(&["new", "--template", "straight", "--seed", "3", "-o", &path, "--json"]));
+        json(&sceneloom(&[
+            "new",
+            "--template",
+            "straight",
+            "--seed",
+            "3",
+            "-o",
+            &path,
+            "--json",
+        ]));
         path
     }
 }
@@ -57,11 +70,27 @@ fn templates_make_scenes_that_repeat() {
     for name in list["templates"].as_array().expect("a list") {
         let name = name.as_str().expect("a name");
         let (a, b) = (dir.path("a.loom"), dir.path("b.loom"));
-        let report = json(&sceneloom(&["new", "--template", name, "--seed", "5", "-o", &a, "--json"]));
+        let report = json(&sceneloom(&[
+            "new",
+            "--template",
+            name,
+            "--seed",
+            "5",
+            "-o",
+            &a,
+            "--json",
+        ]));
         assert!(report["occupied_voxels"].as_u64() > Some(30_000), "{report}");
-        assert!(report["classes"]["driveable_surface"].as_u64() > Some(2000), "{report}");
+        assert!(
+            report["classes"]["driveable_surface"].as_u64() > Some(2000),
+            "{report}"
+        );
         sceneloom(&["new", "--template", name, "--seed", "5", "-o", &b]);
-        assert_eq!(std::fs::read(&a).expect("written"), std::fs::read(&b).expect("written"), "{name}");
+        assert_eq!(
+            std::fs::read(&a).expect("written"),
+            std::fs::read(&b).expect("written"),
+            "{name}"
+        );
     }
 }
 
@@ -76,9 +105,18 @@ fn own_roads_import_with_traffic() {
         .collect();
     assert!(files.len() >= 3);
     for file in files {
-        let report = json(&sceneloom(&["import", &file.display().to_string(), "-o", &dir.path("r.loom"), "--json"]));
+        let report = json(&sceneloom(&[
+            "import",
+            &file.display().to_string(),
+            "-o",
+            &dir.path("r.loom"),
+            "--json",
+        ]));
         assert_eq!(report["format"], "opendrive");
-        assert!(report["roads"].as_u64() > Some(0) && report["lanes"].as_u64() > Some(0), "{report}");
+        assert!(
+            report["roads"].as_u64() > Some(0) && report["lanes"].as_u64() > Some(0),
+            "{report}"
+        );
     }
 }
 
@@ -93,7 +131,9 @@ fn edits_keep_what_they_do_not_touch() {
     );
     let (a, b) = (dir.path("a.loom"), dir.path("b.loom"));
     let args = |out: &str| {
-        let args = ["edit", &scene, "--edits", &edits, "--steps", "4", "--verify", "--json", "-o", out];
+        let args = [
+            "edit", &scene, "--edits", &edits, "--steps", "4", "--verify", "--json", "-o", out,
+        ];
         args.map(String::from)
     };
     let run = |out: &str| {
@@ -105,7 +145,10 @@ fn edits_keep_what_they_do_not_touch() {
     assert!(report["network_calls"].as_u64() >= Some(4));
     assert!(report["round_trip_error"].as_f64().is_some());
     run(&b);
-    assert_eq!(std::fs::read(&a).expect("written"), std::fs::read(&b).expect("written"));
+    assert_eq!(
+        std::fs::read(&a).expect("written"),
+        std::fs::read(&b).expect("written")
+    );
 }
 
 #[test]
@@ -114,16 +157,29 @@ fn sensors_and_views_render() {
     let scene = dir.scene();
     let out = dir.path("out");
     let what = "semantic,depth,lidar,bev,view";
-    let report = json(&sceneloom(&["render", &scene, "--what", what, "--size", "160x90", "-o", &out, "--json"]));
+    let report = json(&sceneloom(&[
+        "render", &scene, "--what", what, "--size", "160x90", "-o", &out, "--json",
+    ]));
     let files = report["files"].as_array().expect("a list");
     assert_eq!(files.len(), 6 + 12 + 2 + 2 + 1, "{files:?}");
     assert!(report["lidar"]["returns"].as_u64() > Some(10_000));
-    let front = image::open(Path::new(&out).join("CAM_FRONT_semantic.png")).expect("a picture").to_rgb8();
+    let front = image::open(Path::new(&out).join("CAM_FRONT_semantic.png"))
+        .expect("a picture")
+        .to_rgb8();
     assert_eq!(front.dimensions(), (160, 90));
     let colors: std::collections::HashSet<_> = front.pixels().collect();
     assert!(colors.len() > 8, "{} colours", colors.len());
     let shot = dir.path("shot.png");
-    json(&sceneloom(&["shot", &scene, "--size", "320x200", "--transparent", "-o", &shot, "--json"]));
+    json(&sceneloom(&[
+        "shot",
+        &scene,
+        "--size",
+        "320x200",
+        "--transparent",
+        "-o",
+        &shot,
+        "--json",
+    ]));
     let shot = image::open(shot).expect("a picture").to_rgba8();
     assert!(shot.pixels().any(|p| p[3] == 0) && shot.pixels().any(|p| p[3] == 255));
 }
@@ -133,16 +189,34 @@ fn bad_arguments_are_named() {
     let dir = Folder::new();
     let scene = dir.scene();
     let out = dir.path("never.loom");
-    refused(&["new", "--template", "spaceport", "-o", &out], &["spaceport", "straight"]);
-    refused(&["generate", &dir.path("missing.loom"), "-o", &out], &["missing.loom"]);
+    refused(
+        &["new", "--template", "spaceport", "-o", &out],
+        &["spaceport", "straight"],
+    );
+    refused(
+        &["generate", &dir.path("missing.loom"), "-o", &out],
+        &["missing.loom"],
+    );
     refused(&["generate", &scene, "--steps", "0", "-o", &out], &["steps", "0"]);
-    refused(&["render", &scene, "--what", "smell", "-o", &dir.path("x")], &["smell", "semantic"]);
-    refused(&["shot", &scene, "--view", "behind", "-o", &dir.path("x.png")], &["behind", "CAM_FRONT"]);
+    refused(
+        &["render", &scene, "--what", "smell", "-o", &dir.path("x")],
+        &["smell", "semantic"],
+    );
+    refused(
+        &["shot", &scene, "--view", "behind", "-o", &dir.path("x.png")],
+        &["behind", "CAM_FRONT"],
+    );
     for (text, needles) in [
         (r#"[{"remove_box": {"id": 99999}}]"#, ["99999", "edits.json"]),
         (r#"[{"remove_box": {"id": 1, "why": 2}}]"#, ["why", "edits.json"]),
-        (r#"[{"paint_voxels": {"cells": [[200, 0, 0]], "class": "car"}}]"#, ["200", "edits.json"]),
-        (r#"[{"add_box": {"class": "terrain", "center_m": [1,1,1], "size_m": [1,1,1], "yaw_deg": 0}}]"#, ["terrain", "edits.json"]),
+        (
+            r#"[{"paint_voxels": {"cells": [[200, 0, 0]], "class": "car"}}]"#,
+            ["200", "edits.json"],
+        ),
+        (
+            r#"[{"add_box": {"class": "terrain", "center_m": [1,1,1], "size_m": [1,1,1], "yaw_deg": 0}}]"#,
+            ["terrain", "edits.json"],
+        ),
         ("[{", ["edits.json", "line 1"]),
     ] {
         let edits = dir.write("edits.json", text);
@@ -167,7 +241,9 @@ fn bad_files_are_named() {
                </laneSection></lanes></road></OpenDRIVE>"#
         )
     };
-    let line = |length: &str, x: &str| format!(r#"<geometry s="0" x="{x}" y="0" hdg="0" length="{length}"><line/></geometry>"#);
+    let line = |length: &str, x: &str| {
+        format!(r#"<geometry s="0" x="{x}" y="0" hdg="0" length="{length}"><line/></geometry>"#)
+    };
     for (name, body) in [
         ("nan.xodr", line("10", "NaN")),
         ("zero.xodr", line("0", "0")),
@@ -177,13 +253,24 @@ fn bad_files_are_named() {
         refused(&["import", &file, "-o", &out], &[name, "7"]);
     }
     let good = dir.write("good.xodr", road(&line("10", "0")));
-    refused(&["import", &good, "--at", "5000,5000", "-o", &out], &["good.xodr", "5000"]);
+    refused(
+        &["import", &good, "--at", "5000,5000", "-o", &out],
+        &["good.xodr", "5000"],
+    );
     let scene = dir.path("scene.loom");
     let weights = dir.path("weights");
     std::fs::create_dir(&weights).expect("writable");
-    refused(&["generate", &scene, "--weights", &weights, "-o", &out], &["occ_vae.safetensors"]);
-    std::fs::write(Path::new(&weights).join("occ_vae.safetensors"), b"not weights").expect("writable");
-    refused(&["generate", &scene, "--weights", &weights, "-o", &out], &["occ_vae.safetensors"]);
+    refused(
+        &["generate", &scene, "--weights", &weights, "-o", &out],
+        &[".safetensors"],
+    );
+    for file in ["occ_vae.safetensors", "occ_dit.safetensors"] {
+        std::fs::write(Path::new(&weights).join(file), b"not weights").expect("writable");
+    }
+    refused(
+        &["generate", &scene, "--weights", &weights, "-o", &out],
+        &[".safetensors"],
+    );
     assert!(!Path::new(&out).exists(), "nothing may be written");
 }
 
@@ -192,7 +279,10 @@ fn doctor_reports_and_no_display_means_demo() {
     let report = json(&sceneloom(&["doctor", "--json"]));
     assert_eq!(report["display"], false);
     assert_eq!(report["weights"]["ok"], true, "{report}");
-    assert!(report["adapter"]["name"].is_string(), "a software adapter at least: {report}");
+    assert!(
+        report["adapter"]["name"].is_string(),
+        "a software adapter at least: {report}"
+    );
     let dir = Folder::new();
     let output = Command::new(env!("CARGO_BIN_EXE_sceneloom"))
         .current_dir(dir.0.path())
@@ -200,15 +290,26 @@ fn doctor_reports_and_no_display_means_demo() {
         .env_remove("WAYLAND_DISPLAY")
         .output()
         .expect("the built program runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     assert!(String::from_utf8_lossy(&output.stderr).contains("no display"));
     let report = std::fs::read(dir.0.path().join("sceneloom-demo/report.json")).expect("a report");
     let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
     let edits = report["edits"].as_array().expect("a list");
     assert!(edits.len() >= 5);
-    assert!(edits.iter().all(|e| e["untouched_voxels_changed"] == 0), "{report}");
+    assert!(
+        edits.iter().all(|e| e["untouched_voxels_changed"] == 0),
+        "{report}"
+    );
     for file in report["files"].as_array().expect("a list") {
-        let path = dir.0.path().join("sceneloom-demo").join(file.as_str().expect("a name"));
+        let path = dir
+            .0
+            .path()
+            .join("sceneloom-demo")
+            .join(file.as_str().expect("a name"));
         assert!(path.metadata().is_ok_and(|m| m.len() > 500), "{}", path.display());
     }
 }

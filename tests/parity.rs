@@ -341,3 +341,43 @@ fn weights_from_a_folder() {
     std::fs::write(folder.path().join("occ_vae.safetensors"), &vae[..vae.len() / 2]).expect("written");
     assert!(refusal().starts_with("occ_vae.safetensors: not a usable safetensors file"));
 }
+
+/// Median time of each network in ms; run with `--ignored --nocapture` on a quiet machine. With
+/// SCENELOOM_WEIGHTS another folder's networks are timed.
+#[test]
+#[ignore = "a measurement"]
+fn speed() {
+    let models = match std::env::var_os("SCENELOOM_WEIGHTS") {
+        Some(folder) => OccModels::from_dir(folder.as_ref()).expect("weights"),
+        None => models(),
+    };
+    let grid = scene(&Golden::open("parity_vae.safetensors"));
+    let (latent, prepared) = (
+        uniform(LATENT, 1),
+        models.dit.prepare(&condition()).expect("a condition"),
+    );
+    let some: Vec<bool> = (0..CELLS)
+        .map(|c| (20..26).contains(&(c / 50)) && (20..26).contains(&(c % 50)))
+        .collect();
+    let report = |what: &str, work: &dyn Fn()| {
+        work();
+        let mut ms: Vec<f64> = (0..15)
+            .map(|_| {
+                let start = std::time::Instant::now();
+                work();
+                start.elapsed().as_secs_f64() * 1e3
+            })
+            .collect();
+        ms.sort_by(f64::total_cmp);
+        println!("{what}: median {:.1} ms, least {:.1} ms", ms[7], ms[0]);
+    };
+    report("encode", &|| drop(models.vae.encode(&grid)));
+    report("decode", &|| drop(models.vae.decode(&latent)));
+    report("decode 36 cells", &|| {
+        drop(models.vae.decode_cells(&latent, &some))
+    });
+    report("prepare", &|| drop(models.dit.prepare(&condition())));
+    report("DiT forward", &|| {
+        drop(models.dit.forward(&latent, 500.0, &prepared))
+    });
+}

@@ -26,19 +26,31 @@ fn pipeline() -> OccPipeline {
 }
 
 fn params() -> GenParams {
-    GenParams { steps: 5, ..GenParams::default() }
+    GenParams {
+        steps: 5,
+        ..GenParams::default()
+    }
 }
 
 fn run(pipeline: &mut OccPipeline, document: &mut Document) -> GenResult {
-    let job = Job { scene: document.scene().clone(), params: params() };
+    let job = Job {
+        scene: document.scene().clone(),
+        params: params(),
+    };
     let result = pipeline.run(&job, &JobCtx::detached()).expect("a result");
-    document.adopt(result.rev(), result.occupancy.clone()).expect("the current state");
+    document
+        .adopt(result.rev(), result.occupancy.clone())
+        .expect("the current state");
     result
 }
 
 fn a_car(document: &Document) -> BoxId {
     let boxes = &document.scene().frame().boxes;
-    *boxes.iter().find(|(_, b)| b.class == Class::Car).expect("a car").0
+    *boxes
+        .iter()
+        .find(|(_, b)| b.class == Class::Car)
+        .expect("a car")
+        .0
 }
 
 #[test]
@@ -49,7 +61,12 @@ fn an_edit_of_nothing_asks_no_network() {
     assert_eq!(result.report.network_calls, 0);
     assert_eq!(result.occupancy, before);
     document
-        .apply("Prompt", &Edit::SetPrompt { prompt: "night".into() })
+        .apply(
+            "Prompt",
+            &Edit::SetPrompt {
+                prompt: "night".into(),
+            },
+        )
         .expect("a valid edit");
     assert_eq!(run(&mut pipeline(), &mut document).report.network_calls, 0);
 }
@@ -61,10 +78,15 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
     let id = a_car(&document);
     let car = document.scene().frame().boxes[&id];
     let before = document.scene().frame().occupancy.clone();
-    document.apply("Remove car", &Edit::RemoveBox { id }).expect("a valid edit");
+    document
+        .apply("Remove car", &Edit::RemoveBox { id })
+        .expect("a valid edit");
     let first = run(&mut pipeline, &mut document);
     assert_eq!(first.report.untouched_voxels_changed, 0);
-    assert_eq!((first.report.inversion_calls, first.report.network_calls), (5, 10));
+    assert_eq!(
+        (first.report.inversion_calls, first.report.network_calls),
+        (5, 10)
+    );
     let (mut all, mut gone) = (0, 0);
     box_cells(&car, 0.0, |x, y| {
         for (old, new) in before.column(x, y).iter().zip(first.occupancy.column(x, y)) {
@@ -73,7 +95,10 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
             gone += i32::from(*old == Class::Car.id() && left);
         }
     });
-    assert!(all > 100 && gone * 100 >= all * 90, "{gone} of {all} voxels of the car are gone");
+    assert!(
+        all > 100 && gone * 100 >= all * 90,
+        "{gone} of {all} voxels of the car are gone"
+    );
 
     let cone = Edit::AddBox {
         class: Class::TrafficCone,
@@ -85,7 +110,10 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
     };
     document.apply("Add cone", &cone).expect("a valid edit");
     let second = run(&mut pipeline, &mut document);
-    assert_eq!((second.report.inversion_calls, second.report.network_calls), (0, 5));
+    assert_eq!(
+        (second.report.inversion_calls, second.report.network_calls),
+        (0, 5)
+    );
     assert_eq!(second.report.untouched_voxels_changed, 0);
 }
 
@@ -93,10 +121,16 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
 fn painted_voxels_are_kept_by_every_generation() {
     let mut document = Document::new(scene());
     let cells: Vec<[usize; 3]> = (0..6).map(|z| [120, 104, z]).collect();
-    let wall = Edit::PaintVoxels { cells: cells.clone(), class: Class::Manmade };
+    let wall = Edit::PaintVoxels {
+        cells: cells.clone(),
+        class: Class::Manmade,
+    };
     document.apply("Wall", &wall).expect("a valid edit");
     for region in [RegionMode::Auto, RegionMode::Full] {
-        let job = Job { scene: document.scene().clone(), params: GenParams { region, ..params() } };
+        let job = Job {
+            scene: document.scene().clone(),
+            params: GenParams { region, ..params() },
+        };
         let result = pipeline().run(&job, &JobCtx::detached()).expect("a result");
         for [x, y, z] in &cells {
             assert_eq!(result.occupancy.get(*x, *y, *z), Class::Manmade.id());
@@ -108,10 +142,15 @@ fn painted_voxels_are_kept_by_every_generation() {
 fn results_do_not_depend_on_the_number_of_threads() {
     let id = a_car(&Document::new(scene()));
     let generate = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         pool.install(|| {
             let mut document = Document::new(scene());
-            document.apply("Remove car", &Edit::RemoveBox { id }).expect("a valid edit");
+            document
+                .apply("Remove car", &Edit::RemoveBox { id })
+                .expect("a valid edit");
             run(&mut pipeline(), &mut document).occupancy
         })
     };

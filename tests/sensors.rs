@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use glam::{DMat3, DQuat, DVec3};
 use npyz::npz::NpzArchive;
-use sceneloom::generation::sensors::{cloud, lidar, order, project, raycast, splat};
+use sceneloom::generation::sensors::{cloud, color, lidar, order, project, raycast, splat};
 use sceneloom::scene::{Camera, CameraMaps, Class, GridSpec, SensorRig, VoxelGrid};
 use serde_json::Value;
 
@@ -338,4 +338,43 @@ fn culling_deep_voxels_changes_little() {
             _ => assert!(labels < 20 && coverage < 0.004),
         }
     }
+}
+
+/// Six cameras (semantic above depth) and the sweep from above, as pictures to look at:
+/// `cargo test --release --test sensors -- --ignored`.
+#[test]
+#[ignore = "writes pictures to look at"]
+fn pictures() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let (grid, bev) = sensor_scene::street();
+    let rig = SensorRig::default();
+    let cloud = cloud::GaussianCloud::from_grid(&grid, &bev);
+    let [w, h] = splat::VIEW_SIZE;
+    let maps = splat::render_rig(&cloud, &rig, w, h, &splat::SplatOptions::default());
+    let mut sheet = image::RgbaImage::new(w * 3, h * 4);
+    for (i, maps) in maps.iter().enumerate() {
+        let (column, row) = (i as u32 % 3, i as u32 / 3);
+        let pictures = [
+            color::semantic_rgba(maps, true),
+            color::depth_rgba(&maps.depth_m, 2.0, 60.0),
+        ];
+        for (k, rgba) in pictures.into_iter().enumerate() {
+            let picture = image::RgbaImage::from_raw(w, h, rgba).expect("4 bytes a pixel");
+            let at = (column * w, (row + 2 * k as u32) * h);
+            image::imageops::replace(&mut sheet, &picture, at.0.into(), at.1.into());
+        }
+    }
+    sheet.save(folder.join("cameras.png")).expect("a picture");
+    // From above: ego x up, ego y left, 10 px per metre.
+    let mut top = image::RgbaImage::from_pixel(800, 800, image::Rgba([12, 14, 18, 255]));
+    for p in lidar::sweep(&grid, &rig.lidars[0], None).points {
+        let [x, y, _] = p.position_in_ego;
+        let at = ((40.0 - y) * 10.0, (40.0 - x) * 10.0);
+        if (0.0..800.0).contains(&at.0) && (0.0..800.0).contains(&at.1) {
+            let [r, g, b] = p.class.color();
+            top.put_pixel(at.0 as u32, at.1 as u32, image::Rgba([r, g, b, 255]));
+        }
+    }
+    top.save(folder.join("lidar.png")).expect("a picture");
+    println!("{}", folder.display());
 }

@@ -10,6 +10,7 @@ from models.occ_vae import CLASSES, FREE
 _COUNTS = [2.1e6, 3.0e6, 2.3e5, 5.4e6, 3.41e7, 2.0e6, 3.3e5, 3.3e6, 5.4e5, 5.8e6, 1.35e7, 1.98e8, 4.9e6, 5.65e7, 6.65e7,
            2.28e8, 2.52e8]
 RARITY = torch.tensor([1 + 3 * math.log(max(_COUNTS) / c) / math.log(max(_COUNTS) / min(_COUNTS)) for c in _COUNTS])
+CAR = 4
 FREE_NEAR, FREE_ANYWHERE = 3.5, 8.0  # weights of the two kinds of free voxels: few are drawn out of many
 
 
@@ -19,7 +20,12 @@ def sample_voxels(cells, limit):
     occupied = cells != FREE
     taken = occupied.view(-1).nonzero().squeeze(1)
     if len(taken) > limit:
-        taken = taken[torch.randint(len(taken), (limit,), device=cells.device)]
+        # Objects other than cars are a fiftieth of what is occupied and half of the classes: keep them all.
+        label = cells.view(-1)[taken]
+        rare = (label < 11) & (label != CAR)
+        rest = taken[~rare]
+        rest = rest[torch.randint(len(rest), (limit,), device=cells.device)]
+        taken = torch.cat([taken[rare][: 2 * limit], rest])
     n = len(taken)
     full = occupied.any(1).nonzero().squeeze(1)
     parts, weights = [taken], [RARITY.to(cells.device)[cells.view(-1)[taken].long()]]

@@ -25,7 +25,9 @@ pub fn bundled() -> anyhow::Result<Scene> {
 pub fn scene(path: &Path) -> anyhow::Result<Scene> {
     let name = path.display();
     let mut head = [0u8; 4];
-    let size = std::fs::metadata(path).with_context(|| format!("open {name}"))?.len();
+    let size = std::fs::metadata(path)
+        .with_context(|| format!("open {name}"))?
+        .len();
     if size >= 4 {
         let mut file = std::fs::File::open(path).with_context(|| format!("open {name}"))?;
         std::io::Read::read_exact(&mut file, &mut head).with_context(|| format!("read {name}"))?;
@@ -66,19 +68,27 @@ pub struct Imported {
 /// Imports a road network: its layout, seeded traffic, and the draft as occupancy until it is generated.
 pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     let name = path.display();
-    let size = std::fs::metadata(path).with_context(|| format!("open {name}"))?.len();
+    let size = std::fs::metadata(path)
+        .with_context(|| format!("open {name}"))?
+        .len();
     if size > LARGEST_TEXT {
         bail!("{name}: {size} bytes, expected at most {LARGEST_TEXT}");
     }
     let bytes = std::fs::read(path).with_context(|| format!("read {name}"))?;
     let network = opendrive::read(&bytes).with_context(|| name.to_string())?;
     let (at, lane_heading) = match placement.at_m {
-        Some(at) => network.pose_on_lane_near(at).map_or((at, 0.0), |pose| (at, pose.heading_rad)),
+        Some(at) => network
+            .pose_on_lane_near(at)
+            .map_or((at, 0.0), |pose| (at, pose.heading_rad)),
         None => network.suggest_pose(),
     };
     let heading = placement.heading_rad.unwrap_or(lane_heading);
     let import = network.to_layout(at, heading);
-    let spec = if placement.empty { traffic::TrafficSpec::EMPTY } else { traffic::TrafficSpec::NORMAL };
+    let spec = if placement.empty {
+        traffic::TrafficSpec::EMPTY
+    } else {
+        traffic::TrafficSpec::NORMAL
+    };
     let boxes = traffic::place(&import.layout, placement.seed, &spec);
     let occupancy = draft::draft(&import.layout, boxes.values());
     let stem = path.file_stem().map_or("import".into(), |s| s.to_string_lossy());

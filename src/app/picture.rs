@@ -6,8 +6,8 @@ use crate::generation::sensors::{color, lidar};
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, VoxelGrid};
 use crate::viewport::{
-    Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, headless_device,
-    lidar_colors,
+    Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
+    headless_device, lidar_colors,
 };
 
 /// RGBA8, row-major, top row first.
@@ -25,7 +25,11 @@ impl Picture {
     /// One colour.
     pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Self {
         let pixel = [color[0], color[1], color[2], 255];
-        Self { width, height, rgba: pixel.repeat(width * height) }
+        Self {
+            width,
+            height,
+            rgba: pixel.repeat(width * height),
+        }
     }
 
     fn set(&mut self, x: usize, y: usize, color: [u8; 3]) {
@@ -85,8 +89,19 @@ fn scaled(color: [u8; 3], by: f32) -> [u8; 3] {
 
 /// The layout from above, `scale` pixels per cell, boxes in their colours.
 pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
-    use BevLayer::{CarparkArea, DrivableArea, LaneDivider, PedCrossing, RoadBlock, RoadDivider, StopLine, Walkway};
-    let order = [DrivableArea, RoadBlock, Walkway, StopLine, CarparkArea, PedCrossing, RoadDivider, LaneDivider];
+    use BevLayer::{
+        CarparkArea, DrivableArea, LaneDivider, PedCrossing, RoadBlock, RoadDivider, StopLine, Walkway,
+    };
+    let order = [
+        DrivableArea,
+        RoadBlock,
+        Walkway,
+        StopLine,
+        CarparkArea,
+        PedCrossing,
+        RoadDivider,
+        LaneDivider,
+    ];
     let mut boxes: Vec<Option<&SceneBox>> = vec![None; GridSpec::COLUMNS];
     for b in frame.boxes.values() {
         box_cells(b, 0.0, |x, y| boxes[x * GridSpec::NY + y] = Some(b));
@@ -105,9 +120,10 @@ pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
     top_view(scale, |x, y| {
         let column = grid.column(x, y);
         let top = (0..GridSpec::NZ).rev().find(|z| column[*z] != Class::FREE);
-        top.and_then(|z| Some((z, Class::from_id(column[z])?))).map_or([20, 22, 27], |(z, class)| {
-            scaled(class.color(), 0.62 + 0.38 * z as f32 / 15.0)
-        })
+        top.and_then(|z| Some((z, Class::from_id(column[z])?)))
+            .map_or([20, 22, 27], |(z, class)| {
+                scaled(class.color(), 0.62 + 0.38 * z as f32 / 15.0)
+            })
     })
 }
 
@@ -119,7 +135,11 @@ pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
         let u = GridSpec::to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
         let (px, py) = (out.width as f64 - u.y, out.height as f64 - u.x);
         if px >= 0.0 && py >= 0.0 {
-            out.set(px as usize, py as usize, color::ramp(1.0 - (p.range_m / 50.0).min(1.0)));
+            // Two pixels wide and never dark, so that a sparse ring shows.
+            let bright = color::ramp(0.35 + 0.65 * (1.0 - (p.range_m / 45.0).min(1.0)));
+            for i in 0..4 {
+                out.set(px as usize + i % 2, py as usize + i / 2, bright);
+            }
         }
     }
     out
@@ -169,7 +189,12 @@ impl View3d {
     pub fn new() -> anyhow::Result<Self> {
         let (info, device, queue) = headless_device()?;
         let viewport = Viewport::new(&device, &queue);
-        Ok(Self { device, queue, viewport, adapter: info.name })
+        Ok(Self {
+            device,
+            queue,
+            viewport,
+            adapter: info.name,
+        })
     }
 
     /// A picture of the scene.
@@ -177,9 +202,15 @@ impl View3d {
         let frame = scene.frame();
         let pattern = scene.rig.lidars.first().filter(|_| options.lidar);
         let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
-        let sweep = pattern.map(|p| lidar::sweep(&frame.occupancy, p, ego)).unwrap_or_default();
+        let sweep = pattern
+            .map(|p| lidar::sweep(&frame.occupancy, p, ego))
+            .unwrap_or_default();
         let colors = lidar_colors(&sweep, LidarColorMode::Range);
-        let mut view = ViewOptions { boxes: options.boxes, lidar: options.lidar, ..ViewOptions::default() };
+        let mut view = ViewOptions {
+            boxes: options.boxes,
+            lidar: options.lidar,
+            ..ViewOptions::default()
+        };
         if options.transparent {
             view.background = Background::Transparent;
         }
@@ -192,7 +223,10 @@ impl View3d {
             selected: &[],
             hovered: None,
             brush: None,
-            lidar: options.lidar.then_some(LidarView { sweep: &sweep, colors: &colors }),
+            lidar: options.lidar.then_some(LidarView {
+                sweep: &sweep,
+                colors: &colors,
+            }),
             rig: &scene.rig,
             options: &view,
         };
@@ -208,6 +242,10 @@ impl View3d {
         if !options.transparent && rgba.chunks_exact(4).all(|p| p == &rgba[..4]) {
             bail!("the 3D view came out in one colour");
         }
-        Ok(Picture { width: width as usize, height: height as usize, rgba })
+        Ok(Picture {
+            width: width as usize,
+            height: height as usize,
+            rgba,
+        })
     }
 }

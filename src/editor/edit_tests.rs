@@ -551,10 +551,10 @@ fn ids_run_on_and_find_gaps() {
     assert_eq!(ids, [1, 2, 3, u32::MAX]);
 }
 
-/// The largest edits stay far below a frame's 16 ms even on a busy machine (bound ten times that).
+/// The largest edits fit into a frame of 16 ms; the best of a few tries, since tests share the machine.
 #[test]
 fn the_largest_edits_are_quick() {
-    let mut scene = street();
+    let scene = street();
     let everything = Edit::PaintBev {
         layer: BevLayer::DrivableArea,
         shape: Shape::Rect {
@@ -563,12 +563,16 @@ fn the_largest_edits_are_quick() {
         },
         value: true,
     };
-    let start = std::time::Instant::now();
-    everything.apply(&mut scene).expect("inside");
-    let paint = start.elapsed();
-    let start = std::time::Instant::now();
-    Edit::RemoveBox { id: BoxId(1) }.apply(&mut scene).expect("there");
-    let remove = start.elapsed();
+    let best = |edit: &Edit| {
+        let tries = (0..10).map(|_| {
+            let mut scene = scene.clone();
+            let start = std::time::Instant::now();
+            edit.apply(&mut scene).expect("sound");
+            start.elapsed()
+        });
+        tries.min().expect("ten tries")
+    };
+    let (paint, remove) = (best(&everything), best(&Edit::RemoveBox { id: BoxId(1) }));
     println!("paint 40,000 cells: {paint:?}, remove a car: {remove:?}");
-    assert!(paint.as_millis() < 160 && remove.as_millis() < 160);
+    assert!(paint.as_millis() < 16 && remove.as_millis() < 4);
 }

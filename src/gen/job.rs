@@ -58,6 +58,9 @@ pub struct GenParams {
     pub halo_columns: u32,
     /// How much work the result is worth.
     pub quality: Quality,
+    /// Puts the draft of an added or changed box in where the networks left out most of it, so that
+    /// what the user placed never vanishes.
+    pub keep_objects: bool,
 }
 
 impl Default for GenParams {
@@ -72,13 +75,14 @@ impl Default for GenParams {
             inversion_iterations: 0,
             halo_columns: 2,
             quality: Quality::Final,
+            keep_objects: true,
         }
     }
 }
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(&self) -> ([u32; 3], [u64; 4], RegionMode, Quality) {
+    fn bits(&self) -> ([u32; 3], [u64; 4], RegionMode, Quality, bool) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (
@@ -91,6 +95,7 @@ impl GenParams {
             ],
             self.region,
             self.quality,
+            self.keep_objects,
         )
     }
 
@@ -229,6 +234,8 @@ pub struct GenReport {
     pub seam_change_share: f64,
     /// Voxels that differ from the source.
     pub voxels_changed: usize,
+    /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
+    pub objects_kept: usize,
     /// Relative RMS error of encode, invert and sample again, where it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_error: Option<f64>,

@@ -4,6 +4,7 @@ pub mod composite;
 pub mod dataset;
 pub mod inversion;
 pub mod job;
+pub mod keep_objects;
 pub mod metrics;
 pub mod model;
 pub mod pipeline;

@@ -5,10 +5,13 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
-use super::job::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage};
-use super::model::{DitCondition, OccModels, Prepared};
 use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
+use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
+use super::job::{
+    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
+};
+use super::keep_objects::keep_objects;
+use super::model::{DitCondition, OccModels, Prepared};
 use super::region::{CELLS, Region};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
@@ -46,7 +49,10 @@ struct Condition {
 
 impl Condition {
     fn of<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox> + Clone) -> Self {
-        Self { bev: raster::bev_channels(layout, boxes.clone()), draft: draft::draft(layout, boxes) }
+        Self {
+            bev: raster::bev_channels(layout, boxes.clone()),
+            draft: draft::draft(layout, boxes),
+        }
     }
 }
 
@@ -66,7 +72,11 @@ impl Denoiser for Network<'_> {
             _ => &self.condition,
         };
         let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
-        let v = self.models.dit.forward(&x, t as f32, condition).map_err(GenError::failed)?;
+        let v = self
+            .models
+            .dit
+            .forward(&x, t as f32, condition)
+            .map_err(GenError::failed)?;
         Ok(v.into_iter().map(f64::from).collect())
     }
 }
@@ -82,7 +92,11 @@ pub struct OccPipeline {
 impl OccPipeline {
     /// With these networks.
     pub fn new(models: Arc<OccModels>) -> Self {
-        Self { models, schedule: Schedule::standard(), sources: VecDeque::new() }
+        Self {
+            models,
+            schedule: Schedule::standard(),
+            sources: VecDeque::new(),
+        }
     }
 
     /// With the weights that ship with the program.
@@ -97,7 +111,11 @@ impl OccPipeline {
 
     fn sampler(&self, params: &GenParams, guidance: Guidance) -> Result<Sampler, GenError> {
         let levels = self.schedule.levels(params.steps as usize, Spacing::Trailing)?;
-        Ok(Sampler { levels, prediction: Prediction::V, guidance })
+        Ok(Sampler {
+            levels,
+            prediction: Prediction::V,
+            guidance,
+        })
     }
 
     fn network(
@@ -107,8 +125,17 @@ impl OccPipeline {
         context: Vec<f32>,
         guided: bool,
     ) -> Result<Network<'_>, GenError> {
-        let draft_latent = self.models.vae.encode(&condition.draft).map_err(GenError::failed)?;
-        let full = DitCondition { bev: condition.bev.clone(), draft_latent, mask, context };
+        let draft_latent = self
+            .models
+            .vae
+            .encode(&condition.draft)
+            .map_err(GenError::failed)?;
+        let full = DitCondition {
+            bev: condition.bev.clone(),
+            draft_latent,
+            mask,
+            context,
+        };
         let prepared = self.models.dit.prepare(&full).map_err(GenError::failed)?;
         let without = if guided {
             let null = self.models.dit.null_condition(&full);
@@ -116,13 +143,20 @@ impl OccPipeline {
         } else {
             None
         };
-        Ok(Network { models: &self.models, condition: prepared, without })
+        Ok(Network {
+            models: &self.models,
+            condition: prepared,
+            without,
+        })
     }
 
     fn key(&self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams) -> SourceKey {
         SourceKey {
             occupancy: label_hash(occupancy),
-            layout: condition.bev.iter().fold(0, |h, b| super::world::draw::hash(h ^ u64::from(*b))),
+            layout: condition
+                .bev
+                .iter()
+                .fold(0, |h, b| super::world::draw::hash(h ^ u64::from(*b))),
             draft: label_hash(&condition.draft),
             steps: params.steps,
             iterations: params.inversion_iterations,
@@ -151,16 +185,25 @@ impl OccPipeline {
         }
         let sampler = self.sampler(params, Guidance::NONE)?;
         ctx.progress(Stage::Encode, 0, 1)?;
-        let latent = report.timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy)).map_err(GenError::failed)?;
+        let latent = report
+            .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
+            .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
         let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
-            let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
+            let mut network =
+                self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
             let refinement = Refinement::damped(params.inversion_iterations as usize);
-            invert(&sampler, &clean, refinement, &mut network, |k, n| ctx.progress(Stage::Invert, k, n))
+            invert(&sampler, &clean, refinement, &mut network, |k, n| {
+                ctx.progress(Stage::Invert, k, n)
+            })
         })?;
         report.inversion_calls = inversion.calls;
         report.network_calls += inversion.calls;
-        let source = Source { key, trajectory: Arc::new(trajectory), report: Some(inversion) };
+        let source = Source {
+            key,
+            trajectory: Arc::new(trajectory),
+            report: Some(inversion),
+        };
         self.remember(source.clone());
         Ok(source)
     }
@@ -179,7 +222,9 @@ impl OccPipeline {
         let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
         let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
         let sampler = self.sampler(&job.params, Guidance::NONE)?;
-        round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| ctx.progress(Stage::Denoise, k, n))
+        round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })
     }
 
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
@@ -194,15 +239,25 @@ impl OccPipeline {
         })?;
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
         let states = report.timed(Stage::Denoise, |_| {
-            sampler.sample(start, &mut network, |view| ctx.progress(Stage::Denoise, view.step, view.steps))
+            sampler.sample(start, &mut network, |view| {
+                ctx.progress(Stage::Denoise, view.step, view.steps)
+            })
         })?;
         report.network_calls = params.steps as usize * sampler.guidance.calls();
         drop(network);
-        let trajectory = Trajectory { levels: sampler.levels.clone(), states };
+        let trajectory = Trajectory {
+            levels: sampler.levels.clone(),
+            states,
+        };
         ctx.progress(Stage::Decode, 0, 1)?;
         let latent = trajectory.latent_f32();
-        let generated = report.timed(Stage::Decode, |_| self.models.vae.decode(&latent)).map_err(GenError::failed)?;
+        let mut generated = report
+            .timed(Stage::Decode, |_| self.models.vae.decode(&latent))
+            .map_err(GenError::failed)?;
         let region = Region::full();
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, true, &mut generated);
+        }
         let source = &frame.source.occupancy;
         let result = self.finish(job, source, &generated, &region, &mut report);
         self.adopt(&result.occupancy, &condition, params, trajectory);
@@ -212,7 +267,9 @@ impl OccPipeline {
     fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
-        let region = report.timed(Stage::Composite, |_| Region::of_edit(frame, params.halo_columns as usize));
+        let region = report.timed(Stage::Composite, |_| {
+            Region::of_edit(frame, params.halo_columns as usize)
+        });
         let before = &frame.source.occupancy;
         if region.is_empty() {
             // Nothing to redraw: no network is asked.
@@ -234,38 +291,80 @@ impl OccPipeline {
         let guided = sampler.guidance.calls() > 1;
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
-        let context = latent.iter().enumerate().map(|(i, v)| v * (1.0 - mask[i / CHANNELS])).collect();
+        let context = latent
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
+            .collect();
         let models = self.models.clone();
         let mut network = report.timed(Stage::Encode, |_| self.network(&condition, mask, context, guided))?;
-        let noise = RegionNoise { strength: params.strength, seed: params.seed };
-        let preview_at = if params.quality == Quality::Final { params.steps as usize / 2 } else { 0 };
+        let noise = RegionNoise {
+            strength: params.strength,
+            seed: params.seed,
+        };
+        let preview_at = if params.quality == Quality::Final {
+            params.steps as usize / 2
+        } else {
+            0
+        };
         let edited = report.timed(Stage::Denoise, |report| {
-            edit_with_replay(&sampler, &source.trajectory, &region.cells, CHANNELS, noise, &mut network, |view| {
-                ctx.progress(Stage::Denoise, view.step, view.steps)?;
-                if view.step == preview_at && view.step > 1 {
-                    let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
-                    let grid = models.vae.decode_cells(&clean, &region.cells).map_err(GenError::failed)?;
-                    let occupancy = composite(before, &grid, &region, &frame.painted);
-                    ctx.preview(GenResult { key: job.key(), frame: job.scene.current, occupancy, report: report.clone() });
-                }
-                Ok(())
-            })
+            edit_with_replay(
+                &sampler,
+                &source.trajectory,
+                &region.cells,
+                CHANNELS,
+                noise,
+                &mut network,
+                |view| {
+                    ctx.progress(Stage::Denoise, view.step, view.steps)?;
+                    if view.step == preview_at && view.step > 1 {
+                        let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
+                        let grid = models
+                            .vae
+                            .decode_cells(&clean, &region.cells)
+                            .map_err(GenError::failed)?;
+                        let occupancy = composite(before, &grid, &region, &frame.painted);
+                        ctx.preview(GenResult {
+                            key: job.key(),
+                            frame: job.scene.current,
+                            occupancy,
+                            report: report.clone(),
+                        });
+                    }
+                    Ok(())
+                },
+            )
         })?;
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
-        let generated = report
-            .timed(Stage::Decode, |_| self.models.vae.decode_cells(&edited.latent, &region.cells))
+        let mut generated = report
+            .timed(Stage::Decode, |_| {
+                self.models.vae.decode_cells(&edited.latent, &region.cells)
+            })
             .map_err(GenError::failed)?;
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, false, &mut generated);
+        }
         let result = self.finish(job, before, &generated, &region, &mut report);
         self.adopt(&result.occupancy, &condition, params, edited.trajectory);
         Ok(result)
     }
 
     /// A result's own trajectory is that of the scene that adopts it: no inversion next time.
-    fn adopt(&mut self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams, trajectory: Trajectory) {
+    fn adopt(
+        &mut self,
+        occupancy: &VoxelGrid,
+        condition: &Condition,
+        params: &GenParams,
+        trajectory: Trajectory,
+    ) {
         let key = self.key(occupancy, condition, params);
-        self.remember(Source { key, trajectory: Arc::new(trajectory), report: None });
+        self.remember(Source {
+            key,
+            trajectory: Arc::new(trajectory),
+            report: None,
+        });
     }
 
     fn finish(
@@ -277,7 +376,9 @@ impl OccPipeline {
         report: &mut GenReport,
     ) -> GenResult {
         let painted = &job.scene.frame().painted;
-        let occupancy = report.timed(Stage::Composite, |_| composite(source, generated, region, painted));
+        let occupancy = report.timed(Stage::Composite, |_| {
+            composite(source, generated, region, painted)
+        });
         report.region_columns = region.column_count();
         report.region_share = region.share();
         report.region_cells = region.cell_count();
@@ -285,7 +386,12 @@ impl OccPipeline {
         report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
         report.voxels_changed = source.count_different(&occupancy);
         report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
-        GenResult { key: job.key(), frame: job.scene.current, occupancy, report: std::mem::take(report) }
+        GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy,
+            report: std::mem::take(report),
+        }
     }
 }
 

@@ -87,7 +87,7 @@ impl ViewCamera {
         let fov_y_rad = 45f64.to_radians();
         let base = Self {
             target_m: DVec3::new(4.0, 0.0, 0.0),
-            distance_m: 52.0,
+            distance_m: 58.0,
             yaw_rad: 0.42,
             pitch_rad: -0.56,
             fov_y_rad,

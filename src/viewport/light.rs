@@ -219,8 +219,13 @@ mod tests {
             }
         }
         let block = bake(&grid, [100, 100], [1, 1]);
-        assert_eq!(block.cells[2], [block.cells[2][0], 0], "no sun below");
-        assert!(block.cells[2][0] < 40, "little sky below");
+        assert_eq!(block.cells[2][1], 0, "no sun below");
+        let sky = |z: usize| block.cells[z][0];
+        assert!(sky(7) < 40, "hardly any sky right below: {}", sky(7));
+        assert!(
+            sky(7) < sky(2) && sky(2) < sky(9),
+            "more of it farther down, and all above"
+        );
         assert_eq!(block.cells[9], [255, 255], "all of it above");
     }
 

@@ -40,7 +40,12 @@ impl Dataset {
         let mut json = serde_json::to_value(&report)?;
         json["frames_per_s"] = (self.frames as f64 / start.elapsed().as_secs_f64()).into();
         output::report(&self.common, &json, || {
-            format!("{}: {} frames, {} bytes written", self.output.display(), report.frames, report.bytes)
+            format!(
+                "{}: {} frames, {} bytes written",
+                self.output.display(),
+                report.frames,
+                report.bytes
+            )
         });
         Ok(())
     }

@@ -51,28 +51,72 @@ fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
         velocity_mps: None,
         id: None,
     };
-    list.push(("cones added", (0..5).map(|i| cone(8.0 + 2.2 * f64::from(i), -1.4 + 0.5 * f64::from(i))).collect()));
+    list.push((
+        "cones added",
+        (0..5)
+            .map(|i| cone(8.0 + 2.2 * f64::from(i), -1.4 + 0.5 * f64::from(i)))
+            .collect(),
+    ));
     // A lane beside the road, where the drivable area ends on the right.
     let frame = scene.frame();
-    let edge = (2..95).find(|y| !frame.layout.has(BevLayer::DrivableArea, 110, 100 - y)).unwrap_or(15);
+    let edge = (2..95)
+        .find(|y| !frame.layout.has(BevLayer::DrivableArea, 110, 100 - y))
+        .unwrap_or(15);
     let y_m = GridSpec::center(110, 100 - edge, 0).y - 1.5;
-    let line = Shape::Line { points_m: vec![DVec2::new(-38.0, y_m), DVec2::new(38.0, y_m)], width_m: 3.4 };
-    list.push(("lane painted", vec![
-        Edit::PaintBev { layer: BevLayer::Walkway, shape: line.clone(), value: false },
-        Edit::PaintBev { layer: BevLayer::DrivableArea, shape: line, value: true },
-    ]));
-    let wall: Vec<[usize; 3]> = (0..12).flat_map(|i| (0..6).map(move |z| [150, 94 + i, z])).collect();
-    list.push(("voxel wall", vec![Edit::PaintVoxels { cells: wall, class: Class::Manmade }]));
-    list.push(("prompt set", vec![Edit::SetPrompt { prompt: "night, rain".into() }]));
+    let line = Shape::Line {
+        points_m: vec![DVec2::new(-38.0, y_m), DVec2::new(38.0, y_m)],
+        width_m: 3.4,
+    };
+    list.push((
+        "lane painted",
+        vec![
+            Edit::PaintBev {
+                layer: BevLayer::Walkway,
+                shape: line.clone(),
+                value: false,
+            },
+            Edit::PaintBev {
+                layer: BevLayer::DrivableArea,
+                shape: line,
+                value: true,
+            },
+        ],
+    ));
+    let wall: Vec<[usize; 3]> = (0..12)
+        .flat_map(|i| (0..6).map(move |z| [150, 94 + i, z]))
+        .collect();
+    list.push((
+        "voxel wall",
+        vec![Edit::PaintVoxels {
+            cells: wall,
+            class: Class::Manmade,
+        }],
+    ));
+    list.push((
+        "prompt set",
+        vec![Edit::SetPrompt {
+            prompt: "night, rain".into(),
+        }],
+    ));
     list
 }
 
 /// Six semantic and six depth pictures as two rows.
 fn camera_sheet(scene: &Scene) -> Picture {
     let (maps, _) = sense(scene, [320, 180]);
-    let picture = |rgba: Vec<u8>, m: &crate::scene::CameraMaps| Picture { width: m.width, height: m.height, rgba };
-    let semantic = maps.iter().map(|m| picture(color::semantic_rgba(m, true), m)).collect();
-    let depth = maps.iter().map(|m| picture(color::depth_rgba(&m.depth_m, 1.0, 60.0), m)).collect();
+    let picture = |rgba: Vec<u8>, m: &crate::scene::CameraMaps| Picture {
+        width: m.width,
+        height: m.height,
+        rgba,
+    };
+    let semantic = maps
+        .iter()
+        .map(|m| picture(color::semantic_rgba(m, true), m))
+        .collect();
+    let depth = maps
+        .iter()
+        .map(|m| picture(color::depth_rgba(&m.depth_m, 1.0, 60.0), m))
+        .collect();
     Picture::sheet(&[semantic, depth], 8)
 }
 
@@ -99,7 +143,10 @@ impl Sink<'_> {
             picture::lidar_top(&sweep, 2),
         ];
         if let Some(view) = &mut self.view {
-            let options = picture::ShotOptions { size: [640, 400], ..Default::default() };
+            let options = picture::ShotOptions {
+                size: [640, 400],
+                ..Default::default()
+            };
             row.push(view.shot(scene, &options)?);
         }
         Ok(row)
@@ -108,13 +155,21 @@ impl Sink<'_> {
 
 impl Demo {
     pub(super) fn run(self) -> Outcome {
-        let dir = if self.output.as_os_str().is_empty() { PathBuf::from("sceneloom-demo") } else { self.output };
+        let dir = if self.output.as_os_str().is_empty() {
+            PathBuf::from("sceneloom-demo")
+        } else {
+            self.output
+        };
         std::fs::create_dir_all(&dir).with_context(|| format!("create {}", dir.display()))?;
         let progress = Progress::new(&self.common);
         let start = Instant::now();
         let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
         let mut document = Document::new(open::bundled()?);
-        let mut sink = Sink { dir: &dir, files: Vec::new(), view: None };
+        let mut sink = Sink {
+            dir: &dir,
+            files: Vec::new(),
+            view: None,
+        };
         match View3d::new() {
             Ok(view) => sink.view = Some(view),
             // The demo's pictures from above and of the cameras need no graphics adapter.
@@ -124,19 +179,27 @@ impl Demo {
         sink.files.push("0_scene.loom".into());
         sink.png("0_cameras.png", &camera_sheet(document.scene()))?;
         let params = GenParams::default();
-        let job = Job { scene: document.scene().clone(), params };
+        let job = Job {
+            scene: document.scene().clone(),
+            params,
+        };
         let calls = progress.with_ctx(|ctx| pipeline.prepare(&job, ctx))?;
         let invert_s = start.elapsed().as_secs_f64();
         let mut rows = Vec::new();
         for (i, (label, edits)) in edits(document.scene()).into_iter().enumerate() {
             let before = sink.row(document.scene())?;
             let edit_start = Instant::now();
-            document.apply_all(label, &edits).with_context(|| label.to_string())?;
+            document
+                .apply_all(label, &edits)
+                .with_context(|| label.to_string())?;
             let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
             let wall_s = edit_start.elapsed().as_secs_f64();
             let stem = format!("{}_{}", i + 1, label.replace(' ', "_"));
             let after = sink.row(document.scene())?;
-            sink.png(&format!("{stem}_before_after.png"), &Picture::sheet(&[before, after], 8))?;
+            sink.png(
+                &format!("{stem}_before_after.png"),
+                &Picture::sheet(&[before, after], 8),
+            )?;
             sink.png(&format!("{stem}_cameras.png"), &camera_sheet(document.scene()))?;
             project::save(&dir.join(format!("{stem}.loom")), document.scene())?;
             sink.files.push(format!("{stem}.loom"));
@@ -159,9 +222,15 @@ impl Demo {
             "peak_rss_mb": output::peak_rss_mb(),
             "wall_s": start.elapsed().as_secs_f64(),
         });
-        output::write_file(&dir.join("report.json"), serde_json::to_string_pretty(&report)?.as_bytes())?;
+        output::write_file(
+            &dir.join("report.json"),
+            serde_json::to_string_pretty(&report)?.as_bytes(),
+        )?;
         output::report(&self.common, &report, || {
-            let mut text = format!("{:<14} {:>8} {:>6} {:>9} {:>10}\n", "edit", "seconds", "calls", "changed", "untouched");
+            let mut text = format!(
+                "{:<14} {:>8} {:>6} {:>9} {:>10}\n",
+                "edit", "seconds", "calls", "changed", "untouched"
+            );
             for row in &rows {
                 let seconds = row["wall_s"].as_f64().unwrap_or(0.0);
                 text += &format!(

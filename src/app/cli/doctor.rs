@@ -42,7 +42,9 @@ fn simd() -> Vec<&'static str> {
 impl Doctor {
     pub(super) fn run(self) -> Outcome {
         let adapter = match headless_device() {
-            Ok((info, ..)) => json!({ "name": info.name, "kind": format!("{:?}", info.device_type), "backend": format!("{:?}", info.backend) }),
+            Ok((info, ..)) => {
+                json!({ "name": info.name, "kind": format!("{:?}", info.device_type), "backend": format!("{:?}", info.backend) })
+            }
             Err(error) => json!({ "error": error.to_string() }),
         };
         let weights = match models(self.common.weights.as_deref()) {
@@ -61,7 +63,14 @@ impl Doctor {
         output::report(&self.common, &report, || {
             let rows = [
                 ("version", report["version"].to_string()),
-                ("display", if has_display() { "yes".into() } else { "none: the editor will run the demo instead".into() }),
+                (
+                    "display",
+                    if has_display() {
+                        "yes".into()
+                    } else {
+                        "none: the editor will run the demo instead".into()
+                    },
+                ),
                 ("adapter", adapter.to_string()),
                 ("threads", threads.to_string()),
                 ("simd", simd().join(" ")),

@@ -51,10 +51,15 @@ impl EditCommand {
         let params = self.generation.params(GenParams::default());
         let mut document = Document::new(scene);
         let before = document.scene().clone();
-        document.apply_all("Edit", &edits).with_context(|| self.edits.display().to_string())?;
+        document
+            .apply_all("Edit", &edits)
+            .with_context(|| self.edits.display().to_string())?;
         let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
         let round_trip = if self.verify {
-            let job = Job { scene: before, params };
+            let job = Job {
+                scene: before,
+                params,
+            };
             Some(progress.with_ctx(|ctx| pipeline.round_trip(&job, ctx))?)
         } else {
             None
@@ -74,6 +79,7 @@ impl EditCommand {
             "inversion_calls": r.inversion_calls,
             "wall_s": r.wall_s,
             "peak_rss_mb": output::peak_rss_mb(),
+            "objects_kept": r.objects_kept,
             "seed": params.seed,
             "steps": params.steps,
             "model": pipeline.models().card.name,
@@ -101,7 +107,10 @@ impl EditCommand {
             )
         });
         if self.verify && r.untouched_voxels_changed > 0 {
-            return Err(Stop::Short(format!("{} voxels outside the region changed", r.untouched_voxels_changed)));
+            return Err(Stop::Short(format!(
+                "{} voxels outside the region changed",
+                r.untouched_voxels_changed
+            )));
         }
         Ok(())
     }

@@ -1,4 +1,5 @@
-//! `sceneloom eval`: quality on held-out worlds, with 95 % intervals over scenes.
+//! `sceneloom eval`: quality on held-out worlds, with 95 % intervals over scenes. The networks' own
+//! output is judged: drafts are not put in for boxes that they left out.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,9 +17,9 @@ use crate::generation::metrics::agreement::AgreementCount;
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::metrics::stats::{mean_ci95, median};
 use crate::generation::pipeline::OccPipeline;
+use crate::generation::world::World;
 use crate::generation::world::draw::{Draw, hash};
 use crate::generation::world::voxelize::{Vertical, complete};
-use crate::generation::world::World;
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SensorRig, VoxelGrid};
 
@@ -79,8 +80,13 @@ impl Eval {
             .filter(|(_, found, least)| found.is_nan() || found < least)
             .map(|(name, found, least)| format!("{name} {found:.3} below {least}"))
             .collect();
-        report["bars"] = bars.iter().map(|(name, found, least)| json!({ "name": name, "found": found, "least": least })).collect();
-        output::report(&self.common, &report, || serde_json::to_string_pretty(&report).unwrap_or_default());
+        report["bars"] = bars
+            .iter()
+            .map(|(name, found, least)| json!({ "name": name, "found": found, "least": least }))
+            .collect();
+        output::report(&self.common, &report, || {
+            serde_json::to_string_pretty(&report).unwrap_or_default()
+        });
         if self.bar && !missed.is_empty() {
             return Err(Stop::Short(missed.join("; ")));
         }
@@ -131,16 +137,26 @@ impl Eval {
     }
 
     /// Occupancy from the layout alone, against the layout.
-    fn generation(&self, pipeline: &mut OccPipeline, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
+    fn generation(
+        &self,
+        pipeline: &mut OccPipeline,
+        progress: &Progress,
+    ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let (mut all, mut world_all) = (AgreementCount::default(), AgreementCount::default());
         let (mut drivable, mut vehicles, mut wall_s) = (Vec::new(), Vec::new(), Vec::new());
-        let mut params = self.generation.params(full_params());
+        let mut params = GenParams {
+            keep_objects: false,
+            ..self.generation.params(full_params())
+        };
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
             let scene = scene(i as u64);
             world_all.add(scene.frame(), &scene.frame().occupancy);
             params.seed = self.generation.seed + i as u64;
-            let job = Job { scene: Arc::new(scene), params };
+            let job = Job {
+                scene: Arc::new(scene),
+                params,
+            };
             let result = pipeline.run(&job, &JobCtx::detached())?;
             wall_s.push(result.report.total_s());
             all.add(job.scene.frame(), &result.occupancy);
@@ -168,7 +184,10 @@ impl Eval {
 
     /// One car removed, one truck added on free road, per world.
     fn editing(&self, pipeline: &mut OccPipeline, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
-        let params = self.generation.params(GenParams::default());
+        let params = GenParams {
+            keep_objects: false,
+            ..self.generation.params(GenParams::default())
+        };
         let ctx = JobCtx::detached();
         let mut gone = Vec::new();
         let mut filled = Vec::new();
@@ -179,13 +198,20 @@ impl Eval {
             progress.at("editing", i, self.frames);
             let scene = scene(i as u64);
             let start = std::time::Instant::now();
-            let job = Job { scene: Arc::new(scene.clone()), params };
+            let job = Job {
+                scene: Arc::new(scene.clone()),
+                params,
+            };
             pipeline.prepare(&job, &ctx)?;
             invert_s.push(start.elapsed().as_secs_f64());
             round_trip.push(pipeline.round_trip(&job, &ctx)?);
             let cars = scene.frame().boxes.values().filter(|b| b.class == Class::Car);
-            if let Some(car) = cars.min_by(|a, b| a.center_m.length().total_cmp(&b.center_m.length())).copied() {
-                let (before, after, report) = edited(pipeline, &scene, &Edit::RemoveBox { id: car.id }, params)?;
+            if let Some(car) = cars
+                .min_by(|a, b| a.center_m.length().total_cmp(&b.center_m.length()))
+                .copied()
+            {
+                let (before, after, report) =
+                    edited(pipeline, &scene, &Edit::RemoveBox { id: car.id }, params)?;
                 gone.extend(removed_share(&car, &before, &after));
                 untouched += report.untouched_voxels_changed;
                 seam.push(report.seam_change_share);
@@ -220,7 +246,11 @@ impl Eval {
         let bars = vec![
             ("removed car", mean_ci95(&gone).0, 0.95),
             ("added truck", mean_ci95(&filled).0, 0.60),
-            ("untouched voxels kept", if untouched == 0 { 1.0 } else { 0.0 }, 1.0),
+            (
+                "untouched voxels kept",
+                if untouched == 0 { 1.0 } else { 0.0 },
+                1.0,
+            ),
         ];
         Ok((report, bars))
     }
@@ -235,7 +265,10 @@ fn edited(
 ) -> anyhow::Result<(VoxelGrid, VoxelGrid, crate::generation::job::GenReport)> {
     let mut document = Document::new(scene.clone());
     document.apply("Edit", edit)?;
-    let job = Job { scene: document.scene().clone(), params };
+    let job = Job {
+        scene: document.scene().clone(),
+        params,
+    };
     let result = pipeline.run(&job, &JobCtx::detached())?;
     Ok((scene.frame().occupancy.clone(), result.occupancy, result.report))
 }
@@ -270,7 +303,12 @@ fn free_truck(frame: &Frame, seed: u64) -> Option<SceneBox> {
     let mut draw = Draw::new(seed, "free truck");
     let objects: u32 = (8..18).map(|bit| 1 << bit).sum();
     let cells = frame.bev_channels();
-    let lanes: Vec<_> = frame.layout.polylines.iter().filter(|l| l.kind == crate::scene::PolylineKind::LaneCenter).collect();
+    let lanes: Vec<_> = frame
+        .layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == crate::scene::PolylineKind::LaneCenter)
+        .collect();
     let size_m = DVec3::from_array(Class::Truck.typical_size_m()?);
     for _ in 0..400 {
         let lane = lanes.get(draw.below(lanes.len()))?;
@@ -285,8 +323,12 @@ fn free_truck(frame: &Frame, seed: u64) -> Option<SceneBox> {
             velocity_mps: glam::DVec2::ZERO,
         };
         let mut free = truck.footprint().iter().all(|c| c.abs().max_element() < 38.0) && a.length() > 6.0;
-        box_cells(&truck, 0.8, |x, y| free &= cells[x * GridSpec::NY + y] & objects == 0);
-        box_cells(&truck, 0.0, |x, y| free &= frame.layout.has(BevLayer::DrivableArea, x, y));
+        box_cells(&truck, 0.8, |x, y| {
+            free &= cells[x * GridSpec::NY + y] & objects == 0
+        });
+        box_cells(&truck, 0.0, |x, y| {
+            free &= frame.layout.has(BevLayer::DrivableArea, x, y)
+        });
         if free {
             return Some(truck);
         }

@@ -34,7 +34,12 @@ pub struct Generate {
 
 /// Parameters of a generation from the layout alone.
 pub fn full_params() -> GenParams {
-    GenParams { region: RegionMode::Full, steps: 20, guidance: 1.5, ..GenParams::default() }
+    GenParams {
+        region: RegionMode::Full,
+        steps: 20,
+        guidance: 1.5,
+        ..GenParams::default()
+    }
 }
 
 /// The networks of `--weights`, or the bundled ones.
@@ -52,7 +57,10 @@ pub fn run_and_adopt(
     params: GenParams,
     progress: &Progress,
 ) -> anyhow::Result<GenResult> {
-    let job = Job { scene: document.scene().clone(), params };
+    let job = Job {
+        scene: document.scene().clone(),
+        params,
+    };
     let result = progress.with_ctx(|ctx| pipeline.run(&job, ctx))?;
     document.adopt(result.rev(), result.occupancy.clone())?;
     Ok(result)
@@ -93,6 +101,7 @@ impl Generate {
             "network_calls": result.report.network_calls,
             "wall_s": wall_s,
             "peak_rss_mb": output::peak_rss_mb(),
+            "objects_kept": result.report.objects_kept,
             "seed": params.seed,
             "steps": params.steps,
             "guidance": params.guidance,

@@ -62,7 +62,12 @@ impl Import {
         if frame.layout.count(BevLayer::DrivableArea) == 0 {
             let (at, _) = imported.pose;
             (|| -> anyhow::Result<()> {
-                bail!("{}: no road within 40 m of --at {:.1},{:.1}", self.file.display(), at.x, at.y)
+                bail!(
+                    "{}: no road within 40 m of --at {:.1},{:.1}",
+                    self.file.display(),
+                    at.x,
+                    at.y
+                )
             })()?;
         }
         project::save(&self.output, &imported.scene).context("write the scene")?;
@@ -87,7 +92,11 @@ impl Import {
                 at.x,
                 at.y,
                 heading.to_degrees(),
-                if imported.skipped.is_empty() { "nothing".into() } else { format!("{:?}", imported.skipped) }
+                if imported.skipped.is_empty() {
+                    "nothing".into()
+                } else {
+                    format!("{:?}", imported.skipped)
+                }
             )
         });
         Ok(())

@@ -92,6 +92,9 @@ struct Gen {
     /// How far an edited region's noise leaves the inverted one, 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     strength: f64,
+    /// Leave the networks' output as it is, also where they left out a box that the user placed.
+    #[arg(long)]
+    raw: bool,
 }
 
 impl Gen {
@@ -107,6 +110,7 @@ impl Gen {
             },
             inversion_iterations: self.inversion_iterations,
             strength: self.strength,
+            keep_objects: !self.raw,
             ..default
         }
     }

@@ -30,19 +30,31 @@ pub struct New {
 /// Voxels per class that occurs, by name.
 pub fn class_counts(scene: &Scene) -> serde_json::Map<String, serde_json::Value> {
     let counts = scene.frame().occupancy.class_counts();
-    let occupied = Class::ALL.into_iter().filter(|c| *c != Class::Free && counts[c.id() as usize] > 0);
-    occupied.map(|c| (c.name().into(), counts[c.id() as usize].into())).collect()
+    let occupied = Class::ALL
+        .into_iter()
+        .filter(|c| *c != Class::Free && counts[c.id() as usize] > 0);
+    occupied
+        .map(|c| (c.name().into(), counts[c.id() as usize].into()))
+        .collect()
 }
 
 impl New {
     pub(super) fn run(self) -> Outcome {
         if self.template == "list" {
-            output::report(&self.common, &json!({ "templates": TEMPLATES }), || TEMPLATES.join("\n"));
+            output::report(&self.common, &json!({ "templates": TEMPLATES }), || {
+                TEMPLATES.join("\n")
+            });
             return Ok(());
         }
-        let path = self.output.ok_or_else(|| anyhow!("-o S.loom is missing: where should the scene go?"))?;
+        let path = self
+            .output
+            .ok_or_else(|| anyhow!("-o S.loom is missing: where should the scene go?"))?;
         let scene = open::from_template(&self.template, self.seed).ok_or_else(|| {
-            anyhow!("--template is {:?}, expected one of {}", self.template, TEMPLATES.join(", "))
+            anyhow!(
+                "--template is {:?}, expected one of {}",
+                self.template,
+                TEMPLATES.join(", ")
+            )
         })?;
         project::save(&path, &scene)?;
         let frame = scene.frame();

@@ -17,15 +17,34 @@ pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
     }
 }
 
-/// An error with its causes on one line.
+/// An error with its causes on one line. A cause that its parent has quoted already is left out.
 pub fn one_line(error: &anyhow::Error) -> String {
-    let text = format!("{error:#}");
-    text.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+    let mut text = String::new();
+    for cause in error.chain() {
+        let lines = cause.to_string();
+        let line = lines
+            .lines()
+            .map(str::trim)
+            .filter(|l| !l.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
+        if !text.contains(&line) {
+            text = if text.is_empty() {
+                line
+            } else {
+                format!("{text}: {line}")
+            };
+        }
+    }
+    text
 }
 
 /// Writes a file beside its final name and renames it: an interrupted command leaves the old file whole.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let dir = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     let write = || -> std::io::Result<()> {
         let mut file = tempfile::NamedTempFile::new_in(dir)?;
         file.write_all(bytes)?;
@@ -40,8 +59,14 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    image::ImageEncoder::write_image(encoder, rgba, width as u32, height as u32, image::ExtendedColorType::Rgba8)
-        .with_context(|| format!("encode {}", path.display()))?;
+    image::ImageEncoder::write_image(
+        encoder,
+        rgba,
+        width as u32,
+        height as u32,
+        image::ExtendedColorType::Rgba8,
+    )
+    .with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
 }
 
@@ -50,8 +75,14 @@ pub fn write_png16(path: &Path, width: usize, height: usize, values: &[u16]) -> 
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
     let raw: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
-    image::ImageEncoder::write_image(encoder, &raw, width as u32, height as u32, image::ExtendedColorType::L16)
-        .with_context(|| format!("encode {}", path.display()))?;
+    image::ImageEncoder::write_image(
+        encoder,
+        &raw,
+        width as u32,
+        height as u32,
+        image::ExtendedColorType::L16,
+    )
+    .with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
 }
 

@@ -17,7 +17,10 @@ impl Progress {
     /// Shown if stderr is a terminal or `--progress` was given.
     pub fn new(common: &Common) -> Self {
         let shown = common.progress || std::io::stderr().is_terminal();
-        Self { shown, state: Mutex::new((String::new(), Instant::now())) }
+        Self {
+            shown,
+            state: Mutex::new((String::new(), Instant::now())),
+        }
     }
 
     /// `step` of `steps` of `stage` are done.
@@ -30,7 +33,11 @@ impl Progress {
             *state = (stage.into(), Instant::now());
         }
         let spent = state.1.elapsed().as_secs_f64();
-        let left = if step > 0 { spent / step as f64 * (steps.max(step) - step) as f64 } else { 0.0 };
+        let left = if step > 0 {
+            spent / step as f64 * (steps.max(step) - step) as f64
+        } else {
+            0.0
+        };
         let filled = 20 * step / steps.max(1);
         let bar: String = (0..20).map(|i| if i < filled { '#' } else { '.' }).collect();
         eprint!("\r\x1b[K{stage:<10} [{bar}] {step}/{steps}  {left:.1} s left");

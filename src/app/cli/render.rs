@@ -62,7 +62,12 @@ pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, Lida
     let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
     let maps = splat::render_rig(&cloud, &scene.rig, width, height, &splat::SplatOptions::default());
     let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
-    let sweep = scene.rig.lidars.first().map(|p| lidar::sweep(&frame.occupancy, p, ego)).unwrap_or_default();
+    let sweep = scene
+        .rig
+        .lidars
+        .first()
+        .map(|p| lidar::sweep(&frame.occupancy, p, ego))
+        .unwrap_or_default();
     (maps, sweep)
 }
 
@@ -117,7 +122,12 @@ impl Render {
                 }
                 if wants("depth") {
                     let path = dir.join(format!("{}_depth.png", m.camera));
-                    output::write_png(&path, m.width, m.height, &color::depth_rgba(&m.depth_m, 1.0, 60.0))?;
+                    output::write_png(
+                        &path,
+                        m.width,
+                        m.height,
+                        &color::depth_rgba(&m.depth_m, 1.0, 60.0),
+                    )?;
                     files.push(path);
                     let path = dir.join(format!("{}_depth_mm.png", m.camera));
                     output::write_png16(&path, m.width, m.height, &color::depth_mm(&m.depth_m))?;
@@ -144,7 +154,10 @@ impl Render {
         }
         if wants("bev") {
             let start = Instant::now();
-            for (name, shot) in [("bev.png", picture::layout_top(&frame, 4)), ("occupancy_top.png", picture::occupancy_top(&frame.occupancy, 4))] {
+            for (name, shot) in [
+                ("bev.png", picture::layout_top(&frame, 4)),
+                ("occupancy_top.png", picture::occupancy_top(&frame.occupancy, 4)),
+            ] {
                 let path = dir.join(name);
                 output::write_png(&path, shot.width, shot.height, &shot.rgba)?;
                 files.push(path);
@@ -161,7 +174,11 @@ impl Render {
         }
         let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report });
         output::report(&self.common, &report, || {
-            files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>().join("\n")
+            files
+                .iter()
+                .map(|f| f.display().to_string())
+                .collect::<Vec<_>>()
+                .join("\n")
         });
         Ok(())
     }

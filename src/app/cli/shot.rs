@@ -41,11 +41,23 @@ pub struct Shot {
 impl Shot {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
-        let of_rig = scene.rig.cameras.iter().find(|c| c.name == self.view).map(ViewCamera::through);
-        let camera = ViewPreset::from_name(&self.view).map(ViewCamera::preset).or(of_rig).ok_or_else(|| {
-            let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
-            anyhow!("--view is {:?}, expected perspective, top, front, side, ego or one of {}", self.view, cameras.join(", "))
-        })?;
+        let of_rig = scene
+            .rig
+            .cameras
+            .iter()
+            .find(|c| c.name == self.view)
+            .map(ViewCamera::through);
+        let camera = ViewPreset::from_name(&self.view)
+            .map(ViewCamera::preset)
+            .or(of_rig)
+            .ok_or_else(|| {
+                let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+                anyhow!(
+                    "--view is {:?}, expected perspective, top, front, side, ego or one of {}",
+                    self.view,
+                    cameras.join(", ")
+                )
+            })?;
         let options = picture::ShotOptions {
             camera,
             size: self.size,
@@ -61,7 +73,12 @@ impl Shot {
         let wall_s = start.elapsed().as_secs_f64();
         let report = json!({ "adapter": view.adapter, "wall_s": wall_s, "file": self.output });
         output::report(&self.common, &report, || {
-            format!("{}: {} in {wall_s:.2} s on {}", self.output.display(), self.view, view.adapter)
+            format!(
+                "{}: {} in {wall_s:.2} s on {}",
+                self.output.display(),
+                self.view,
+                view.adapter
+            )
         });
         Ok(())
     }

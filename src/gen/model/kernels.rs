@@ -58,117 +58,164 @@ pub fn silu(x: f32) -> f32 {
     if x < -104.0 { -0.0 } else { x / (1.0 + exp(-x)) }
 }
 
-/// GELU of a whole slice.
-pub fn gelu_all(values: &mut [f32]) {
-    vectorised(values, |values| {
+/// Writes a function twice: as it stands, and compiled for AVX2, which is taken where the machine has
+/// it. No fused operations are switched on, so both give the same bits; AVX2 is several times faster.
+/// (A closure or generic helper would not do: it keeps its own instruction set.)
+macro_rules! vectorised {
+    ($(#[$meta:meta])* pub fn $name:ident($($arg:ident: $type:ty),* $(,)?) $body:block) => {
+        $(#[$meta])*
+        pub fn $name($($arg: $type),*) {
+            #[inline(always)]
+            fn plain($($arg: $type),*) $body
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                fn wide($($arg: $type),*) {
+                    plain($($arg),*);
+                }
+                if std::arch::is_x86_feature_detected!("avx2") {
+                    // SAFETY: the feature was just found on this machine.
+                    unsafe { wide($($arg),*) };
+                    return;
+                }
+            }
+            plain($($arg),*);
+        }
+    };
+}
+
+vectorised! {
+    /// GELU of a whole slice.
+    pub fn gelu_all(values: &mut [f32]) {
         for v in values {
             *v = gelu(*v);
         }
-    });
+    }
 }
 
-/// Softmax of one row, in place and not yet divided: returns the sum to divide by. The row's largest
-/// value is subtracted first. A row that is masked out (all -infinity) becomes zeros with sum 1.
+vectorised! {
+    /// Softmax of every row, in place and not yet divided; `sums` gets the divisors. A row's largest
+    /// value is subtracted first. A row that is masked out (all -infinity) becomes zeros with sum 1.
+    pub fn softmax_rows(scores: &mut [f32], row_length: usize, sums: &mut [f32]) {
+        for (row, sum) in scores.chunks_exact_mut(row_length).zip(sums) {
+            let max = max8(row);
+            if max == f32::NEG_INFINITY && !row.iter().any(|v| v.is_nan()) {
+                row.fill(0.0);
+                *sum = 1.0;
+                continue;
+            }
+            for v in row.iter_mut() {
+                *v = exp(*v - max);
+            }
+            *sum = sum8(row);
+        }
+    }
+}
+
+/// Largest value; NaN is passed over.
 #[inline(always)]
-fn softmax_row(row: &mut [f32]) -> f32 {
+fn max8(row: &[f32]) -> f32 {
     let mut maxima = [f32::NEG_INFINITY; 8];
-    for eight in row.chunks(8) {
+    let eights = row.chunks_exact(8);
+    for v in eights.remainder() {
+        maxima[0] = if *v > maxima[0] { *v } else { maxima[0] };
+    }
+    for eight in eights {
         for (max, v) in maxima.iter_mut().zip(eight) {
             *max = if *v > *max { *v } else { *max };
         }
     }
-    let max = maxima.into_iter().fold(f32::NEG_INFINITY, f32::max);
-    if max == f32::NEG_INFINITY && !row.iter().any(|v| v.is_nan()) {
-        row.fill(0.0);
-        return 1.0;
-    }
-    // Eight sums side by side: vectorises, and the order is fixed.
+    maxima.into_iter().fold(f32::NEG_INFINITY, f32::max)
+}
+
+/// Eight sums side by side: vectorises, and the order is fixed.
+#[inline(always)]
+fn sum8(row: &[f32]) -> f32 {
     let mut sums = [0.0f32; 8];
-    let mut eights = row.chunks_exact_mut(8);
-    for eight in &mut eights {
-        for (sum, v) in sums.iter_mut().zip(eight) {
-            *v = exp(*v - max);
-            *sum += *v;
-        }
+    let eights = row.chunks_exact(8);
+    for (sum, v) in sums.iter_mut().zip(eights.remainder()) {
+        *sum += v;
     }
-    for v in eights.into_remainder() {
-        *v = exp(*v - max);
-        sums[0] += *v;
+    for eight in eights {
+        for (sum, v) in sums.iter_mut().zip(eight) {
+            *sum += v;
+        }
     }
     sums.iter().sum()
 }
 
-/// [`softmax_row`] for every row; `sums` gets one divisor per row.
-pub fn softmax_rows(scores: &mut [f32], row_length: usize, sums: &mut [f32]) {
-    vectorised(scores, |scores| {
-        for (row, sum) in scores.chunks_exact_mut(row_length).zip(sums) {
-            *sum = softmax_row(row);
+vectorised! {
+    /// Layer norm of every row: (x - mean) / sqrt(variance + eps), times `scale` plus `shift`, all of
+    /// `scale.len()` columns. Mean and variance are taken in two passes in f64: a large mean or a
+    /// value of 1e30 does no harm.
+    pub fn norm_rows(x: &[f32], eps: f64, scale: &[f32], shift: &[f32], out: &mut [f32]) {
+        let width = scale.len();
+        for (row, out) in x.chunks_exact(width).zip(out.chunks_exact_mut(width)) {
+            let mean = moment8(row, 0.0, 1) / width as f64;
+            let variance = moment8(row, mean, 2) / width as f64;
+            let inverse = 1.0 / (variance + eps).sqrt();
+            for (((o, v), s), b) in out.iter_mut().zip(row).zip(scale).zip(shift) {
+                *o = ((f64::from(*v) - mean) * inverse) as f32 * s + b;
+            }
         }
-    });
-}
-
-/// (x - mean) / sqrt(variance + eps) of one row into `out`, then times `scale` plus `shift`.
-/// Mean and variance are taken in two passes in f64: a large mean or a value of 1e30 does no harm.
-#[inline(always)]
-fn norm_row(x: &[f32], eps: f64, scale: &[f32], shift: &[f32], out: &mut [f32]) {
-    let n = x.len() as f64;
-    let mean = sum8(x, f64::from) / n;
-    let variance = sum8(x, |v| (f64::from(v) - mean) * (f64::from(v) - mean)) / n;
-    let inverse = 1.0 / (variance + eps).sqrt();
-    for (((o, v), s), b) in out.iter_mut().zip(x).zip(scale).zip(shift) {
-        *o = ((f64::from(*v) - mean) * inverse) as f32 * s + b;
     }
 }
 
+/// Sum of (x - center) or of its square.
 #[inline(always)]
-fn sum8(x: &[f32], term: impl Fn(f32) -> f64) -> f64 {
+fn moment8(row: &[f32], center: f64, power: u8) -> f64 {
+    let term = |v: f32| {
+        let d = f64::from(v) - center;
+        if power == 2 { d * d } else { d }
+    };
     let mut sums = [0.0f64; 8];
-    let eights = x.chunks_exact(8);
-    let rest: f64 = eights.remainder().iter().map(|v| term(*v)).sum();
+    let eights = row.chunks_exact(8);
+    for (sum, v) in sums.iter_mut().zip(eights.remainder()) {
+        *sum += term(*v);
+    }
     for eight in eights {
         for (sum, v) in sums.iter_mut().zip(eight) {
             *sum += term(*v);
         }
     }
-    sums.iter().sum::<f64>() + rest
+    sums.iter().sum()
 }
 
-/// Layer norm of every row: `out = norm(x) * scale + shift`, all of `scale.len()` columns.
-pub fn norm_rows(x: &[f32], eps: f64, scale: &[f32], shift: &[f32], out: &mut [f32]) {
-    vectorised(out, |out| {
-        for (row, o) in x.chunks_exact(scale.len()).zip(out.chunks_exact_mut(scale.len())) {
-            norm_row(row, eps, scale, shift, o);
-        }
-    });
-}
-
-/// x += gate * y for every row; `gate` has one value per column.
-pub fn add_gated(x: &mut [f32], gate: &[f32], y: &[f32]) {
-    vectorised(x, |x| {
+vectorised! {
+    /// x += gate * y for every row; `gate` has one value per column.
+    pub fn add_gated(x: &mut [f32], gate: &[f32], y: &[f32]) {
         for (row, y) in x.chunks_exact_mut(gate.len()).zip(y.chunks_exact(gate.len())) {
             for ((x, g), y) in row.iter_mut().zip(gate).zip(y) {
                 *x += g * y;
             }
         }
-    });
+    }
 }
 
-/// Runs a loop compiled for AVX2 where the machine has it. No fused operations are switched on, so
-/// the bits are those of the plain loop; it is two to three times faster.
-#[inline(always)]
-pub fn vectorised<T: ?Sized, R>(data: &mut T, body: impl FnOnce(&mut T) -> R) -> R {
-    #[cfg(target_arch = "x86_64")]
-    {
-        #[target_feature(enable = "avx2")]
-        fn wide<T: ?Sized, R>(data: &mut T, body: impl FnOnce(&mut T) -> R) -> R {
-            body(data)
-        }
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the feature was just found on this machine.
-            return unsafe { wide(data, body) };
+vectorised! {
+    /// The class of the largest logit for every voxel; the lowest class keeps a tie. Features are
+    /// `[feature][voxel]`, the table is `[class][feature]`. A voxel whose logits are all NaN gets
+    /// class 0: callers check that features are finite.
+    pub fn likeliest(features: &[f32], table: &[f32], bias: &[f32], labels: &mut [u8]) {
+        let voxels = labels.len();
+        let width = features.len() / voxels;
+        labels.fill(0);
+        let mut best = vec![f32::NEG_INFINITY; voxels];
+        let mut logits = vec![0.0; voxels];
+        for (class, bias) in bias.iter().enumerate() {
+            logits.fill(*bias);
+            for (t, feature) in table[class * width..][..width].iter().zip(features.chunks_exact(voxels)) {
+                for (logit, f) in logits.iter_mut().zip(feature) {
+                    *logit += t * f;
+                }
+            }
+            for ((label, best), logit) in labels.iter_mut().zip(&mut best).zip(&logits) {
+                let better = *logit > *best;
+                *best = if better { *logit } else { *best };
+                *label = if better { class as u8 } else { *label };
+            }
         }
     }
-    body(data)
 }
 
 /// Index of the largest value, the lowest one on ties; `None` for an empty slice or one with NaN.

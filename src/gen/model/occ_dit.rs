@@ -21,7 +21,7 @@ const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 /// Mask, context, draft, layout.
 const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT;
 /// Tokens that are worked on in one piece.
-const PIECE: usize = 40;
+const PIECE: usize = 80;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -222,14 +222,12 @@ impl OccDit {
         let ada = self.final_ada.vector(&time);
         let (shift, scale) = ada.split_at(width);
         let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
+        let mut normed = vec![0.0; tokens.len()];
+        kernels::norm_rows(&tokens, NORM_EPS, &scale, shift, &mut normed);
+        let patches = self.last.parallel(&normed, PIECE);
         let mut out = vec![0.0; LATENT];
-        for (token, row) in tokens.chunks_exact(width).enumerate() {
-            let mut normed = vec![0.0; width];
-            kernels::norm_rows(row, NORM_EPS, &scale, shift, &mut normed);
-            let values = self.last.vector(&normed);
-            for (cell, values) in patch(token).zip(values.chunks_exact(CHANNELS)) {
-                out[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
-            }
+        for (cell, values) in (0..TOKENS).flat_map(patch).zip(patches.chunks_exact(CHANNELS)) {
+            out[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
         }
         check_finite("predicted v", &out)?;
         Ok(out)

@@ -16,6 +16,8 @@ const COLUMNS: usize = GridSpec::NX / SIDE;
 const VOXELS: usize = COLUMNS * COLUMNS * GridSpec::NZ;
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
+/// Cells that are given labels in one piece.
+const PIECE_CELLS: usize = 25;
 const CLASSES: usize = Class::COUNT;
 const OCCUPIED: usize = Class::FREE as usize; // free is the last class
 
@@ -198,9 +200,9 @@ impl OccVae {
         };
         let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
-        let labels: Vec<[u8; VOXELS]> = wanted
-            .par_iter()
-            .map(|c| self.label_cell(map.cell(window, *c)))
+        let pieces = wanted.par_chunks(PIECE_CELLS);
+        let labels: Vec<[u8; VOXELS]> = pieces
+            .flat_map_iter(|cells| self.label_cells(&map, window, cells))
             .collect();
         for (cell, labels) in wanted.iter().zip(&labels) {
             let (x0, y0) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
@@ -221,7 +223,8 @@ impl OccVae {
         let Some(window) = Window::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
-        let features = self.features(self.decoder_map(latent, window)?.cell(window, cell));
+        let map = self.decoder_map(latent, window)?;
+        let features = self.decoder_head.vector(map.cell(window, cell)); // [feature][voxel]
         let mut out = vec![0.0; VOXELS * CLASSES];
         for (voxel, logits) in out.chunks_exact_mut(CLASSES).enumerate() {
             for (class, logit) in logits.iter_mut().enumerate() {
@@ -267,34 +270,18 @@ impl OccVae {
         Ok(map)
     }
 
-    /// Voxel features of a cell, `[feature][voxel]`.
-    fn features(&self, cell: &[f32]) -> Vec<f32> {
-        self.decoder_head.vector(cell)
-    }
-
-    /// Dot product with the class table and argmax. Weights and normed features are finite and
-    /// small, so no logit can be NaN.
-    fn label_cell(&self, cell: &[f32]) -> [u8; VOXELS] {
-        let features = self.features(cell);
-        let mut labels = [0; VOXELS];
-        kernels::vectorised(&mut labels, |labels| {
-            let mut best = [f32::NEG_INFINITY; VOXELS];
-            let mut logits = [0.0; VOXELS];
-            for class in 0..CLASSES {
-                logits.fill(self.class_bias[class]);
-                let row = &self.class_table[class * FEATURES..][..FEATURES];
-                for (t, feature) in row.iter().zip(features.chunks_exact(VOXELS)) {
-                    logits.iter_mut().zip(feature).for_each(|(l, f)| *l += t * f);
-                }
-                for ((label, best), l) in labels.iter_mut().zip(&mut best).zip(&logits) {
-                    // Strictly more: the lowest class keeps a tie.
-                    let better = *l > *best;
-                    *best = if better { *l } else { *best };
-                    *label = if better { class as u8 } else { *label };
-                }
-            }
-        });
-        labels
+    /// Labels of a few cells: one product with the decoder's head for all of them.
+    fn label_cells(&self, map: &Map, window: Window, cells: &[usize]) -> Vec<[u8; VOXELS]> {
+        let rows: Vec<f32> = cells.iter().flat_map(|c| map.cell(window, *c)).copied().collect();
+        let mut features = vec![0.0; cells.len() * VOXELS * FEATURES];
+        self.decoder_head.rows(&rows, &mut features);
+        // Weights and normed features are finite and small, so no logit can be NaN.
+        let label = |features: &[f32]| {
+            let mut labels = [0; VOXELS];
+            kernels::likeliest(features, &self.class_table, &self.class_bias, &mut labels);
+            labels
+        };
+        features.chunks_exact(VOXELS * FEATURES).map(label).collect()
     }
 }
 

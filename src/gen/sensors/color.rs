@@ -21,8 +21,9 @@ pub fn render_id_color(id: RenderId) -> [u8; 3] {
     }
 }
 
-/// The semantic map as RGBA, 4 bytes per pixel, opaque. With `shaded`, far things are dimmed, pixels
-/// beside a nearer one are darkened and slopes in depth give faces a tone, so that shapes can be told apart.
+/// The semantic map as RGBA, 4 bytes per pixel, opaque. With `shaded`, surfaces are toned by where
+/// they face, edges of nearer things outlined and far things dimmed, all from the depth map, so that
+/// shapes of one class can be told apart.
 pub fn semantic_rgba(maps: &CameraMaps, shaded: bool) -> Vec<u8> {
     let palette: [[u8; 3]; RENDER_IDS] = std::array::from_fn(|id| render_id_color(id as u8));
     let mut out = Vec::with_capacity(maps.semantic.len() * 4);
@@ -38,31 +39,43 @@ pub fn semantic_rgba(maps: &CameraMaps, shaded: bool) -> Vec<u8> {
     out
 }
 
-/// Brightness of a pixel from the depths around it, 0.45 to 1.1.
+/// Brightness of a pixel, 0.45 to 1.15: the surface that the depths around it describe, lit from
+/// above and the right, an outline where something nearer begins, and haze.
 fn tone(maps: &CameraMaps, at: usize) -> f32 {
+    /// From the surface to the light in optical axes (x right, y down, z forward), unit length.
+    const TO_LIGHT: [f32; 3] = [0.42, -0.68, -0.6];
+    /// Focal length over image width of an ordinary 64.5 degree camera; near enough for a tone.
+    const FOCAL: f32 = 0.79;
     let d = maps.depth_m[at];
-    if d <= 0.0 {
+    if d.is_nan() || d <= 0.0 {
         return 1.0;
     }
     let (x, y) = (at % maps.width, at / maps.width);
     // Neighbours outside the image or without depth count as level.
     let depth = |dx: isize, dy: isize| {
         let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
-        let v = if x < maps.width && y < maps.height {
-            maps.depth_m[y * maps.width + x]
-        } else {
-            d
-        };
+        if x >= maps.width || y >= maps.height {
+            return d;
+        }
+        let v = maps.depth_m[y * maps.width + x];
         if v > 0.0 { v } else { d }
     };
     let (left, right, up, down) = (depth(-1, 0), depth(1, 0), depth(0, -1), depth(0, 1));
     let nearest = left.min(right).min(up).min(down);
-    // An outline where a neighbour is nearer by more than a slope would make it.
-    let behind = ((d - nearest) / d - 0.04).clamp(0.0, 0.2) / 0.2;
-    // Faces that turn to the right are lit, those that turn to the left lie in shade.
-    let slope = ((right - left) / d * 4.0).clamp(-1.0, 1.0);
-    let far = 1.0 - 0.35 * (d / 60.0).min(1.0);
-    (far * (1.0 - 0.3 * behind) * (1.0 + 0.12 * slope)).clamp(0.45, 1.1)
+    let behind = ((d - nearest) / d - 0.02).clamp(0.0, 0.1) / 0.1;
+    // Depth over the image gives the normal: with u, v from the image's middle in focal lengths,
+    // it is (-z_u, -z_v, z + u z_u + v z_v), turned to the viewer.
+    let focal = FOCAL * maps.width as f32;
+    let (zu, zv) = ((right - left) * 0.5 * focal / d, (down - up) * 0.5 * focal / d);
+    let u = (x as f32 + 0.5 - maps.width as f32 / 2.0) / focal;
+    let v = (y as f32 + 0.5 - maps.height as f32 / 2.0) / focal;
+    let normal = [zu, zv, -(1.0 + u * zu + v * zv)];
+    let length = normal.iter().map(|n| n * n).sum::<f32>().sqrt();
+    let lit = normal.iter().zip(TO_LIGHT).map(|(n, l)| n * l).sum::<f32>() / length;
+    // An infinite slope has no direction: taken as level.
+    let lit = if lit.is_finite() { lit } else { 0.0 };
+    let haze = 1.0 - 0.3 * (d / 60.0).min(1.0);
+    (haze * (0.84 + 0.3 * lit) * (1.0 - 0.35 * behind)).clamp(0.45, 1.15)
 }
 
 /// Depths as RGBA, 4 bytes per pixel, opaque: warm is near, cold is far, even steps in log depth

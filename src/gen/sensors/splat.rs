@@ -6,7 +6,7 @@ use rayon::prelude::*;
 pub use super::cloud::{Gaussian, GaussianCloud};
 use super::order::depth_order;
 use super::project::{Conic, View};
-use super::tile::{Limits, Splat, TILE, Tile, heaviest};
+use super::tile::{Limits, Placed, Splat, TILE, Tile};
 use crate::scene::sensor_data::RENDER_IDS;
 use crate::scene::{Camera, CameraMaps, SensorRig};
 
@@ -157,7 +157,7 @@ pub fn render_raw(
         |(tile_y, (coverage, expected, normalised, median, label, margin, transmittance))| {
             let y0 = tile_y * TILE;
             let rows = TILE.min(h - y0);
-            let mut tile = Tile::new(0, 0);
+            let mut tile = Tile::new();
             for tile_x in 0..w.div_ceil(TILE) {
                 let list = bins.list(tile_x, tile_y);
                 if list.is_empty() {
@@ -165,24 +165,19 @@ pub fn render_raw(
                 }
                 let x0 = tile_x * TILE;
                 let columns = TILE.min(w - x0);
-                tile.reset(columns, rows);
-                tile.blend(list.iter().map(|&s| &splats[s as usize].0), [x0, y0], limits);
-                for row in 0..rows {
-                    for column in 0..columns {
-                        let at = row * w + x0 + column;
-                        let weights = tile.weights.iter().map(|rows| rows[row][column]);
-                        let covered: f32 = weights.clone().sum();
-                        coverage[at] = covered;
-                        expected[at] = tile.expected_m[row][column];
-                        if covered >= MIN_DEPTH_COVERAGE {
-                            normalised[at] = tile.expected_m[row][column] / covered;
+                let resolved = tile.draw(&splats, list, [x0, y0], [columns, rows], limits);
+                for (row, pixels) in resolved.iter().enumerate().take(rows) {
+                    let at = row * w + x0..row * w + x0 + columns;
+                    coverage[at.clone()].copy_from_slice(&pixels.coverage[..columns]);
+                    expected[at.clone()].copy_from_slice(&pixels.expected_m[..columns]);
+                    median[at.clone()].copy_from_slice(&pixels.median_m[..columns]);
+                    label[at.clone()].copy_from_slice(&pixels.label[..columns]);
+                    margin[at.clone()].copy_from_slice(&pixels.margin[..columns]);
+                    transmittance[at.clone()].copy_from_slice(&pixels.transmittance[..columns]);
+                    for (column, out) in normalised[at].iter_mut().enumerate() {
+                        if pixels.coverage[column] >= MIN_DEPTH_COVERAGE {
+                            *out = pixels.expected_m[column] / pixels.coverage[column];
                         }
-                        median[at] = tile.median_m[row][column];
-                        if let Some((id, lead)) = heaviest(weights) {
-                            label[at] = i16::from(id);
-                            margin[at] = lead;
-                        }
-                        transmittance[at] = tile.transmittance[row][column];
                     }
                 }
             }
@@ -209,9 +204,6 @@ impl RawMaps {
     }
 }
 
-/// Pixels that a splat may touch: first and one past the last, x then y.
-type Bounds = [[u16; 2]; 2];
-
 /// Splats that may touch the image, near to far, equal depths in the cloud's order.
 fn project_all(
     cloud: &GaussianCloud,
@@ -219,10 +211,10 @@ fn project_all(
     width: u32,
     height: u32,
     options: &SplatOptions,
-) -> Vec<(Splat, Bounds)> {
+) -> Vec<Placed> {
     let view = View::new(camera, width, height, options.jacobian_clamp);
     let size = [width, height];
-    let one = |g: &Gaussian| -> Option<(Splat, Bounds)> {
+    let one = |g: &Gaussian| -> Option<Placed> {
         let position = glam::Vec3::from(g.position_m).as_dvec3();
         let footprint = view.project(position, f64::from(g.std_m), options.near_m, options.far_m)?;
         let conic = Conic::new(footprint.covariance_px2, options.low_pass_px2)?;
@@ -261,7 +253,7 @@ fn project_all(
         };
         Some((splat, bounds))
     };
-    let splats: Vec<(Splat, Bounds)> = cloud.gaussians().par_iter().filter_map(one).collect();
+    let splats: Vec<Placed> = cloud.gaussians().par_iter().filter_map(one).collect();
     let depths: Vec<f32> = splats.iter().map(|(s, _)| s.depth_m).collect();
     depth_order(&depths)
         .into_iter()
@@ -277,9 +269,9 @@ struct Bins {
 }
 
 impl Bins {
-    fn new(splats: &[(Splat, Bounds)], width: usize, height: usize) -> Bins {
+    fn new(splats: &[Placed], width: usize, height: usize) -> Bins {
         let (tiles_x, tiles_y) = (width.div_ceil(TILE), height.div_ceil(TILE));
-        let tiles = |&[x, y]: &Bounds| {
+        let tiles = |&[x, y]: &[[u16; 2]; 2]| {
             let range = |[first, end]: [u16; 2]| usize::from(first) / TILE..usize::from(end).div_ceil(TILE);
             range(y).flat_map(move |ty| range(x).map(move |tx| ty * tiles_x + tx))
         };

@@ -32,61 +32,135 @@ pub(super) struct Limits {
     pub t_stop: f32,
 }
 
+/// A splat and the pixels it may touch: first and one past the last, x then y.
+pub(super) type Placed = (Splat, [[u16; 2]; 2]);
+
 /// What is summed per pixel, `[row][column]`.
 pub(super) struct Tile {
-    /// What light is left, falling from 1.
-    pub transmittance: [Row; TILE],
-    /// Sum of weight times depth, m.
-    pub expected_m: [Row; TILE],
-    /// Depth at which less than half the light is left, -1 before.
-    pub median_m: [Row; TILE],
-    /// Weight per render id.
-    pub weights: [[Row; TILE]; RENDER_IDS],
+    transmittance: [Row; TILE],
+    expected_m: [Row; TILE],
+    median_m: [Row; TILE],
+    /// Weight per render id; only the ids in `used` are meaningful.
+    weights: [[Row; TILE]; RENDER_IDS],
+    used: u32,
 }
 
+/// What a row of pixels has come to.
+#[derive(Clone, Copy)]
+pub(super) struct Resolved {
+    /// Sum of weights.
+    pub coverage: Row,
+    /// Sum of weight times depth, m.
+    pub expected_m: Row,
+    /// Depth at which less than half the light was left, -1 if never.
+    pub median_m: Row,
+    /// Heaviest id, the lowest on a tie; -1 where nothing was drawn.
+    pub label: [i16; TILE],
+    /// By how much it leads the second.
+    pub margin: Row,
+    /// What light is left.
+    pub transmittance: Row,
+}
+
+/// A row on which nothing was drawn.
+pub(super) const NOTHING: Resolved = Resolved {
+    coverage: [0.0; TILE],
+    expected_m: [0.0; TILE],
+    median_m: [-1.0; TILE],
+    label: [-1; TILE],
+    margin: [0.0; TILE],
+    transmittance: [1.0; TILE],
+};
+
 impl Tile {
-    /// A tile of which `columns` x `rows` pixels lie inside the image; the others never take light.
-    pub fn new(columns: usize, rows: usize) -> Box<Tile> {
-        let mut tile = Box::new(Tile {
+    /// Room for a tile, to be used again and again.
+    pub fn new() -> Box<Tile> {
+        Box::new(Tile {
             transmittance: [[0.0; TILE]; TILE],
             expected_m: [[0.0; TILE]; TILE],
             median_m: [[-1.0; TILE]; TILE],
             weights: [[[0.0; TILE]; TILE]; RENDER_IDS],
-        });
-        tile.reset(columns, rows);
-        tile
+            used: 0,
+        })
     }
 
-    /// Back to the state of [`Tile::new`].
-    pub fn reset(&mut self, columns: usize, rows: usize) {
+    /// Blends the splats that `list` names, near to far, over the tile whose first pixel is
+    /// `origin_px` and of which `size` pixels lie inside the image, and resolves its rows.
+    /// Runs with the widest vectors this computer has; each lane computes the same on all of them.
+    pub fn draw(
+        &mut self,
+        splats: &[Placed],
+        list: &[u32],
+        origin_px: [usize; 2],
+        size: [usize; 2],
+        limits: Limits,
+    ) -> [Resolved; TILE] {
+        struct Draw<'a>(
+            &'a mut Tile,
+            &'a [Placed],
+            &'a [u32],
+            [usize; 2],
+            [usize; 2],
+            Limits,
+        );
+        impl pulp::WithSimd for Draw<'_> {
+            type Output = [Resolved; TILE];
+            #[inline(always)]
+            fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+                let Draw(tile, splats, list, origin_px, size, limits) = self;
+                tile.reset(size);
+                tile.blend(splats, list, origin_px, size, limits);
+                std::array::from_fn(
+                    #[inline(always)]
+                    |row| tile.resolve(row),
+                )
+            }
+        }
+        pulp::Arch::new().dispatch(Draw(self, splats, list, origin_px, size, limits))
+    }
+
+    /// Full light on the pixels inside the image, none on the others, which then take nothing.
+    #[inline(always)]
+    fn reset(&mut self, [columns, rows]: [usize; 2]) {
         self.transmittance = [[0.0; TILE]; TILE];
         for row in self.transmittance.iter_mut().take(rows) {
             row[..columns.min(TILE)].fill(1.0);
         }
         self.expected_m = [[0.0; TILE]; TILE];
         self.median_m = [[-1.0; TILE]; TILE];
-        self.weights = [[[0.0; TILE]; TILE]; RENDER_IDS];
+        self.used = 0;
     }
 
-    /// Blends `splats`, near to far, into the tile whose first pixel is `origin_px`.
-    pub fn blend<'a>(
+    #[inline(always)]
+    fn blend(
         &mut self,
-        splats: impl Iterator<Item = &'a Splat>,
+        splats: &[Placed],
+        list: &[u32],
         origin_px: [usize; 2],
+        size: [usize; 2],
         limits: Limits,
     ) {
         // Rows in which every pixel has had its light are skipped; a look every few splats is enough.
         const LOOK: u32 = 8;
         let mut live = [true; TILE];
         let mut until_look = LOOK;
-        for splat in splats {
+        for &index in list {
+            let (splat, bounds) = &splats[index as usize];
+            let weights = &mut self.weights[usize::from(splat.id) % RENDER_IDS];
+            if self.used & 1 << splat.id == 0 {
+                self.used |= 1 << splat.id;
+                *weights = [[0.0; TILE]; TILE];
+            }
             let dx0 = origin_px[0] as f32 + 0.5 - splat.mean_px[0];
-            let dy0 = origin_px[1] as f32 + 0.5 - splat.mean_px[1];
-            for (row, &live) in live.iter().enumerate() {
-                let dy = dy0 + row as f32;
+            let first = usize::from(bounds[1][0]).saturating_sub(origin_px[1]);
+            let end = usize::from(bounds[1][1])
+                .saturating_sub(origin_px[1])
+                .min(size[1]);
+            for row in first..end {
+                let dy = (origin_px[1] + row) as f32 + 0.5 - splat.mean_px[1];
                 let from_y = splat.across * dy * dy;
                 // The slack leaves the decision at the threshold itself to alpha.
-                if !live || from_y < splat.min_exponent - 1e-3 {
+                if !live[row] || from_y < splat.min_exponent - 1e-3 {
                     continue;
                 }
                 blend_row(
@@ -97,20 +171,51 @@ impl Tile {
                     &mut self.transmittance[row],
                     &mut self.expected_m[row],
                     &mut self.median_m[row],
-                    &mut self.weights[splat.id as usize][row],
+                    &mut weights[row],
                 );
             }
             until_look -= 1;
             if until_look == 0 {
                 until_look = LOOK;
-                for (live, t) in live.iter_mut().zip(&self.transmittance) {
-                    *live = t.iter().any(|&t| t >= limits.t_stop);
+                let mut any = false;
+                for (live, row) in live.iter_mut().zip(&self.transmittance) {
+                    let lit = row.iter().fold(0, |n, &t| n + u32::from(t >= limits.t_stop));
+                    *live = lit > 0;
+                    any |= lit > 0;
                 }
-                if live == [false; TILE] {
+                if !any {
                     return;
                 }
             }
         }
+    }
+
+    #[inline(always)]
+    fn resolve(&self, row: usize) -> Resolved {
+        let mut out = Resolved {
+            expected_m: self.expected_m[row],
+            median_m: self.median_m[row],
+            transmittance: self.transmittance[row],
+            ..NOTHING
+        };
+        let (mut top, mut second, mut best) = ([0.0f32; TILE], [0.0f32; TILE], [-1i32; TILE]);
+        for id in (0..RENDER_IDS).filter(|id| self.used >> id & 1 == 1) {
+            let weights = &self.weights[id][row];
+            for i in 0..TILE {
+                let w = weights[i];
+                out.coverage[i] += w;
+                // Strictly more, so that the lowest id keeps a tie.
+                let more = w > top[i];
+                second[i] = if more { top[i] } else { second[i].max(w) };
+                best[i] = if more { id as i32 } else { best[i] };
+                top[i] = if more { w } else { top[i] };
+            }
+        }
+        for i in 0..TILE {
+            out.label[i] = best[i] as i16;
+            out.margin[i] = top[i] - second[i];
+        }
+        out
     }
 }
 
@@ -160,20 +265,6 @@ pub(super) fn exp(x: f32) -> f32 {
     series * power
 }
 
-/// The heaviest render id of one pixel, the lowest on a tie, and how far it leads the second.
-/// `None` where nothing was drawn.
-pub(super) fn heaviest(weights: impl Iterator<Item = f32>) -> Option<(u8, f32)> {
-    let (mut best, mut top, mut second) = (None, 0.0, 0.0);
-    for (id, w) in weights.enumerate() {
-        if w > top {
-            (best, second, top) = (Some(id as u8), top, w);
-        } else if w > second {
-            second = w;
-        }
-    }
-    best.map(|id| (id, top - second))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,13 +286,25 @@ mod tests {
         assert!(exp(-1e30) < 1e-37 && exp(f32::NEG_INFINITY) < 1e-37);
     }
 
+    /// Weights of one pixel, set by hand, and what they resolve to.
     #[test]
     fn row_42_ties_go_to_the_lowest() {
-        let of = |w: &[f32]| heaviest(w.iter().copied());
-        assert_eq!(of(&[0.0, 0.25, 0.5, 0.5, 0.1]), Some((2, 0.0)));
-        assert_eq!(of(&[0.5, 0.25, 0.5]), Some((0, 0.0)));
-        assert_eq!(of(&[0.0, 0.1, 0.4]), Some((2, 0.4 - 0.1)));
-        assert_eq!(of(&[0.0; 20]), None);
-        assert_eq!(of(&[]), None);
+        let of = |w: &[(usize, f32)]| {
+            let mut tile = Tile::new();
+            tile.reset([TILE, TILE]);
+            for &(id, w) in w {
+                tile.used |= 1 << id;
+                tile.weights[id][3][5] = w;
+            }
+            let row = tile.resolve(3);
+            assert_eq!([row.label[4], row.label[6]], [-1, -1]);
+            (row.label[5], row.margin[5], row.coverage[5])
+        };
+        assert_eq!(of(&[(1, 0.25), (2, 0.5), (3, 0.5)]), (2, 0.0, 1.25));
+        assert_eq!(of(&[(3, 0.5), (2, 0.5)]), (2, 0.0, 1.0));
+        assert_eq!(of(&[(0, 0.5), (19, 0.5)]), (0, 0.0, 1.0));
+        assert_eq!(of(&[(5, 0.25), (7, 0.75), (9, 0.5)]), (7, 0.25, 1.5));
+        assert_eq!(of(&[(4, 0.0)]), (-1, 0.0, 0.0));
+        assert_eq!(of(&[]), (-1, 0.0, 0.0));
     }
 }

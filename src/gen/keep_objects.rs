@@ -1,0 +1,126 @@
+//! The user's word on objects: a box that was placed does not vanish, one that was taken away does not
+//! come back, whatever the networks made of it. Counted, so that reports show when it was needed.
+
+use crate::scene::raster::box_cells;
+use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
+
+use super::region::Region;
+
+/// A placed box counts as there if at least this share of its columns holds its class.
+const THERE: f64 = 0.5;
+/// Voxels this far outside a removed box still belong to it, m.
+const OVERHANG_M: f64 = 0.3;
+
+/// Corrects `generated` inside the region: drafts of placed boxes that are mostly missing are put in,
+/// voxels of removed boxes are cleared. Returns how many boxes needed it. Of the boxes that are there,
+/// `all` looks at every one, else only at those that differ from the source.
+pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut VoxelGrid) -> usize {
+    let old = &frame.source.boxes;
+    let changed = |id: &BoxId, b: &SceneBox| old.get(id) != Some(b);
+    let mut corrected = 0;
+    for (id, b) in old {
+        if frame.boxes.get(id) != Some(b) {
+            corrected += usize::from(clear(frame, region, b, generated));
+        }
+    }
+    for (id, b) in &frame.boxes {
+        if all || changed(id, b) {
+            corrected += usize::from(put_in(region, b, generated));
+        }
+    }
+    corrected
+}
+
+fn put_in(region: &Region, b: &SceneBox, generated: &mut VoxelGrid) -> bool {
+    let mut columns = draft::box_columns(b);
+    columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
+    let there = columns
+        .iter()
+        .filter(|(x, y, _)| generated.column(*x, *y).contains(&b.class.id()))
+        .count();
+    if there as f64 >= THERE * columns.len() as f64 {
+        return false;
+    }
+    for (x, y, layers) in columns {
+        generated.column_mut(x, y)[..layers].fill(b.class.id());
+    }
+    true
+}
+
+fn clear(frame: &Frame, region: &Region, removed: &SceneBox, generated: &mut VoxelGrid) -> bool {
+    let mut owned = vec![false; GridSpec::COLUMNS]; // by boxes of the class that are there now
+    for b in frame.boxes.values().filter(|b| b.class == removed.class) {
+        box_cells(b, OVERHANG_M, |x, y| owned[x * GridSpec::NY + y] = true);
+    }
+    let mut cleared = false;
+    box_cells(removed, OVERHANG_M, |x, y| {
+        let i = x * GridSpec::NY + y;
+        if owned[i] || !region.columns[i] || !generated.column(x, y).contains(&removed.class.id()) {
+            return;
+        }
+        let column = generated.column_mut(x, y);
+        column
+            .iter_mut()
+            .filter(|v| **v == removed.class.id())
+            .for_each(|v| *v = Class::FREE);
+        if column[0] == Class::FREE {
+            column[0] = draft::ground_class(frame.layout.cell(x, y)).id();
+        }
+        cleared = true;
+    });
+    cleared
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::*;
+    use crate::scene::BevLayout;
+
+    fn car(id: u32, x: f64) -> SceneBox {
+        SceneBox {
+            id: BoxId(id),
+            class: Class::Car,
+            center_m: DVec3::new(x, 0.0, 0.85),
+            size_m: DVec3::new(4.6, 1.95, 1.7),
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+        }
+    }
+
+    fn holds_car(grid: &VoxelGrid, x_m: f64) -> bool {
+        let [x, y] = GridSpec::column_at(x_m, 0.1).expect("inside");
+        grid.column(x, y).contains(&Class::Car.id())
+    }
+
+    #[test]
+    fn placed_boxes_stay_and_removed_ones_stay_away() {
+        let (stays, goes, comes) = (car(1, -15.0), car(2, 0.0), car(3, 15.0));
+        let layout = BevLayout::default();
+        let before = draft::draft(&layout, [stays, goes].iter());
+        let boxes = [stays, goes].map(|b| (b.id, b)).into_iter().collect();
+        let mut frame = Frame::new(layout, boxes, before.clone());
+        frame.boxes.remove(&goes.id);
+        frame.boxes.insert(comes.id, comes);
+        // Networks that ignored both edits.
+        let mut generated = before.clone();
+        assert_eq!(
+            keep_objects(&frame, &Region::of_edit(&frame, 2), false, &mut generated),
+            2
+        );
+        assert!(holds_car(&generated, -15.0) && !holds_car(&generated, 0.0) && holds_car(&generated, 15.0));
+        // Networks that followed them need no correction.
+        let mut good = draft::draft(&frame.layout, frame.boxes.values());
+        let same = good.clone();
+        assert_eq!(
+            keep_objects(&frame, &Region::of_edit(&frame, 2), false, &mut good),
+            0
+        );
+        assert_eq!(good, same);
+        // Outside the region nothing is corrected.
+        let mut outside = before.clone();
+        assert_eq!(keep_objects(&frame, &Region::empty(), false, &mut outside), 0);
+        assert_eq!(outside, before);
+    }
+}

@@ -1,0 +1,100 @@
+"""python test_training.py REFERENCE: losses and schedule against reference/metrics.json and closed forms."""
+import json
+import sys
+from pathlib import Path
+
+import torch
+
+from losses import kl_to_normal, lovasz_softmax, vae_loss
+from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
+from models.occ_vae import OccVae, VaeConfig, from_cells, to_cells
+from schedule import alpha_bar, ddim_sample
+
+
+def close(a, b, tolerance):
+    worst = (torch.as_tensor(a, dtype=torch.float64) - torch.as_tensor(b, dtype=torch.float64)).abs().max().item()
+    assert worst <= tolerance, (worst, tolerance)
+
+
+def lovasz_against_reference(folder):
+    """Torch 2.15.0 in float64, tolerance 1e-10, gradient 1e-9 (reference/README.md)."""
+    for case in json.loads((folder / "metrics.json").read_text())["lovasz"]:
+        logits = torch.tensor(case["logits"], dtype=torch.float64, requires_grad=True)
+        loss = lovasz_softmax(logits.softmax(-1), torch.tensor(case["labels"]))
+        close(loss, case["loss"], 1e-10)
+        loss.backward()
+        close(logits.grad, case["grad_logits"], 1e-9)
+
+
+def row_31_kl():
+    zero = torch.zeros(4)
+    assert kl_to_normal(zero, zero).item() == 0
+    for logvar in (30.0, -30.0, 1e4, -1e4):
+        kl = kl_to_normal(zero, torch.full((4,), logvar))
+        assert torch.isfinite(kl) and kl >= 0
+    # Near zero the naive form cancels: KL = logvar^2 / 4 there.
+    small = torch.full((4,), 1e-3)
+    close(kl_to_normal(zero, small), 0.25e-6 * (1 + 1e-3 / 3), 1e-9)
+
+
+def row_32_losses():
+    p = torch.tensor([[1e4, -1e4, 0.0]]).softmax(-1)
+    for label in range(3):
+        loss = lovasz_softmax(p, torch.tensor([label]))
+        assert torch.isfinite(loss)
+    logits = torch.randn(40, 5, dtype=torch.float64, requires_grad=True)
+    labels = torch.randint(3, (40,))  # classes 3 and 4 are absent
+    assert torch.autograd.gradcheck(lambda x: lovasz_softmax(x.softmax(-1), labels), logits, atol=1e-3)
+
+
+def shapes_and_schedule():
+    labels = torch.randint(18, (2, 200, 200, 16), dtype=torch.uint8)
+    assert torch.equal(from_cells(to_cells(labels)), labels)
+    x = torch.randn(2, 50, 50, 8)
+    assert torch.equal(unpatchify(patchify(x), 8), x)
+    abar = alpha_bar()
+    assert abar[-1] == 0 and (abar[1:] < abar[:-1]).all() and len(abar) == 1000
+    # Data that is one point x0: v = alpha eps - sigma x0 is known, and DDIM must land on x0.
+    x0 = torch.randn(1, 50, 50, 8)
+
+    def v(x, t):
+        a = abar[int(t[0])]
+        alpha, sigma = a.sqrt().float(), (1 - a).sqrt().float()
+        return alpha * (x - alpha * x0) / sigma - sigma * x0
+
+    close(ddim_sample(v, torch.randn_like(x0), 7), x0, 1e-5)
+
+
+def networks_learn():
+    """Both networks run, every parameter gets a gradient, nothing outside an encoder's reach matters."""
+    torch.manual_seed(0)
+    vae = OccVae(VaeConfig(encoder_width=32, decoder_width=32))
+    labels = torch.full((1, 200, 200, 16), 17, dtype=torch.uint8)
+    labels[:, :, :, 0] = 11
+    labels[0, 100:110, 100:104, :4] = 4
+    vae_loss(vae, to_cells(labels))[0].backward()
+    assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in vae.parameters())
+    moved = labels.clone()
+    moved[0, 104, 104, 3] = 7
+    with torch.no_grad():
+        far = (vae.encode(moved) - vae.encode(labels)).abs().amax((0, 3))
+    far[24:29, 24:29] = 0  # two cells around cell (26, 26)
+    assert far.max() < 1e-5
+    empty = torch.full_like(labels, 17)
+    assert torch.isfinite(vae_loss(vae, to_cells(empty))[0])
+
+    dit = OccDit(DitConfig(width=64, depth=2))
+    torch.nn.init.normal_(dit.final.weight)
+    zeros = torch.zeros(1, 50, 50, 8)
+    condition = dit.condition(torch.ones(1, 50, 50), zeros, zeros, torch.zeros(1, 50, 50, 288))
+    dit(torch.randn(1, 50, 50, 8), torch.tensor([500.0]), condition).sum().backward()
+    assert all(torch.isfinite(p.grad).all() for p in dit.parameters() if p.grad is not None)
+
+
+if __name__ == "__main__":
+    reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../../shared/reference")
+    lovasz_against_reference(reference)
+    print("lovasz_against_reference ok")
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn):
+        test()
+        print(test.__name__, "ok")
