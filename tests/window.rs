@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
+use image::GenericImageView;
 use sceneloom::app::state::{Pane, Tool, VoxelVerb};
 use sceneloom::app::{AppConfig, SceneloomApp};
 use sceneloom::formats::project;
@@ -171,6 +173,10 @@ impl Bench {
 
     fn frame(&self) -> Arc<Frame> {
         self.harness.state().document.scene().frame().clone()
+    }
+
+    fn pane(&self, name: &str) -> egui::Rect {
+        self.harness.get_by_role_and_label(Role::Canvas, name).rect()
     }
 
     fn click(&mut self, label: &str) {
@@ -364,8 +370,9 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
     bench.click("Undo");
     assert!(bench.frame().boxes.contains_key(&BoxId(7)));
     // A step of the history is one click away.
-    bench.click("History 0 Open");
-    assert_eq!(bench.frame().boxes.len(), 1);
+    bench.click("History 3 Turn box");
+    assert_eq!(bench.frame().boxes[&BoxId(8)], turned);
+    assert_eq!(bench.app().document.position(), 3);
 }
 
 #[test]
@@ -604,9 +611,9 @@ fn views_and_layers_answer_their_controls() {
     assert!(bench.harness.query_by_label("No GPU adapter").is_some());
     bench.click("Show walkway");
     assert!(!bench.app().state.shows(BevLayer::Walkway));
-    let bev = bench.harness.get_by_label("Bird's-eye view").rect();
+    let bev = bench.pane("Bird's-eye view");
     bench.key(Modifiers::NONE, Key::Tab);
-    let swapped = bench.harness.get_by_label("Bird's-eye view").rect();
+    let swapped = bench.pane("Bird's-eye view");
     assert!(swapped.left() > bev.left() + 100.0, "{bev:?} {swapped:?}");
     bench.key(Modifiers::NONE, Key::Tab);
     bench.key(Modifiers::NONE, Key::G);
@@ -618,6 +625,7 @@ fn views_and_layers_answer_their_controls() {
         unit: egui::MouseWheelUnit::Point,
         delta: egui::vec2(0.0, 120.0),
         phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
         modifiers: Modifiers::NONE,
     });
     bench.steps(30);
@@ -641,7 +649,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
         return;
     };
     bench.off();
-    let pane = bench.harness.get_by_label("3D view").rect();
+    let pane = bench.pane("3D view");
     bench.harness.hover_at(pane.center());
     bench.steps(2);
     assert_eq!(bench.app().state.hovered_pane, Some(Pane::View3d));

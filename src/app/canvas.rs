@@ -248,11 +248,12 @@ impl Canvas {
                     _ => state.erase || shift,
                 };
                 let radius = (state.brush_m / 2.0 * map.scale) as f32;
-                let color = if erase {
-                    theme::BAD
-                } else {
-                    theme::rgb(state.layer.color())
+                let layer = state.layer.color();
+                let (color, fill) = match erase {
+                    true => (theme::BAD, theme::BAD.gamma_multiply(0.12)),
+                    false => (theme::TEXT_STRONG, theme::rgba(layer, 0.35)),
                 };
+                painter.circle_filled(pointer, radius, fill);
                 painter.circle_stroke(pointer, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));
                 painter.circle_stroke(pointer, radius, Stroke::new(1.5, color));
                 painter.circle_filled(pointer, 1.5, color);

@@ -291,8 +291,12 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().interact_size.y = theme::ROW - 4.0;
         ui.spacing_mut().button_padding = vec2(8.0, 1.0);
-        // From left to right also where the bar is laid out from the right.
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.horizontal(|ui| {
+            // From left to right also where the bar is laid out from the right.
+            let mut choices: Vec<_> = choices.iter().collect();
+            if ui.layout().prefer_right_to_left() {
+                choices.reverse();
+            }
             for (value, name, hint) in choices {
                 let on = *chosen == *value;
                 let text =

@@ -194,9 +194,10 @@ fn divider(ui: &mut Ui) {
 /// From right to left: the button that generates, the live switch.
 fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = theme::GAP;
-    let (name, hint, fill, icon, command) = if input.busy {
+    let (name, label, hint, fill, icon, command) = if input.busy {
         (
             "Cancel",
+            "Cancel job",
             "Ctrl+Backspace",
             theme::FIELD,
             Icon::Stop,
@@ -206,13 +207,14 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
         let command = Command::Generate { full: true };
         (
             "Generate",
+            "Generate everything",
             "all of it, Ctrl+Enter",
             theme::ACCENT_FILL,
             Icon::Play,
             command,
         )
     };
-    if wide_button(ui, icon, name, hint, fill, name).clicked() {
+    if wide_button(ui, icon, name, hint, fill, label).clicked() {
         commands.push(command);
     }
     let fill = if input.live {
