@@ -1,14 +1,11 @@
 //! Times the networks with the shipped weights, and the transformer beside the same one written with
 //! candle: `cargo bench --bench networks`. Medians in one run, the two taking turns.
 
-#[path = "../tests/support/candle_dit.rs"]
-mod candle_dit;
-
 use std::time::Instant;
 
-use candle_dit::CandleDit;
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::metrics::stats::median;
+use sceneloom::generation::model::candle_dit::CandleDit;
 use sceneloom::generation::model::{DitCondition, OccModels};
 
 const RUNS: usize = 15;
@@ -46,7 +43,12 @@ fn main() {
         timed(&mut theirs, || candle.forward(&latent, 500.0, &tokens)).expect("finite");
     }
     println!("median of {RUNS}, ms");
-    for (name, values) in [("encode", encode), ("decode", decode), ("DiT step", ours), ("DiT step, candle", theirs)] {
+    for (name, values) in [
+        ("encode", encode),
+        ("decode", decode),
+        ("DiT step", ours),
+        ("DiT step, candle", theirs),
+    ] {
         println!("{name:<18} {:>8.1}", median(&values));
     }
 }

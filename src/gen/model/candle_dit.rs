@@ -1,11 +1,11 @@
 //! The diffusion transformer written once more with candle's own operations, as plainly as it goes:
-//! a reference for the fused kernels of `src/gen/model`, in values (tests/candle.rs) and in time
-//! (benches/networks.rs). One frame, shapes at the seams.
+//! a reference for the fused kernels of `src/gen/model`, in values (`tests/candle.rs`) and in time
+//! (`benches/networks.rs`). One frame, shapes at the seams.
 
 use std::collections::HashMap;
 
+use super::DitCondition;
 use candle_core::{D, DType, Device, Result, Tensor, safetensors};
-use sceneloom::generation::model::DitCondition;
 
 const TOKENS: usize = 625;
 const CHANNELS: usize = 8;
@@ -27,8 +27,15 @@ impl CandleDit {
             *tensor = tensor.to_dtype(DType::F32)?;
         }
         let width = tensors["time2.weight"].dim(0)?;
-        let depth = (0..).take_while(|i| tensors.contains_key(&format!("blocks.{i}.ada.weight"))).count();
-        Ok(Self { tensors, width, depth, heads })
+        let depth = (0..)
+            .take_while(|i| tensors.contains_key(&format!("blocks.{i}.ada.weight")))
+            .count();
+        Ok(Self {
+            tensors,
+            width,
+            depth,
+            heads,
+        })
     }
 
     fn linear(&self, name: &str, x: &Tensor) -> Result<Tensor> {
@@ -87,7 +94,9 @@ impl CandleDit {
         let mut time: Vec<f32> = (0..frequencies).map(|i| angle(i).cos() as f32).collect();
         time.extend((0..frequencies).map(|i| angle(i).sin() as f32));
         let time = Tensor::from_vec(time, (1, 2 * frequencies), &Device::Cpu)?;
-        let c = self.linear("time2", &self.linear("time1", &time)?.silu()?)?.silu()?; // [1, W]
+        let c = self
+            .linear("time2", &self.linear("time1", &time)?.silu()?)?
+            .silu()?; // [1, W]
         let tokens = patches(|i, j| x[(i * 50 + j) * CHANNELS..][..CHANNELS].to_vec());
         let tokens = Tensor::from_vec(tokens, (TOKENS, 4 * CHANNELS), &Device::Cpu)?;
         let mut x = (self.linear("embed_x", &tokens)? + condition)?; // [625, W]
@@ -96,17 +105,28 @@ impl CandleDit {
             let ada = self.linear(&name("ada"), &c)?.chunk(6, 1)?;
             let qkv = self.linear(&name("qkv"), &Self::modulate(&x, &ada[0], &ada[1])?)?;
             let size = self.width / self.heads;
-            let qkv = qkv.reshape((TOKENS, 3, self.heads, size))?.permute((1, 2, 0, 3))?.contiguous()?; // [3, H, 625, S]
+            let qkv = qkv
+                .reshape((TOKENS, 3, self.heads, size))?
+                .permute((1, 2, 0, 3))?
+                .contiguous()?; // [3, H, 625, S]
             let scores = (qkv.get(0)?.matmul(&qkv.get(1)?.t()?)? / (size as f64).sqrt())?; // [H, 625, 625]
             let scores = scores.broadcast_sub(&scores.max_keepdim(D::Minus1)?)?.exp()?;
             let weights = scores.broadcast_div(&scores.sum_keepdim(D::Minus1)?)?;
-            let mixed = weights.matmul(&qkv.get(2)?)?.transpose(0, 1)?.reshape((TOKENS, self.width))?;
+            let mixed = weights
+                .matmul(&qkv.get(2)?)?
+                .transpose(0, 1)?
+                .reshape((TOKENS, self.width))?;
             x = (&x + self.linear(&name("proj"), &mixed)?.broadcast_mul(&ada[2])?)?;
-            let hidden = self.linear(&name("fc1"), &Self::modulate(&x, &ada[3], &ada[4])?)?.gelu_erf()?;
+            let hidden = self
+                .linear(&name("fc1"), &Self::modulate(&x, &ada[3], &ada[4])?)?
+                .gelu_erf()?;
             x = (&x + self.linear(&name("fc2"), &hidden)?.broadcast_mul(&ada[5])?)?;
         }
         let ada = self.linear("final_ada", &c)?.chunk(2, 1)?;
-        let out: Vec<f32> = self.linear("final", &Self::modulate(&x, &ada[0], &ada[1])?)?.flatten_all()?.to_vec1()?;
+        let out: Vec<f32> = self
+            .linear("final", &Self::modulate(&x, &ada[0], &ada[1])?)?
+            .flatten_all()?
+            .to_vec1()?;
         let mut latent = vec![0.0; 2500 * CHANNELS];
         for (k, cell) in out.chunks_exact(CHANNELS).enumerate() {
             let (token, part) = (k / 4, k % 4);
