@@ -225,7 +225,6 @@ mod tests {
         };
         let input = egui::RawInput {
             events: vec![event],
-            modifiers,
             ..Default::default()
         };
         let mut out = Vec::new();
