@@ -35,7 +35,9 @@ fn main() {
     for run in 0..RUNS + 2 {
         if run == 2 {
             // The first two warm up.
-            [&mut encode, &mut decode, &mut ours, &mut theirs].map(|v| v.clear());
+            for values in [&mut encode, &mut decode, &mut ours, &mut theirs] {
+                values.clear();
+            }
         }
         timed(&mut encode, || models.vae.encode(&frame.dense)).expect("a sound grid");
         timed(&mut decode, || models.vae.decode(&latent)).expect("a sound latent");

@@ -133,6 +133,7 @@ impl Eval {
                 "per_class": per_class,
             });
         }
+        report["complete"]["layout_agreement_of_reconstructions"] = json!(agreement.iou());
         let bars = vec![
             ("complete miou", totals[0].mean_iou().0.unwrap_or(f64::NAN), 0.75),
             ("complete iou", totals[0].occupied_iou().unwrap_or(f64::NAN), 0.80),
