@@ -88,6 +88,8 @@ pub(super) enum Next {
 pub(super) struct Opening {
     pub path: Option<PathBuf>,
     pub what: String,
+    /// From a file that is no scene: its occupancy is a draft.
+    pub is_import: bool,
     pub scene: Receiver<anyhow::Result<Scene>>,
 }
 
@@ -341,7 +343,12 @@ impl SceneloomApp {
                 self.worker.cancel();
                 self.live.reset();
                 (self.receipt, self.finished, self.preview) = (None, None, None);
-                self.toasts.log(format!("Opened {}", scene.name), now_s);
+                if opening.is_import {
+                    let text = format!("Imported {} as a draft. Ctrl+Enter generates it.", scene.name);
+                    self.toasts.push(Level::Info, text, now_s);
+                } else {
+                    self.toasts.log(format!("Opened {}", scene.name), now_s);
+                }
                 self.document = Document::new(scene);
                 self.path = opening.path;
                 self.state.selected = None;
@@ -516,7 +523,7 @@ impl SceneloomApp {
         let cameras = cameras_input(scene, &self.sensing);
         self.strip
             .enlarged(ui, self.center, &cameras, &mut self.state, commands);
-        self.toasts.log_window(ui, &mut self.state.log_open);
+        self.toasts.log_window(ui, self.center, &mut self.state.log_open);
         if self.state.keys_open {
             dialogs::keys_window(ui, &mut self.state.keys_open);
         }

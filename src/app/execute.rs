@@ -246,13 +246,14 @@ impl SceneloomApp {
             }
             Next::New => {
                 let make = self.io.2.clone();
-                self.load("New scene".into(), None, ctx, move || make());
+                self.load("New scene".into(), None, false, ctx, move || make());
             }
             Next::Open(path) => {
                 let (open, file) = (self.io.0.clone(), path.clone());
                 let what = format!("Opening {}", path.display());
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
-                self.load(what, own_file, ctx, move || open(&file));
+                let is_import = own_file.is_none();
+                self.load(what, own_file, is_import, ctx, move || open(&file));
             }
         }
     }
@@ -262,6 +263,7 @@ impl SceneloomApp {
         &mut self,
         what: String,
         path: Option<PathBuf>,
+        is_import: bool,
         ctx: &Context,
         make: impl FnOnce() -> anyhow::Result<crate::scene::Scene> + Send + 'static,
     ) {
@@ -273,7 +275,14 @@ impl SceneloomApp {
             wake.request_repaint();
         });
         match thread {
-            Ok(_) => self.opening = Some(Opening { path, what, scene }),
+            Ok(_) => {
+                self.opening = Some(Opening {
+                    path,
+                    what,
+                    is_import,
+                    scene,
+                })
+            }
             Err(error) => self.fail(format!("{what}: {error}")),
         }
     }

@@ -139,11 +139,16 @@ impl View3d {
             state.readout = readout(input.scene, hit, &pointer.ray);
         }
         let now_s = ui.input(|i| i.time);
-        if moved || input.dragging {
+        let brushes = state.tool != Tool::Select && response.hovered() && ui.input(|i| i.pointer.is_moving());
+        if moved || input.dragging || brushes {
             self.last_motion_s = now_s;
         }
         self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
         response
+    }
+
+    fn is_software(&self) -> bool {
+        self.gpu.as_ref().is_some_and(|g| g.software)
     }
 
     /// The size of the picture, physical pixels.
@@ -257,7 +262,8 @@ impl View3d {
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.selected.into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
-            Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
+            // On a software rasteriser a new picture for every box the pointer crosses is too much.
+            Some(Hit::Box { id, .. }) if state.tool == Tool::Select && !self.is_software() => Some(*id),
             _ => None,
         };
         let Some(gpu) = &mut self.gpu else { return };

@@ -100,13 +100,14 @@ impl Toasts {
     }
 
     /// Draws the log as a window.
-    pub fn log_window(&mut self, ui: &Ui, open: &mut bool) {
+    pub fn log_window(&mut self, ui: &Ui, over: Rect, open: &mut bool) {
         if *open {
             self.read = self.entries.len();
         }
         let window = egui::Window::new("Log")
             .open(open)
             .default_size(vec2(560.0, 260.0))
+            .default_pos(over.right_bottom() - vec2(610.0, 340.0))
             .vscroll(true);
         window.show(ui.ctx(), |ui| {
             if self.entries.is_empty() {
@@ -172,7 +173,7 @@ mod tests {
         assert_eq!((toasts.unread(), toasts.last()), (1, Some("no weights")));
         let ctx = egui::Context::default();
         let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
-            toasts.log_window(ui, &mut true);
+            toasts.log_window(ui, ui.max_rect(), &mut true);
         });
         assert_eq!(toasts.unread(), 0);
         for i in 0..2 * KEPT {
