@@ -15,6 +15,7 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 from data import Frames, as_tensor
+from latents import latent_space
 from models.occ_dit import DitConfig, OccDit, unshuffle_layout
 from models.occ_vae import OccVae, VaeConfig
 
@@ -99,7 +100,7 @@ def main():
     args.weights.mkdir(parents=True, exist_ok=True)
     args.goldens.mkdir(parents=True, exist_ok=True)
 
-    name = hashlib.sha256(args.vae.read_bytes()).hexdigest()[:12]
+    name = latent_space(args.vae)
     card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
     for kind, path in (("occ_vae", args.vae), ("occ_dit", args.dit)):
         tensors, meta = read(path)

@@ -1,8 +1,20 @@
 """Latents of every frame under a few symmetries, encoded when first asked for and kept on disk in f16."""
+import hashlib
+from pathlib import Path
+
 import numpy as np
 import torch
+from safetensors import safe_open
 
 from data import as_tensor, turned
+
+
+def latent_space(vae_path):
+    """Names the latents of a VAE: its file's hash, or, where only the decoder was trained on, that of the file it came
+    from. A DiT belongs to a latent space."""
+    with safe_open(vae_path, "pt") as f:
+        name = (f.metadata() or {}).get("latents")
+    return name or hashlib.sha256(Path(vae_path).read_bytes()).hexdigest()[:12]
 
 
 class LatentCache:

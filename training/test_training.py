@@ -26,6 +26,11 @@ def lovasz_against_reference(folder):
         close(logits.grad, case["grad_logits"], 1e-9)
 
 
+def schedule_against_reference(folder):
+    table = json.loads((folder / "schedulers.json").read_text())["alpha_bar"]["cosine_zero_snr"]
+    close(alpha_bar()[table["t"]], table["alpha_bar"], 1e-12)
+
+
 def row_31_kl():
     zero = torch.zeros(4)
     assert kl_to_normal(zero, zero).item() == 0
@@ -94,7 +99,8 @@ def networks_learn():
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../../shared/reference")
     lovasz_against_reference(reference)
-    print("lovasz_against_reference ok")
+    schedule_against_reference(reference)
+    print("references ok")
     for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn):
         test()
         print(test.__name__, "ok")

@@ -1,6 +1,5 @@
 """Trains one network: python train.py vae|dit --data DIR --minutes M -o W.safetensors [--resume]. See README.md."""
 import argparse
-import hashlib
 import json
 import time
 from pathlib import Path
@@ -12,7 +11,7 @@ from safetensors.torch import load_file
 
 import losses
 from data import Frames, as_tensor, draw_masks, prefetch, turned
-from latents import LatentCache
+from latents import LatentCache, latent_space
 from loop import Run, pick_device
 from models.occ_dit import DitConfig, OccDit, unshuffle_layout
 from models.occ_vae import OccVae, VaeConfig, to_cells
@@ -64,6 +63,10 @@ def vae_figures(vae, frames, device, count):
 def train_vae(args, device, dtype):
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
     model = OccVae(VaeConfig(encoder_width=args.width, decoder_width=args.width)).to(device, memory_format=torch.channels_last)
+    if args.decoder_of:
+        model.load_state_dict(load_vae(args.decoder_of, device).state_dict())
+        for part in (model.embed, model.encoder, model.encoder_norm, model.encoder_head):
+            part.requires_grad_(False)
     run = Run(model, args, lr=args.lr or 2e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100)
     rng = np.random.default_rng([args.seed, run.step])
     kinds = ("dense", "labels", "draft")
@@ -71,15 +74,18 @@ def train_vae(args, device, dtype):
     def make():
         grids = []
         for _ in range(args.batch):
-            kind = rng.choice(3, p=(0.65, 0.22, 0.13))
+            kind = rng.choice(3, p=args.mix)
             grids.append(turned(train.read(rng.integers(len(train)), kinds[kind]), rng.integers(8)))
         return as_tensor(grids)
 
     meta = {"kind": "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
+    if args.decoder_of:
+        meta["latents"] = latent_space(args.decoder_of)
     mean, noted, since = {}, time.monotonic(), (run.samples, time.monotonic())
 
     def note():
-        measure_latents(run.ema, train, device)
+        if not args.decoder_of:
+            measure_latents(run.ema, train, device)
         rate = (run.samples - since[0]) / (time.monotonic() - since[1])
         run.note(vae_figures(run.ema, held_out, device, args.held_out) | mean | {"per_s": rate})
         run.save(meta)
@@ -100,7 +106,8 @@ def train_vae(args, device, dtype):
             note()
             noted, since = time.monotonic(), (run.samples, time.monotonic())
         elif run.elapsed() - run.saved_at > SAVE_MINUTES:
-            measure_latents(run.ema, train, device)
+            if not args.decoder_of:
+                measure_latents(run.ema, train, device)
             run.save(meta)
     note()
 
@@ -156,7 +163,7 @@ def dit_figures(model, vae, abar, cache, frames, device, count, sample):
 def train_dit(args, device, dtype):
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
     vae, abar = load_vae(args.vae, device), alpha_bar()
-    name = hashlib.sha256(Path(args.vae).read_bytes()).hexdigest()[:12]
+    name = latent_space(args.vae)
     cache, held_cache = (LatentCache(f, vae, args.data / f"latents-{name}" / f.folder.name, device) for f in (train, held_out))
     model = OccDit(DitConfig(width=args.width, depth=args.depth)).to(device)
     run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=300)
@@ -209,6 +216,8 @@ def main():
     p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--vae", help="weights of the VAE (dit only)")
+    p.add_argument("--decoder-of", help="weights of a VAE whose decoder alone is trained on: its latents stay (vae only)")
+    p.add_argument("--mix", type=float, nargs=3, default=(0.65, 0.22, 0.13), help="shares of complete worlds, labels, drafts (vae only)")
     p.add_argument("--resume", action="store_true")
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--threads", type=int, default=2)

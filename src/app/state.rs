@@ -230,6 +230,6 @@ mod tests {
 
     #[test]
     fn positions_have_no_negative_zero() {
-        assert_eq!(position_text(DVec2::new(-0.01, 3.14)), "0.0, 3.1 m");
+        assert_eq!(position_text(DVec2::new(-0.01, 3.12)), "0.0, 3.1 m");
     }
 }

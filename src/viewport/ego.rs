@@ -243,7 +243,7 @@ mod tests {
         let vertices = car(&rig, 0.6);
         let middle = DVec3::new(center.x, center.y, size.z / 2.0 - 0.6);
         for v in &vertices {
-            let p = DVec3::from(glam::Vec3::from_array(v.position_m).as_dvec3()) - middle;
+            let p = glam::Vec3::from_array(v.position_m).as_dvec3() - middle;
             assert!(
                 p.abs().cmple(size * 0.51).all(),
                 "{p} is outside of a car of {size}"

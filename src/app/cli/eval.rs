@@ -100,12 +100,16 @@ impl Eval {
         let kinds: [(&str, Pick); 2] = [("complete", |f| &f.dense), ("labels", |f| &f.labels)];
         let mut totals = [Confusion::default(), Confusion::default()];
         let mut frames: [[Vec<f64>; 2]; 2] = Default::default();
+        let mut agreement = AgreementCount::default();
         for i in 0..self.frames {
             progress.at("vae", i, self.frames);
             let world = occupancy_frame(TEST_SEED, i as u64);
             for (k, (_, pick)) in kinds.iter().enumerate() {
                 let truth = pick(&world);
                 let found = vae.decode(&vae.encode(truth)?)?;
+                if k == 0 {
+                    agreement.add(scene(i as u64).frame(), &found);
+                }
                 let mut one = Confusion::default();
                 one.add(truth, &found);
                 totals[k].merge(&one);
@@ -129,6 +133,7 @@ impl Eval {
                 "per_class": per_class,
             });
         }
+        report["complete"]["layout_agreement_of_reconstructions"] = json!(agreement.iou());
         let bars = vec![
             ("complete miou", totals[0].mean_iou().0.unwrap_or(f64::NAN), 0.75),
             ("complete iou", totals[0].occupied_iou().unwrap_or(f64::NAN), 0.80),

@@ -1,6 +1,7 @@
 //! The two networks of occupancy generation, run on the CPU in f32. Trained by `training/`, whose
 //! files have the same names and the same order of blocks.
 
+pub mod candle_dit;
 #[cfg(test)]
 mod golden;
 pub mod kernels;

@@ -1,0 +1,56 @@
+//! Times the networks with the shipped weights, and the transformer beside the same one written with
+//! candle: `cargo bench --bench networks`. Medians in one run, the two taking turns.
+
+use std::time::Instant;
+
+use sceneloom::generation::dataset::occupancy_frame;
+use sceneloom::generation::metrics::stats::median;
+use sceneloom::generation::model::candle_dit::CandleDit;
+use sceneloom::generation::model::{DitCondition, OccModels};
+
+const RUNS: usize = 15;
+
+fn timed<T>(out: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    out.push(start.elapsed().as_secs_f64() * 1e3);
+    result
+}
+
+fn main() {
+    let models = OccModels::bundled().expect("the shipped weights load");
+    let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
+    let candle = CandleDit::new(bytes, 4).expect("the shipped weights load");
+    let frame = occupancy_frame(3, 0);
+    let [mut encode, mut decode, mut ours, mut theirs] = [const { Vec::new() }; 4];
+    let latent = models.vae.encode(&frame.dense).expect("a sound grid");
+    let condition = DitCondition {
+        bev: frame.bev,
+        draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
+        mask: vec![1.0; 2500],
+        context: vec![0.0; 20_000],
+    };
+    let prepared = models.dit.prepare(&condition).expect("a sound condition");
+    let tokens = candle.condition(&condition).expect("a sound condition");
+    for run in 0..RUNS + 2 {
+        if run == 2 {
+            // The first two warm up.
+            for values in [&mut encode, &mut decode, &mut ours, &mut theirs] {
+                values.clear();
+            }
+        }
+        timed(&mut encode, || models.vae.encode(&frame.dense)).expect("a sound grid");
+        timed(&mut decode, || models.vae.decode(&latent)).expect("a sound latent");
+        timed(&mut ours, || models.dit.forward(&latent, 500.0, &prepared)).expect("finite");
+        timed(&mut theirs, || candle.forward(&latent, 500.0, &tokens)).expect("finite");
+    }
+    println!("median of {RUNS}, ms");
+    for (name, values) in [
+        ("encode", encode),
+        ("decode", decode),
+        ("DiT step", ours),
+        ("DiT step, candle", theirs),
+    ] {
+        println!("{name:<18} {:>8.1}", median(&values));
+    }
+}

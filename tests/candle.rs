@@ -1,0 +1,47 @@
+//! The fused kernels of the networks against the same network written with candle 0.11 (f32 both).
+
+use sceneloom::generation::model::candle_dit::CandleDit;
+use sceneloom::generation::model::{DitCondition, OccModels};
+
+const WEIGHTS: &[u8] = include_bytes!("../assets/weights/occ_dit.safetensors");
+
+/// Numbers in -1..1 from a hash of their index.
+fn numbers(count: usize, stream: u32) -> Vec<f32> {
+    let hash = |i: u32| (i ^ stream.wrapping_mul(0x9e37_79b9)).wrapping_mul(2_654_435_761);
+    (0..count as u32)
+        .map(|i| (hash(i) >> 8) as f32 / (1 << 23) as f32 - 1.0)
+        .collect()
+}
+
+/// Tolerance 1e-4 of the largest value: two f32 programs that add in different orders.
+#[test]
+fn dit_agrees_with_candle() {
+    let models = OccModels::bundled().expect("the shipped weights load");
+    let candle = CandleDit::new(WEIGHTS, 4).expect("the shipped weights load");
+    let mask: Vec<f32> = (0..2500).map(|i| f32::from(u8::from(i % 50 > 20))).collect();
+    let condition = DitCondition {
+        bev: (0..40_000u32)
+            .map(|i| i.wrapping_mul(747_796_405) & 0x3_ffff & (i >> 3))
+            .collect(),
+        draft_latent: numbers(20_000, 1),
+        context: numbers(20_000, 2)
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v * (1.0 - mask[i / 8]))
+            .collect(),
+        mask,
+    };
+    let ours = models.dit.prepare(&condition).expect("a sound condition");
+    let theirs = candle.condition(&condition).expect("a sound condition");
+    let x = numbers(20_000, 3);
+    for t in [0.0f32, 437.5, 999.0] {
+        let a = models.dit.forward(&x, t, &ours).expect("finite");
+        let b = candle.forward(&x, f64::from(t), &theirs).expect("finite");
+        let largest = b.iter().fold(0f32, |m, v| m.max(v.abs()));
+        let worst = a.iter().zip(&b).fold(0f32, |m, (a, b)| m.max((a - b).abs()));
+        assert!(
+            largest > 0.1 && worst <= 1e-4 * largest,
+            "t {t}: {worst} of {largest}"
+        );
+    }
+}
