@@ -442,11 +442,7 @@ impl SceneloomApp {
             .resizable(true)
             .default_size(190.0)
             .size_range(92.0..=420.0)
-            .frame(
-                egui::Frame::new()
-                    .fill(theme::PANEL)
-                    .inner_margin(egui::Margin::symmetric(10, 6)),
-            )
+            .frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)))
             .show(ui, |ui| {
                 strip.show(ui, &cameras, state, commands);
                 ui.take_available_space();
@@ -480,10 +476,10 @@ impl SceneloomApp {
             .resizable(true)
             .default_size(half)
             .size_range(180.0..=(center.width() - 180.0).max(181.0))
-            .frame(egui::Frame::new().fill(theme::BACKGROUND))
+            .frame(egui::Frame::new())
             .show(ui, |ui| self.pane(ui, second, scene, commands));
         egui::CentralPanel::no_frame()
-            .frame(egui::Frame::new().fill(theme::BACKGROUND))
+            .frame(egui::Frame::new())
             .show(ui, |ui| self.pane(ui, first, scene, commands));
         self.center = center;
     }
@@ -597,7 +593,7 @@ impl eframe::App for SceneloomApp {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::BACKGROUND.to_normalized_gamma_f32()
+        theme::PANEL.to_normalized_gamma_f32()
     }
 
     fn persist_egui_memory(&self) -> bool {

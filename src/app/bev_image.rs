@@ -26,14 +26,14 @@ fn column_of(pixel: usize) -> (usize, usize) {
     (GridSpec::NX - 1 - row, GridSpec::NY - 1 - col)
 }
 
-/// The uppermost shown map layer of each column, transparent where there is none.
-pub fn layers(layout: &BevLayout, shown: u32, opacity: f32) -> ColorImage {
+/// The uppermost shown map layer of each column, `behind` where there is none.
+pub fn layers(layout: &BevLayout, shown: u32, opacity: f32, behind: Color32) -> ColorImage {
     let alpha = (opacity.clamp(0.0, 1.0) * 255.0) as u8;
     let pixel = |i: usize| {
         let (x, y) = column_of(i);
         let cell = layout.cell(x, y) & shown;
         let top = DRAW_ORDER.iter().rev().find(|l| cell & l.bit() != 0);
-        top.map_or(Color32::TRANSPARENT, |layer| {
+        top.map_or(behind, |layer| {
             let mut color = layer.color();
             if is_divider(*layer) {
                 // Half of the road shows through: a divider is a line, its cells are four times as wide.
@@ -51,13 +51,13 @@ fn is_divider(layer: BevLayer) -> bool {
     matches!(layer, BevLayer::RoadDivider | BevLayer::LaneDivider)
 }
 
-/// The highest voxel of each column by class, brighter the higher it is.
-pub fn occupancy(grid: &VoxelGrid) -> ColorImage {
+/// The highest voxel of each column by class, brighter the higher it is; `behind` where there is none.
+pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
     let pixel = |i: usize| {
         let (x, y) = column_of(i);
         let column = grid.column(x, y);
         let Some(z) = column.iter().rposition(|v| *v != Class::FREE) else {
-            return Color32::TRANSPARENT;
+            return behind;
         };
         let class = Class::from_id(column[z]).unwrap_or(Class::Others);
         let light = 0.62 + 0.38 * (z as f32 / 11.0).min(1.0);
@@ -76,16 +76,16 @@ mod tests {
         let mut layout = BevLayout::default();
         layout.set(BevLayer::DrivableArea, 199, 199, true); // far ahead, far left
         layout.set(BevLayer::Walkway, 199, 199, true);
-        let image = layers(&layout, 0xff, 1.0);
+        let image = layers(&layout, 0xff, 1.0, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::Walkway.color();
         assert_eq!(image.pixels[0], Color32::from_rgb(r, g, b));
         assert_eq!(image.pixels[1], Color32::TRANSPARENT);
-        let without = layers(&layout, !BevLayer::Walkway.bit(), 1.0);
+        let without = layers(&layout, !BevLayer::Walkway.bit(), 1.0, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
         let mut grid = VoxelGrid::new();
         grid.set(0, 0, 15, Class::Car.id()); // behind, right
-        let image = occupancy(&grid);
+        let image = occupancy(&grid, Color32::BLACK);
         let [r, g, b] = Class::Car.color();
         assert_eq!(image.pixels[GridSpec::COLUMNS - 1], Color32::from_rgb(r, g, b));
     }

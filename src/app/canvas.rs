@@ -3,8 +3,8 @@
 
 use egui::accesskit::Role;
 use egui::{
-    Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextureHandle, TextureOptions,
-    Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 
@@ -16,6 +16,7 @@ use crate::scene::{
 use super::bev_image;
 use super::canvas_tools::Gesture;
 use super::command::Command;
+use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
 
@@ -52,6 +53,7 @@ impl ScreenMap {
 pub struct Canvas {
     center_m: DVec2,
     scale: f64, // points per metre; 0 before the first fit
+    held: Held,
     /// What the pointer is doing.
     pub(super) gesture: Gesture,
     /// The last map from ego to screen; tests click with it.
@@ -75,6 +77,8 @@ pub struct CanvasInput<'a> {
 }
 
 const SCALE: std::ops::RangeInclusive<f64> = 2.0..=120.0;
+/// Where nothing is painted.
+const GROUND: Color32 = Color32::from_rgb(29, 32, 37);
 /// Half the extent of the grid, m.
 const HALF_M: f64 = GridSpec::MAX_M[0];
 
@@ -83,6 +87,7 @@ impl Default for Canvas {
         Self {
             center_m: DVec2::ZERO,
             scale: 0.0,
+            held: Held::default(),
             gesture: Gesture::None,
             map: None,
             layers: None,
@@ -106,7 +111,8 @@ impl Canvas {
         if self.scale == 0.0 {
             self.frame_all(rect);
         }
-        let map = self.navigate(ui, &response, state);
+        let steps = pointer::steps(ui, &response);
+        let map = self.navigate(ui, &response, &steps, state);
         self.interact(ui, &response, &map, input.scene, state, commands);
         let map = ScreenMap {
             center_m: self.center_m,
@@ -141,7 +147,7 @@ impl Canvas {
         }
     }
 
-    fn navigate(&mut self, ui: &Ui, response: &Response, state: &mut UiState) -> ScreenMap {
+    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], state: &mut UiState) -> ScreenMap {
         let mut map = ScreenMap {
             rect: response.rect,
             center_m: self.center_m,
@@ -162,10 +168,12 @@ impl Canvas {
             }
         }
         let space = ui.input(|i| i.key_down(egui::Key::Space));
-        if response.dragged_by(egui::PointerButton::Middle)
-            || space && response.dragged_by(egui::PointerButton::Primary)
-        {
-            let d = response.drag_delta();
+        let wants = |button, _| match button {
+            PointerButton::Middle => true,
+            PointerButton::Primary => space,
+            _ => false,
+        };
+        if let Some((_, d)) = self.held.travel(steps, wants) {
             self.center_m += DVec2::new(f64::from(d.y), f64::from(d.x)) / self.scale;
         }
         let limit = DVec2::splat(HALF_M * 1.5);
@@ -183,9 +191,10 @@ impl Canvas {
         state: &UiState,
     ) {
         let painter = ui.painter();
-        painter.rect_filled(map.rect, 0.0, theme::BACKGROUND);
         let grid = map.rect_of(DVec2::splat(-HALF_M), DVec2::splat(HALF_M));
-        painter.rect_filled(grid, 0.0, Color32::from_rgb(29, 32, 37));
+        for strip in around(grid, map.rect) {
+            painter.rect_filled(strip, 0.0, theme::BACKGROUND);
+        }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let scene = input.scene;
         if state.underlay != Underlay::Layout {
@@ -225,13 +234,18 @@ impl Canvas {
     fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
         let both = state.underlay == Underlay::Both;
         let key = (scene.rev, state.layers_shown, both);
-        let opacity = if both { 0.5 } else { 1.0 };
-        let make = || bev_image::layers(&scene.frame().layout, state.layers_shown, opacity);
+        // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
+        let (opacity, behind) = if both {
+            (0.5, Color32::TRANSPARENT)
+        } else {
+            (1.0, GROUND)
+        };
+        let make = || bev_image::layers(&scene.frame().layout, state.layers_shown, opacity, behind);
         texture(ui, &mut self.layers, key, "layers", make)
     }
 
     fn occupancy_texture(&mut self, ui: &Ui, scene: &Scene) -> egui::TextureId {
-        let make = || bev_image::occupancy(&scene.frame().occupancy);
+        let make = || bev_image::occupancy(&scene.frame().occupancy, GROUND);
         texture(ui, &mut self.occupancy, scene.rev, "occupancy", make)
     }
 
@@ -302,6 +316,22 @@ fn texture<K: PartialEq>(
     }
     slot.as_ref()
         .map_or(egui::TextureId::default(), |(_, handle)| handle.id())
+}
+
+/// What of `outer` is not covered by `inner`.
+fn around(inner: Rect, outer: Rect) -> [Rect; 4] {
+    let inner = inner.intersect(outer);
+    if !inner.is_positive() {
+        return [outer, Rect::NOTHING, Rect::NOTHING, Rect::NOTHING];
+    }
+    let middle =
+        |left: f32, right: f32| Rect::from_min_max(pos2(left, inner.top()), pos2(right, inner.bottom()));
+    [
+        Rect::from_min_max(outer.min, pos2(outer.right(), inner.top())),
+        Rect::from_min_max(pos2(outer.left(), inner.bottom()), outer.max),
+        middle(outer.left(), inner.left()),
+        middle(inner.right(), outer.right()),
+    ]
 }
 
 fn draw_grid(ui: &Ui, map: &ScreenMap, grid: Rect) {
@@ -562,6 +592,17 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn strips_cover_what_is_around() {
+        let outer = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 60.0));
+        let area = |strips: [Rect; 4]| strips.iter().map(|r| r.area()).sum::<f32>();
+        let inner = Rect::from_min_max(pos2(20.0, 10.0), pos2(70.0, 80.0));
+        assert_eq!(area(around(inner, outer)), 6000.0 - 50.0 * 50.0);
+        assert_eq!(area(around(outer, outer)), 0.0);
+        let apart = Rect::from_min_max(pos2(200.0, 0.0), pos2(300.0, 60.0));
+        assert_eq!(around(apart, outer)[0], outer);
+    }
 
     #[test]
     fn the_map_goes_both_ways() {

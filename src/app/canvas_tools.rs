@@ -10,6 +10,7 @@ use crate::scene::{BevLayer, BoxId, Class, Frame, PolylineKind, Scene, SceneBox}
 
 use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;
+use super::pointer::{self, Step};
 use super::state::{Tool, UiState};
 
 /// What the pointer is doing.
@@ -71,32 +72,34 @@ impl Canvas {
             state.readout = readout(scene, map.to_ego(pointer));
             self.set_cursor(ui, map, scene, state, map.to_ego(pointer));
         }
-        let (pressed, released, space, shift, escape) = ui.input(|i| {
+        let (space, shift, escape) = ui.input(|i| {
             (
-                i.pointer.button_pressed(PointerButton::Primary),
-                i.pointer.button_released(PointerButton::Primary),
                 i.key_down(Key::Space),
                 i.modifiers.shift,
                 i.key_pressed(Key::Escape),
             )
         });
-        let pointer_m = ui.input(|i| i.pointer.interact_pos()).map(|p| map.to_ego(p));
         if escape && self.gesture != Gesture::None {
             if self.gesture != Gesture::Ignored {
                 commands.push(Command::CancelDrag);
             }
             self.gesture = Gesture::Ignored;
         }
-        let down_here = response.is_pointer_button_down_on();
-        if let (true, true, false, Some(at_m)) = (pressed, down_here, space, pointer_m) {
-            self.gesture = self.begin(map, scene, state, at_m, shift, commands);
-        }
-        if let Some(at_m) = pointer_m {
-            self.drag(map, scene, at_m, shift, commands);
-        }
-        if released && self.gesture != Gesture::None {
-            let gesture = std::mem::take(&mut self.gesture);
-            end(gesture, state, commands);
+        for step in pointer::steps(ui, response) {
+            match step {
+                Step::Press(PointerButton::Primary, at, modifiers) if !space => {
+                    let at_m = map.to_ego(at);
+                    self.gesture = self.begin(map, scene, state, at_m, modifiers.shift, commands);
+                    self.drag(map, scene, at_m, modifiers.shift, commands);
+                }
+                Step::Move(at) => self.drag(map, scene, map.to_ego(at), shift, commands),
+                Step::Release(PointerButton::Primary, at) if self.gesture != Gesture::None => {
+                    self.drag(map, scene, map.to_ego(at), shift, commands);
+                    let gesture = std::mem::take(&mut self.gesture);
+                    end(gesture, state, commands);
+                }
+                _ => {}
+            }
         }
     }
 
@@ -201,11 +204,14 @@ impl Canvas {
                     };
                     // Strokes beside the grid paint nothing; that is no error to show.
                     if shape.cells().is_ok() {
-                        commands.push(Command::Preview(vec![Edit::PaintBev {
-                            layer: *layer,
-                            shape,
-                            value: !*erase,
-                        }]));
+                        pointer::preview(
+                            commands,
+                            vec![Edit::PaintBev {
+                                layer: *layer,
+                                shape,
+                                value: !*erase,
+                            }],
+                        );
                     }
                 }
             }
@@ -217,7 +223,7 @@ impl Canvas {
             } => {
                 *moved |= grabbed_m.distance(at_m) * map.scale > CLICK_SLACK;
                 if *moved && let Some(edit) = dragged(start, *handle, *grabbed_m, at_m, shift) {
-                    commands.push(Command::Preview(vec![edit]));
+                    pointer::preview(commands, vec![edit]);
                 }
             }
             Gesture::Place {

@@ -15,6 +15,7 @@ pub mod open;
 pub mod panels;
 pub mod picture;
 mod pipeline;
+mod pointer;
 pub mod sensing;
 pub mod state;
 mod theme;
@@ -77,6 +78,7 @@ pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
         renderer: eframe::Renderer::Wgpu,
         wgpu_options: wgpu_options(),
         persist_window: false,
+        dithering: false,
         ..Default::default()
     };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use egui::accesskit::Role;
-use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
+use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
 use glam::{DVec2, DVec3};
 
 use crate::editor::pick::{self, Hit, Ray};
@@ -15,6 +15,7 @@ use crate::viewport::{
 };
 
 use super::command::Command;
+use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, VoxelVerb, position_text};
 use super::theme;
 use super::view3d_tools::Gesture3d;
@@ -43,6 +44,7 @@ pub struct View3d {
     /// What is shown and how.
     pub options: ViewOptions,
     gpu: Option<Gpu>,
+    held: Held,
     /// What the pointer is doing.
     pub(super) gesture: Gesture3d,
     /// The pane drawn last; tests click with it.
@@ -89,6 +91,7 @@ impl View3d {
                 ..ViewOptions::default()
             },
             gpu,
+            held: Held::default(),
             gesture: Gesture3d::None,
             rect: Rect::NOTHING,
             colors: None,
@@ -131,9 +134,10 @@ impl View3d {
             no_adapter(ui, rect);
             return response;
         }
-        let moved = self.navigate(ui, &response, input);
+        let steps = pointer::steps(ui, &response);
+        let moved = self.navigate(ui, &response, &steps, input);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
-        self.interact(ui, &response, input, state, commands);
+        self.interact(ui, &response, &steps, input, state, commands);
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
             state.readout = readout(input.scene, hit, &pointer.ray);
@@ -170,23 +174,30 @@ impl View3d {
     }
 
     /// Camera motion by pointer and keys; true if the view changed.
-    fn navigate(&mut self, ui: &Ui, response: &Response, input: &View3dInput<'_>) -> bool {
+    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], input: &View3dInput<'_>) -> bool {
         let before = self.camera;
-        let (shift, alt, space) =
-            ui.input(|i| (i.modifiers.shift, i.modifiers.alt, i.key_down(egui::Key::Space)));
-        let delta = response.drag_delta();
-        let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
-        let middle = response.dragged_by(egui::PointerButton::Middle);
-        let primary = response.dragged_by(egui::PointerButton::Primary);
-        let px = f64::from(self.pixels_per_point);
-        if middle && shift || primary && space {
-            self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
-        } else if middle || primary && alt {
-            // A turned standard view is none any more: back to perspective.
-            self.camera.ortho &= delta == egui::Vec2::ZERO;
-            self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
-        } else if response.dragged_by(egui::PointerButton::Secondary) {
-            self.fly(ui, dx, dy);
+        let (shift, space) = ui.input(|i| (i.modifiers.shift, i.key_down(egui::Key::Space)));
+        let wants = |button, modifiers: egui::Modifiers| match button {
+            PointerButton::Middle | PointerButton::Secondary => true,
+            PointerButton::Primary => modifiers.alt || space,
+            _ => false,
+        };
+        if let Some((button, delta)) = self.held.travel(steps, wants) {
+            let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
+            let px = f64::from(self.pixels_per_point);
+            let pans = match button {
+                PointerButton::Middle => shift,
+                _ => space,
+            };
+            if button == PointerButton::Secondary {
+                self.fly(ui, dx, dy);
+            } else if pans {
+                self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
+            } else {
+                // A turned standard view is none any more: back to perspective.
+                self.camera.ortho &= delta == egui::Vec2::ZERO;
+                self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
+            }
         }
         if let Some(at) = response.hover_pos() {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));

@@ -12,6 +12,7 @@ use crate::scene::raster::disc_cells;
 use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
 
 use super::command::Command;
+use super::pointer::{self, Step};
 use super::state::{Tool, UiState, VoxelVerb};
 use super::view3d::{View3d, View3dInput, point_of};
 
@@ -67,38 +68,36 @@ impl View3d {
         &mut self,
         ui: &Ui,
         response: &Response,
+        steps: &[Step],
         input: &View3dInput<'_>,
         state: &UiState,
         commands: &mut Vec<Command>,
     ) {
-        let (pressed, released, camera, shift, escape, at) = ui.input(|i| {
-            (
-                i.pointer.button_pressed(PointerButton::Primary),
-                i.pointer.button_released(PointerButton::Primary),
-                i.modifiers.alt || i.key_down(Key::Space),
-                i.modifiers.shift,
-                i.key_pressed(Key::Escape),
-                i.pointer.interact_pos(),
-            )
-        });
+        let (space, escape) = ui.input(|i| (i.key_down(Key::Space), i.key_pressed(Key::Escape)));
         if escape && self.gesture != Gesture3d::None {
             if self.gesture != Gesture3d::Ignored {
                 commands.push(Command::CancelDrag);
             }
             self.gesture = Gesture3d::Ignored;
         }
-        let Some(at) = at else { return };
-        if pressed && response.is_pointer_button_down_on() {
-            self.gesture = if camera {
-                Gesture3d::Ignored
-            } else {
-                self.begin(input, state, at, shift)
-            };
-        }
-        self.drag(input, state, at, commands);
-        if released && self.gesture != Gesture3d::None {
-            let gesture = std::mem::take(&mut self.gesture);
-            self.end(gesture, input, state, at, commands);
+        for step in steps {
+            match *step {
+                Step::Press(PointerButton::Primary, at, modifiers) => {
+                    let camera = modifiers.alt || space;
+                    self.gesture = match camera {
+                        true => Gesture3d::Ignored,
+                        false => self.begin(input, state, at, modifiers.shift),
+                    };
+                    self.drag(input, state, at, commands);
+                }
+                Step::Move(at) => self.drag(input, state, at, commands),
+                Step::Release(PointerButton::Primary, at) if self.gesture != Gesture3d::None => {
+                    self.drag(input, state, at, commands);
+                    let gesture = std::mem::take(&mut self.gesture);
+                    self.end(gesture, input, state, at, commands);
+                }
+                _ => {}
+            }
         }
         if response.hovered() && self.gesture == Gesture3d::None {
             let icon = match state.tool {
@@ -170,12 +169,15 @@ impl View3d {
                     && let Some(now_m) = pick::ray_ground(&p.ray, grabbed_m.z)
                     && now_m.truncate().length() < 400.0
                 {
-                    commands.push(Command::Preview(vec![Edit::MoveBox {
-                        id: start.id,
-                        center_m: Some(start.center_m + (now_m - *grabbed_m)),
-                        yaw_deg: None,
-                        size_m: None,
-                    }]));
+                    pointer::preview(
+                        commands,
+                        vec![Edit::MoveBox {
+                            id: start.id,
+                            center_m: Some(start.center_m + (now_m - *grabbed_m)),
+                            yaw_deg: None,
+                            size_m: None,
+                        }],
+                    );
                 }
             }
             Gesture3d::Stroke {
@@ -198,7 +200,7 @@ impl View3d {
                                 shape,
                                 value: !*erase,
                             };
-                            commands.push(Command::Preview(vec![edit]));
+                            pointer::preview(commands, vec![edit]);
                         }
                     }
                 }
@@ -220,7 +222,7 @@ impl View3d {
                 *last = at;
                 if cells.len() > before {
                     let cells = cells.iter().copied().collect();
-                    commands.push(Command::Preview(vec![Edit::PaintVoxels { cells, class: *class }]));
+                    pointer::preview(commands, vec![Edit::PaintVoxels { cells, class: *class }]);
                 }
             }
         }

@@ -19,7 +19,6 @@ fn title(ui: &mut Ui, text: &str) {
 fn header(ui: &mut Ui, name: &str, rest: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), HEADER);
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-    ui.painter().rect_filled(rect, 0.0, theme::PANEL);
     let inner = rect.shrink2(vec2(10.0, 2.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
         ui.set_clip_rect(rect);
