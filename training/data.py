@@ -58,6 +58,43 @@ def turned(grid, symmetry):
     return np.ascontiguousarray(grid[:, ::-1] if symmetry >= 4 else grid)
 
 
+class Places:
+    """Where objects stand, so that crops can be drawn around them as often as around anything else."""
+
+    PER_FRAME = 12  # columns that are kept per frame and class
+    OBJECTS = 11  # `others` and the ten object classes
+
+    def __init__(self, frames):
+        self.frames, self.read = frames, 0
+        self.found = [[] for _ in range(self.OBJECTS)]  # per class: (frame, x, y)
+        self.rescan()
+
+    def rescan(self):
+        """Adds frames that were written since."""
+        rng = np.random.default_rng(self.read)
+        for frame in range(self.read, len(self.frames)):
+            grid = self.frames.read(frame, "dense")
+            at = np.flatnonzero(grid < self.OBJECTS)
+            label = grid.reshape(-1)[at]
+            for c in np.unique(label):
+                columns = np.unique(at[label == c] // 16)
+                for column in rng.choice(columns, min(len(columns), self.PER_FRAME), replace=False):
+                    self.found[c].append((frame, column // 200, column % 200))
+        self.read = len(self.frames)
+
+    def crop(self, rng, kind, side, anywhere):
+        """u8 [side,side,16] from a random frame: with probability `anywhere` at a random place, else around a voxel of
+        a random object class. Its corner lies anywhere, not on the latent's cells: more variety for nothing."""
+        classes = [f for f in self.found if f]
+        if rng.random() < anywhere or not classes:
+            frame, x, y = rng.integers(len(self.frames)), rng.integers(200), rng.integers(200)
+        else:
+            places = classes[rng.integers(len(classes))]
+            frame, x, y = places[rng.integers(len(places))]
+        x, y = (int(np.clip(v - rng.integers(side // 8, side - side // 8), 0, 200 - side)) for v in (x, y))
+        return self.frames.read(frame, kind)[x : x + side, y : y + side]
+
+
 def as_tensor(grids):
     """Frames to one batch; u32 bits become i32, which torch can shift."""
     batch = np.stack(grids)

@@ -4,44 +4,43 @@ import math
 import torch
 from torch.nn import functional as F
 
-from models.occ_vae import CLASSES, FREE
+from models.occ_vae import CLASSES, FEATURES, FREE
 
 # Voxels per class in the Occ3D training split (design/models.md section 3): rarer classes weigh more, 1 to 4.
 _COUNTS = [2.1e6, 3.0e6, 2.3e5, 5.4e6, 3.41e7, 2.0e6, 3.3e5, 3.3e6, 5.4e5, 5.8e6, 1.35e7, 1.98e8, 4.9e6, 5.65e7, 6.65e7,
            2.28e8, 2.52e8]
 RARITY = torch.tensor([1 + 3 * math.log(max(_COUNTS) / c) / math.log(max(_COUNTS) / min(_COUNTS)) for c in _COUNTS])
-CAR = 4
 FREE_NEAR, FREE_ANYWHERE = 3.5, 8.0  # weights of the two kinds of free voxels: few are drawn out of many
 
 
-def sample_voxels(cells, limit):
-    """Flat indices and weights of the voxels that are trained on: up to `limit` occupied ones, 1.5x as many free ones
-    out of cells that hold something, half as many out of anywhere."""
-    occupied = cells != FREE
-    taken = occupied.view(-1).nonzero().squeeze(1)
-    if len(taken) > limit:
-        # Objects other than cars are a fiftieth of what is occupied and half of the classes: keep them all.
-        label = cells.view(-1)[taken]
-        rare = (label < 11) & (label != CAR)
-        rest = taken[~rare]
-        rest = rest[torch.randint(len(rest), (limit,), device=cells.device)]
-        taken = torch.cat([taken[rare][: 2 * limit], rest])
+def sample_voxels(labels, limit):
+    """labels u8 [B,X,Y,16] -> flat indices, labels and weights of the voxels that are trained on: all of the ten object
+    classes and `others` (up to `limit`) and up to `limit` of the rest, 1.5x as many free ones close to those, half as
+    many from anywhere."""
+    b, nx, ny, height = labels.shape
+    flat, device = labels.reshape(-1), labels.device
+    taken = (flat != FREE).nonzero().squeeze(1)
+    object_ = flat[taken] < 11
+    parts = []
+    for group in (taken[object_], taken[~object_]):
+        parts.append(group[torch.randint(len(group), (limit,), device=device)] if len(group) > limit else group)
+    taken = torch.cat(parts)
     n = len(taken)
-    full = occupied.any(1).nonzero().squeeze(1)
-    parts, weights = [taken], [RARITY.to(cells.device)[cells.view(-1)[taken].long()]]
-    if len(full):
-        near = full[torch.randint(len(full), (int(1.5 * n),), device=cells.device)] * cells.shape[1]
-        parts.append(near + torch.randint(cells.shape[1], near.shape, device=cells.device))
-        weights.append(torch.full(near.shape, FREE_NEAR, device=cells.device))
-    anywhere = torch.randint(cells.numel(), (n // 2 + 64,), device=cells.device)
-    parts.append(anywhere)
-    weights.append(torch.full(anywhere.shape, FREE_ANYWHERE, device=cells.device))
-    index, weight = torch.cat(parts), torch.cat(weights)
+    if n:
+        # Up to two columns away and any height: most free voxels that matter touch something.
+        from_ = taken[torch.randint(n, (int(1.5 * n),), device=device)] // height
+        dx, dy = torch.randint(-2, 3, (2, len(from_)), device=device)
+        x, y = (from_ // ny % nx + dx).clamp(0, nx - 1), (from_ % ny + dy).clamp(0, ny - 1)
+        near = ((from_ // (nx * ny) * nx + x) * ny + y) * height
+        parts.append(near + torch.randint(height, near.shape, device=device))
+    parts.append(torch.randint(flat.numel(), (n // 2 + 64,), device=device))
+    index = torch.cat(parts)
+    label = flat[index].long()
+    weight = torch.full(index.shape, FREE_NEAR, device=device)
+    weight[-len(parts[-1]):] = FREE_ANYWHERE
     # A drawn "free" voxel that is occupied counts as what it is.
-    drawn = torch.arange(len(index), device=cells.device) >= n
-    label = cells.view(-1)[index].long()
-    hit = drawn & (label != FREE)
-    weight[hit] = RARITY.to(cells.device)[label[hit]]
+    held = label != FREE
+    weight[held] = RARITY.to(device)[label[held]]
     return index, label, weight
 
 
@@ -65,18 +64,18 @@ def kl_to_normal(mean, logvar):
     return 0.5 * (mean**2 + torch.expm1(logvar) - logvar).mean()
 
 
-def vae_loss(model, cells, kl_weight=1e-6, voxels_per_frame=12_000, lovasz_voxels=12_000, latent_noise=0.05):
+def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.03):
     """Cross-entropy and Lovasz on sampled voxels, and the KL term. Returns the loss and its parts."""
-    mean, logvar = model.moments(cells)
+    mean, logvar = model.moments(labels)
     latent = mean
     if model.training:
         latent = mean + torch.randn_like(mean) * (0.5 * logvar).exp()
         # A little of the latent's own spread, so that the decoder forgives what diffusion gets slightly wrong.
         spread = mean.detach().std((0, 2, 3), keepdim=True)
         latent = latent + torch.randn_like(mean) * spread * latent_noise
-    frames = mean.shape[0]
-    index, label, weight = sample_voxels(cells, voxels_per_frame * frames)
-    logits = model.logits(model.features(latent).reshape(-1, 8)[index])
+    cells = mean.shape[0] * mean.shape[2] * mean.shape[3]
+    index, label, weight = sample_voxels(labels, voxels_per_cell * cells)
+    logits = model.logits(model.features(latent).reshape(-1, FEATURES)[index])
     ce = (F.cross_entropy(logits, label, reduction="none") * weight).sum() / weight.sum()
     pick = torch.randint(len(label), (min(lovasz_voxels, len(label)),), device=label.device)
     lovasz = lovasz_softmax(logits[pick].softmax(-1), label[pick])

@@ -10,11 +10,11 @@ from safetensors import safe_open
 from safetensors.torch import load_file
 
 import losses
-from data import Frames, as_tensor, draw_masks, prefetch, turned
+from data import Frames, Places, as_tensor, draw_masks, prefetch, turned
 from latents import LatentCache, latent_space
 from loop import Run, pick_device
 from models.occ_dit import DitConfig, OccDit, unshuffle_layout
-from models.occ_vae import OccVae, VaeConfig, to_cells
+from models.occ_vae import OccVae, VaeConfig
 from schedule import STEPS, alpha_bar, ddim_sample
 
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
@@ -38,7 +38,7 @@ def measure_latents(vae, frames, device, count=48):
     pick = np.linspace(0, len(frames) - 1, min(count, len(frames))).astype(int)
     for i, frame in enumerate(pick):
         grid = as_tensor([frames.read(frame, ("dense", "dense", "labels", "draft")[i % 4])]).to(device)
-        mean = vae.moments(to_cells(grid))[0].double().cpu()
+        mean = vae.moments(grid)[0].double().cpu()
         total, square, n = total + mean.sum((0, 2, 3)), square + (mean**2).sum((0, 2, 3)), n + 2500
     mean = total / n
     vae.latent_mean.copy_(mean)
@@ -53,7 +53,7 @@ def vae_figures(vae, frames, device, count):
         for frame in range(min(count, len(frames))):
             grid = as_tensor([frames.read(frame, kind)]).to(device)
             confusion.add(grid, vae.decode(vae.encode(grid)))
-            loss += losses.vae_loss(vae, to_cells(grid))[0].item()
+            loss += losses.vae_loss(vae, grid)[0].item()
         out |= {f"{kind}_loss": loss / min(count, len(frames)), f"{kind}_miou": confusion.miou(), f"{kind}_iou": confusion.iou()}
         out_per_class = confusion.per_class()
         print(f"  {kind} per class " + " ".join(f"{x:.2f}" for x in out_per_class.tolist()), flush=True)
@@ -62,21 +62,18 @@ def vae_figures(vae, frames, device, count):
 
 def train_vae(args, device, dtype):
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
-    model = OccVae(VaeConfig(encoder_width=args.width, decoder_width=args.width)).to(device, memory_format=torch.channels_last)
+    model = OccVae(VaeConfig(widths=(args.width // 4, args.width // 2, args.width))).to(device, memory_format=torch.channels_last)
     if args.decoder_of:
         model.load_state_dict(load_vae(args.decoder_of, device).state_dict())
         for part in (model.embed, model.encoder, model.encoder_norm, model.encoder_head):
             part.requires_grad_(False)
     run = Run(model, args, lr=args.lr or 2e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100)
     rng = np.random.default_rng([args.seed, run.step])
-    kinds = ("dense", "labels", "draft")
+    kinds, places = ("dense", "labels", "draft"), Places(train)
 
     def make():
-        grids = []
-        for _ in range(args.batch):
-            kind = rng.choice(3, p=args.mix)
-            grids.append(turned(train.read(rng.integers(len(train)), kinds[kind]), rng.integers(8)))
-        return as_tensor(grids)
+        kind = [kinds[k] for k in rng.choice(3, args.batch, p=args.mix)]
+        return as_tensor([turned(places.crop(rng, k, args.crop, args.anywhere), rng.integers(8)) for k in kind])
 
     meta = {"kind": "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
     if args.decoder_of:
@@ -90,14 +87,15 @@ def train_vae(args, device, dtype):
         run.note(vae_figures(run.ema, held_out, device, args.held_out) | mean | {"per_s": rate})
         run.save(meta)
         train.rescan()
+        places.rescan()
 
     for grid in prefetch(make):
         model.train()
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, parts = losses.vae_loss(model, to_cells(grid.to(device)))
+            loss, parts = losses.vae_loss(model, grid.to(device))
         run.update(loss, len(grid))
         mean = {k: mean.get(k, v) * 0.95 + v * 0.05 for k, v in parts.items()}
-        if run.step % 20 == 0:
+        if run.step % 50 == 0:
             rate = (run.samples - since[0]) / (time.monotonic() - since[1])
             print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s " + " ".join(f"{k} {v:.4f}" for k, v in mean.items()), flush=True)
         if run.done():
@@ -196,7 +194,7 @@ def train_dit(args, device, dtype):
             loss, v = dit_loss(model, abar, target, (context, draft * keep, layout * keep), mask, None)
         run.update(loss, len(pick))
         mean = mean * 0.98 + v * 0.02 if mean else v
-        if run.step % 20 == 0:
+        if run.step % 50 == 0:
             rate = (run.samples - since[0]) / (time.monotonic() - since[1])
             print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s v {mean:.4f}", flush=True)
         if run.done():
@@ -217,11 +215,13 @@ def main():
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--vae", help="weights of the VAE (dit only)")
     p.add_argument("--decoder-of", help="weights of a VAE whose decoder alone is trained on: its latents stay (vae only)")
-    p.add_argument("--mix", type=float, nargs=3, default=(0.65, 0.22, 0.13), help="shares of complete worlds, labels, drafts (vae only)")
+    p.add_argument("--mix", type=float, nargs=3, default=(0.6, 0.25, 0.15), help="shares of complete worlds, labels, drafts (vae only)")
     p.add_argument("--resume", action="store_true")
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--threads", type=int, default=2)
-    p.add_argument("--batch", type=int, default=8)
+    p.add_argument("--batch", type=int, help="crops (vae, 16) or frames (dit, 8) per step")
+    p.add_argument("--crop", type=int, default=64, help="voxels along a side of a crop (vae only)")
+    p.add_argument("--anywhere", type=float, default=0.35, help="share of crops that are not drawn around objects (vae only)")
     p.add_argument("--lr", type=float)
     p.add_argument("--width", type=int)
     p.add_argument("--depth", type=int, default=8)
@@ -232,12 +232,12 @@ def main():
     device, dtype = pick_device(args.threads)
     print(f"device {device}, {'f32' if dtype is None else dtype}, {args.threads} threads", flush=True)
     if args.kind == "vae":
-        args.width, args.held_out = args.width or 128, args.held_out or 8
+        args.width, args.held_out, args.batch = args.width or 192, args.held_out or 8, args.batch or 16
         train_vae(args, device, dtype)
     else:
         if not args.vae:
             p.error("dit needs --vae")
-        args.width, args.held_out = args.width or 256, args.held_out or 24
+        args.width, args.held_out, args.batch = args.width or 256, args.held_out or 24, args.batch or 8
         train_dit(args, device, dtype)
 
 

@@ -1,31 +1,34 @@
 """Occupancy VAE: 200x200x16 labels <-> latent 50x50x8. Rust twin: src/gen/model/occ_vae.rs.
 
-A cell is 4x4x16 voxels; voxel p = (dx*4 + dy)*16 + z of a cell. The encoder sums one embedding per occupied
-voxel of a cell, so its cost follows what is there. It looks only two cells (3.2 m) around itself, so an edit changes
-few latents; the decoder, which has to invent what the 8 numbers leave out, looks further.
+Three levels in the top view: columns of 0.4 m (all 16 voxels of one place), 0.8 m and 1.6 m. What a column means does
+not depend on where in its latent cell it lies, so columns share their weights: a cone is learnt once, not once for each
+of the sixteen places it can have in a cell. The encoder sums one embedding per occupied voxel and looks two cells
+(3.2 m) around itself, so its cost follows what is there and an edit changes few latents; the decoder looks three.
 """
 from dataclasses import asdict, dataclass
 
 import torch
 from torch import nn
+from torch.nn import functional as F
 
 FREE = 17
 CLASSES = 18
 CELLS = 50  # per side
-VOXELS = 256  # per cell
+HEIGHT = 16  # voxels of a column
 FEATURES = 8  # per voxel, before the class table
 
 
 @dataclass
 class VaeConfig:
+    """Widths at 0.4, 0.8 and 1.6 m; kernels of the residual blocks of each level, in the order they are passed."""
+
     latent: int = 8
-    encoder_width: int = 128
-    encoder_kernels: tuple = (3, 1, 3)
-    decoder_width: int = 128
-    decoder_kernels: tuple = (3, 3, 3, 3, 3)
+    widths: tuple = (48, 96, 192)
+    encoder_kernels: tuple = ((1,), (3,), (3,))
+    decoder_kernels: tuple = ((3, 3), (3,), (1,))
 
     def as_dict(self):
-        return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items()}
+        return asdict(self)
 
 
 class ChannelNorm(nn.LayerNorm):
@@ -51,62 +54,82 @@ class ResBlock(nn.Module):
         nn.init.zeros_(self.conv2.bias)
 
     def forward(self, x):
-        return x + self.conv2(nn.functional.gelu(self.conv1(self.norm(x))))
+        return x + self.conv2(F.gelu(self.conv1(self.norm(x))))
 
 
-def to_cells(labels):
-    """u8 labels [B,200,200,16] -> [B*2500, 256], cells in x-major order."""
-    b = labels.shape[0]
-    return labels.view(b, CELLS, 4, CELLS, 4, 16).permute(0, 1, 3, 2, 4, 5).reshape(b * CELLS * CELLS, VOXELS)
+class Level(nn.Module):
+    def __init__(self, width, kernels):
+        super().__init__()
+        self.blocks = nn.ModuleList(ResBlock(width, k) for k in kernels)
+
+    def forward(self, x):
+        for block in self.blocks:
+            x = block(x)
+        return x
 
 
-def from_cells(cells):
-    """The inverse of to_cells."""
-    b = cells.shape[0] // (CELLS * CELLS)
-    return cells.view(b, CELLS, CELLS, 4, 4, 16).permute(0, 1, 3, 2, 4, 5).reshape(b, 200, 200, 16)
+def fold(x):
+    """[B,C,H,W] -> [B,4C,H/2,W/2], channel order (dx, dy, c); channels_last."""
+    b, c, h, w = x.shape
+    x = x.permute(0, 2, 3, 1).reshape(b, h // 2, 2, w // 2, 2, c).permute(0, 1, 3, 2, 4, 5)
+    return x.reshape(b, h // 2, w // 2, 4 * c).permute(0, 3, 1, 2)
+
+
+def unfold(x):
+    """The inverse of fold."""
+    b, c, h, w = x.shape
+    x = x.permute(0, 2, 3, 1).reshape(b, h, w, 2, 2, c // 4).permute(0, 1, 3, 2, 4, 5)
+    return x.reshape(b, 2 * h, 2 * w, c // 4).permute(0, 3, 1, 2)
 
 
 class OccVae(nn.Module):
+    """Works on maps of any size that four divides: training crops, frames."""
+
     def __init__(self, config=None):
         super().__init__()
         c = self.config = config or VaeConfig()
-        self.embed = nn.EmbeddingBag(VOXELS * FREE, c.encoder_width, mode="sum")
-        nn.init.normal_(self.embed.weight, std=0.1)
-        self.encoder = nn.ModuleList(ResBlock(c.encoder_width, k) for k in c.encoder_kernels)
-        self.encoder_norm = ChannelNorm(c.encoder_width)
-        self.encoder_head = nn.Conv2d(c.encoder_width, 2 * c.latent, 1)
-        self.decoder_stem = nn.Conv2d(c.latent, c.decoder_width, 1)
-        self.decoder = nn.ModuleList(ResBlock(c.decoder_width, k) for k in c.decoder_kernels)
-        self.decoder_norm = ChannelNorm(c.decoder_width)
-        self.decoder_head = nn.Conv2d(c.decoder_width, VOXELS * FEATURES, 1)
+        fine, middle, coarse = c.widths
+        self.embed = nn.EmbeddingBag(HEIGHT * FREE, fine, mode="sum")
+        nn.init.normal_(self.embed.weight, std=0.3)
+        self.encoder = nn.ModuleList(Level(w, k) for w, k in zip(c.widths, c.encoder_kernels))
+        self.down = nn.ModuleList([nn.Conv2d(4 * fine, middle, 1), nn.Conv2d(4 * middle, coarse, 1)])
+        self.encoder_norm = ChannelNorm(coarse)
+        self.encoder_head = nn.Conv2d(coarse, 2 * c.latent, 1)
+        self.decoder_stem = nn.Conv2d(c.latent, coarse, 1)
+        self.decoder = nn.ModuleList(Level(w, k) for w, k in zip(c.widths[::-1], c.decoder_kernels))
+        self.up = nn.ModuleList([nn.Conv2d(coarse, 4 * middle, 1), nn.Conv2d(middle, 4 * fine, 1)])
+        self.decoder_norm = ChannelNorm(fine)
+        self.decoder_head = nn.Conv2d(fine, HEIGHT * FEATURES, 1)
         self.class_table = nn.Parameter(torch.randn(CLASSES, FEATURES))
         self.class_bias = nn.Parameter(torch.zeros(CLASSES))
         # Statistics of the encoder's mean over the training set: latents leave and enter normalised.
         self.register_buffer("latent_mean", torch.zeros(c.latent))
         self.register_buffer("latent_std", torch.ones(c.latent))
 
-    def moments(self, cells):
-        """Cells u8 [B*2500,256] -> mean, log variance [B,8,50,50], not normalised."""
-        occupied = cells != FREE
-        where = occupied.view(-1).nonzero().squeeze(1)  # flat index: cell * 256 + voxel
-        codes = (where % VOXELS) * FREE + cells.reshape(-1)[where]
-        offsets = torch.zeros(cells.shape[0], dtype=torch.long, device=cells.device)
+    def moments(self, labels):
+        """Labels u8 [B,X,Y,16] -> mean, log variance [B,8,X/4,Y/4], not normalised."""
+        b, nx, ny, _ = labels.shape
+        columns = labels.reshape(-1, HEIGHT)
+        occupied = columns != FREE
+        where = occupied.view(-1).nonzero().squeeze(1)  # flat index: column * 16 + z
+        codes = (where % HEIGHT) * FREE + columns.reshape(-1)[where]
+        offsets = torch.zeros(len(columns), dtype=torch.long, device=labels.device)
         torch.cumsum(occupied.sum(1)[:-1], 0, out=offsets[1:])
-        x = self.embed(codes, offsets)
-        # [B,50,50,W] seen as [B,W,50,50] is channels_last already.
-        x = x.view(-1, CELLS, CELLS, self.config.encoder_width).permute(0, 3, 1, 2)
-        for block in self.encoder:
-            x = block(x)
+        # [B,X,Y,W] seen as [B,W,X,Y] is channels_last already.
+        x = self.embed(codes, offsets).view(b, nx, ny, -1).permute(0, 3, 1, 2)
+        x = self.encoder[0](x)
+        x = self.encoder[1](self.down[0](fold(x)))
+        x = self.encoder[2](self.down[1](fold(x)))
         mean, logvar = self.encoder_head(self.encoder_norm(x)).float().chunk(2, 1)
         return mean, logvar.clamp(-30.0, 20.0)
 
     def features(self, latent):
-        """Latent [B,8,50,50], not normalised -> voxel features [B*2500,256,8]."""
-        x = self.decoder_stem(latent.contiguous(memory_format=torch.channels_last))
-        for block in self.decoder:
-            x = block(x)
-        x = self.decoder_head(self.decoder_norm(x))
-        return x.permute(0, 2, 3, 1).reshape(-1, VOXELS, FEATURES)
+        """Latent [B,8,x,y], not normalised -> voxel features [B,4x,4y,16,8]."""
+        x = self.decoder[0](self.decoder_stem(latent.contiguous(memory_format=torch.channels_last)))
+        x = self.decoder[1](unfold(self.up[0](x)))
+        x = self.decoder[2](unfold(self.up[1](x)))
+        x = self.decoder_head(self.decoder_norm(x)).permute(0, 2, 3, 1)
+        return x.reshape(*x.shape[:3], HEIGHT, FEATURES)
 
     def logits(self, features):
         """Voxel features [..., 8] -> class logits [..., 18]: a dot product with the class table."""
@@ -114,10 +137,10 @@ class OccVae(nn.Module):
 
     def encode(self, labels):
         """u8 [B,200,200,16] -> normalised mean latent [B,50,50,8]."""
-        mean, _ = self.moments(to_cells(labels))
+        mean, _ = self.moments(labels)
         return (mean.permute(0, 2, 3, 1) - self.latent_mean) / self.latent_std
 
     def decode(self, latent):
         """Normalised latent [B,50,50,8] -> u8 [B,200,200,16], the likeliest class of each voxel."""
         features = self.features((latent * self.latent_std + self.latent_mean).permute(0, 3, 1, 2))
-        return from_cells(self.logits(features).argmax(-1).to(torch.uint8))
+        return self.logits(features).argmax(-1).to(torch.uint8)

@@ -193,23 +193,16 @@ vectorised! {
 }
 
 vectorised! {
-    /// The class of the largest logit for every voxel; the lowest class keeps a tie. Features are
-    /// `[feature][voxel]`, the table is `[class][feature]`. A voxel whose logits are all NaN gets
-    /// class 0: callers check that features are finite.
-    pub fn likeliest(features: &[f32], table: &[f32], bias: &[f32], labels: &mut [u8]) {
+    /// The class of the largest logit for every voxel; the lowest class keeps a tie. Logits are
+    /// `[class][voxel]`. A voxel whose logits are all NaN gets class 0: callers check that they are
+    /// finite.
+    pub fn likeliest(logits: &[f32], labels: &mut [u8]) {
         let voxels = labels.len();
-        let width = features.len() / voxels;
+        let mut best = [f32::NEG_INFINITY; 16];
+        assert!(voxels <= best.len());
         labels.fill(0);
-        let mut best = vec![f32::NEG_INFINITY; voxels];
-        let mut logits = vec![0.0; voxels];
-        for (class, bias) in bias.iter().enumerate() {
-            logits.fill(*bias);
-            for (t, feature) in table[class * width..][..width].iter().zip(features.chunks_exact(voxels)) {
-                for (logit, f) in logits.iter_mut().zip(feature) {
-                    *logit += t * f;
-                }
-            }
-            for ((label, best), logit) in labels.iter_mut().zip(&mut best).zip(&logits) {
+        for (class, logits) in logits.chunks_exact(voxels).enumerate() {
+            for ((label, best), logit) in labels.iter_mut().zip(&mut best).zip(logits) {
                 let better = *logit > *best;
                 *best = if better { *logit } else { *best };
                 *label = if better { class as u8 } else { *label };

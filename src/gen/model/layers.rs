@@ -5,6 +5,7 @@
 use rayon::prelude::*;
 
 use super::kernels;
+use super::map::Map;
 use crate::generation::weights::{WeightFile, WeightsError};
 
 /// Epsilon of every norm in these networks.
@@ -208,19 +209,6 @@ impl Norm {
     pub fn rows(&self, x: &[f32], out: &mut [f32]) {
         kernels::norm_rows(x, NORM_EPS, &self.scale, &self.shift, out);
     }
-}
-
-/// A feature map: `rows x columns` cells of `width` channels, channel fastest.
-#[derive(Clone)]
-pub struct Map {
-    /// Values.
-    pub data: Vec<f32>,
-    /// Cells along x.
-    pub rows: usize,
-    /// Cells along y.
-    pub columns: usize,
-    /// Channels.
-    pub width: usize,
 }
 
 /// Rows of a map that are worked on in one piece.

@@ -6,6 +6,7 @@ pub mod candle_dit;
 mod golden;
 pub mod kernels;
 pub mod layers;
+pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
 

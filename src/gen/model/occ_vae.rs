@@ -1,25 +1,26 @@
 //! Occupancy VAE: 200x200x16 labels to a 50x50x8 latent and back. After UniScene's (design/models.md
-//! 5.1), rebuilt for a CPU: an embedding bag, few convolutions, norms that look at one cell only.
-//! Twin of `training/models/occ_vae.py`.
+//! 5.1), rebuilt for a CPU: an embedding bag, columns that share their weights at three levels of the
+//! top view (0.4, 0.8, 1.6 m), norms that look at one place only. Twin of `training/models/occ_vae.py`.
 
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::layers::{Linear, Map, Norm, ResBlock};
+use super::layers::{Linear, Norm, ResBlock};
+use super::map::{Map, Window};
 use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Columns along one side of a cell.
 const COLUMNS: usize = GridSpec::NX / SIDE;
-/// Voxels of a cell; voxel (dx, dy, z) is number `(dx * 4 + dy) * 16 + z`.
-const VOXELS: usize = COLUMNS * COLUMNS * GridSpec::NZ;
+const HEIGHT: usize = GridSpec::NZ;
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
-/// Cells that are given labels in one piece.
-const PIECE_CELLS: usize = 25;
 const CLASSES: usize = Class::COUNT;
 const OCCUPIED: usize = Class::FREE as usize; // free is the last class
+const LEVELS: usize = 3;
+/// Rows of a map that go through a linear layer in one piece.
+const PIECE: usize = 200;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -27,27 +28,24 @@ const OCCUPIED: usize = Class::FREE as usize; // free is the last class
 pub struct VaeConfig {
     /// Numbers per latent cell; 8.
     pub latent: usize,
-    /// Channels of the encoder.
-    pub encoder_width: usize,
-    /// Kernel of each encoder block, 1 or 3.
-    pub encoder_kernels: Vec<usize>,
-    /// Channels of the decoder.
-    pub decoder_width: usize,
-    /// Kernel of each decoder block, 1 or 3.
-    pub decoder_kernels: Vec<usize>,
+    /// Channels at 0.4, 0.8 and 1.6 m.
+    pub widths: [usize; LEVELS],
+    /// Kernels (1 or 3) of the encoder's blocks at 0.4, 0.8 and 1.6 m.
+    pub encoder_kernels: [Vec<usize>; LEVELS],
+    /// Kernels (1 or 3) of the decoder's blocks at 1.6, 0.8 and 0.4 m.
+    pub decoder_kernels: [Vec<usize>; LEVELS],
 }
 
 impl VaeConfig {
     fn check(&self) -> Result<(), String> {
-        let widths = [self.encoder_width, self.decoder_width];
-        let mut kernels = self.encoder_kernels.iter().chain(&self.decoder_kernels);
+        let kernels = || self.encoder_kernels.iter().chain(&self.decoder_kernels).flatten();
         if self.latent != CHANNELS {
             Err(format!("latent: expected {CHANNELS}, found {}", self.latent))
-        } else if widths.iter().any(|w| !(1..=4096).contains(w)) {
-            Err(format!("widths: expected 1 to 4096, found {widths:?}"))
-        } else if self.encoder_kernels.len() + self.decoder_kernels.len() > 256 {
+        } else if self.widths.iter().any(|w| !(1..=4096).contains(w)) {
+            Err(format!("widths: expected 1 to 4096, found {:?}", self.widths))
+        } else if kernels().count() > 256 {
             Err("more than 256 blocks".into())
-        } else if let Some(k) = kernels.find(|k| ![1, 3].contains(*k)) {
+        } else if let Some(k) = kernels().find(|k| ![1, 3].contains(*k)) {
             Err(format!("kernels: expected 1 or 3, found {k}"))
         } else {
             Ok(())
@@ -55,19 +53,38 @@ impl VaeConfig {
     }
 }
 
+/// Residual blocks of one width.
+struct Level(Vec<ResBlock>);
+
+impl Level {
+    fn new(w: &mut WeightFile<'_>, name: &str, width: usize, kernels: &[usize]) -> Result<Self, WeightsError> {
+        let all = kernels.iter().enumerate();
+        let blocks = all.map(|(i, k)| ResBlock::new(w, &format!("{name}.blocks.{i}"), width, *k));
+        Ok(Self(blocks.collect::<Result<_, _>>()?))
+    }
+
+    fn apply(&self, map: &mut Map) {
+        self.0.iter().for_each(|block| block.apply(map));
+    }
+
+    fn reach(&self) -> usize {
+        self.0.iter().map(ResBlock::reach).sum()
+    }
+}
+
 /// The network with its weights.
 pub struct OccVae {
     config: VaeConfig,
-    embed: Vec<f32>, // [voxel][class][encoder_width]
-    encoder: Vec<ResBlock>,
+    embed: Vec<f32>, // [z][class][width]
+    encoder: [Level; LEVELS],
+    down: [Linear; 2],
     encoder_norm: Norm,
     encoder_head: Linear,
     decoder_stem: Linear,
-    decoder: Vec<ResBlock>,
+    decoder: [Level; LEVELS],
+    up: [Linear; 2],
     decoder_norm: Norm,
-    decoder_head: Linear,  // outputs ordered [feature][voxel]
-    class_table: Vec<f32>, // [class][feature]
-    class_bias: Vec<f32>,
+    decoder_head: Linear, // with the class table multiplied in: logits of a column, [class][z]
     latent_mean: Vec<f32>,
     latent_std: Vec<f32>,
 }
@@ -79,26 +96,33 @@ impl OccVae {
         config
             .check()
             .map_err(|reason| file.config_error("config", reason))?;
-        let (wide, deep) = (config.encoder_width, config.decoder_width);
+        let [fine, middle, coarse] = config.widths;
         let w = &mut file;
-        let blocks = |w: &mut WeightFile<'_>, name: &str, width, kernels: &[usize]| {
-            let all = kernels.iter().enumerate();
-            all.map(|(i, k)| ResBlock::new(w, &format!("{name}.{i}"), width, *k))
-                .collect::<Result<Vec<_>, _>>()
-        };
-        let mut decoder_head = Linear::new(w, "decoder_head", deep, VOXELS * FEATURES, &[1, 1])?;
-        decoder_head.reorder_outputs(|o| o % FEATURES * VOXELS + o / FEATURES);
         let vae = Self {
-            embed: w.take("embed.weight", &[VOXELS * OCCUPIED, wide])?,
-            encoder: blocks(w, "encoder", wide, &config.encoder_kernels)?,
-            encoder_norm: Norm::new(w, "encoder_norm", wide)?,
-            encoder_head: Linear::new(w, "encoder_head", wide, 2 * CHANNELS, &[1, 1])?,
-            decoder_stem: Linear::new(w, "decoder_stem", CHANNELS, deep, &[1, 1])?,
-            decoder: blocks(w, "decoder", deep, &config.decoder_kernels)?,
-            decoder_norm: Norm::new(w, "decoder_norm", deep)?,
-            decoder_head,
-            class_table: w.take("class_table", &[CLASSES, FEATURES])?,
-            class_bias: w.take("class_bias", &[CLASSES])?,
+            embed: w.take("embed.weight", &[HEIGHT * OCCUPIED, fine])?,
+            encoder: [
+                Level::new(w, "encoder.0", fine, &config.encoder_kernels[0])?,
+                Level::new(w, "encoder.1", middle, &config.encoder_kernels[1])?,
+                Level::new(w, "encoder.2", coarse, &config.encoder_kernels[2])?,
+            ],
+            down: [
+                Linear::new(w, "down.0", 4 * fine, middle, &[1, 1])?,
+                Linear::new(w, "down.1", 4 * middle, coarse, &[1, 1])?,
+            ],
+            encoder_norm: Norm::new(w, "encoder_norm", coarse)?,
+            encoder_head: Linear::new(w, "encoder_head", coarse, 2 * CHANNELS, &[1, 1])?,
+            decoder_stem: Linear::new(w, "decoder_stem", CHANNELS, coarse, &[1, 1])?,
+            decoder: [
+                Level::new(w, "decoder.0", coarse, &config.decoder_kernels[0])?,
+                Level::new(w, "decoder.1", middle, &config.decoder_kernels[1])?,
+                Level::new(w, "decoder.2", fine, &config.decoder_kernels[2])?,
+            ],
+            up: [
+                Linear::new(w, "up.0", coarse, 4 * middle, &[1, 1])?,
+                Linear::new(w, "up.1", middle, 4 * fine, &[1, 1])?,
+            ],
+            decoder_norm: Norm::new(w, "decoder_norm", fine)?,
+            decoder_head: head(w, fine)?,
             latent_mean: w.take("latent_mean", &[CHANNELS])?,
             latent_std: w.take("latent_std", &[CHANNELS])?,
             config,
@@ -121,28 +145,28 @@ impl OccVae {
 
     /// How many cells around an edited one may get another latent.
     pub fn encoder_reach(&self) -> usize {
-        self.encoder.iter().map(ResBlock::reach).sum()
+        let [fine, middle, coarse] = self.encoder.each_ref().map(Level::reach);
+        // From the last column of a cell outwards.
+        ((COLUMNS - 1 + fine) / 2 + middle) / 2 + coarse
     }
 
     /// How many cells around a changed latent may get other labels.
     pub fn decoder_reach(&self) -> usize {
-        self.decoder.iter().map(ResBlock::reach).sum()
+        let [coarse, middle, fine] = self.decoder.each_ref().map(Level::reach);
+        (2 * (2 * coarse + 1 + middle) + 1 + fine) / COLUMNS
     }
 
     /// The mean latent `[x][y][channel]`, 50x50x8, of zero mean and unit spread over the training set.
     pub fn encode(&self, grid: &VoxelGrid) -> Result<Vec<f32>, ModelError> {
-        let mut map = Map {
-            data: self.embed_cells(grid)?,
-            rows: SIDE,
-            columns: SIDE,
-            width: self.config.encoder_width,
-        };
-        for block in &self.encoder {
-            block.apply(&mut map);
+        let mut map = self.embed_columns(grid)?;
+        self.encoder[0].apply(&mut map);
+        for (down, level) in self.down.iter().zip(&self.encoder[1..]) {
+            map = through(down, &map.fold());
+            level.apply(&mut map);
         }
         let mut normed = vec![0.0; map.data.len()];
         self.encoder_norm.rows(&map.data, &mut normed);
-        let moments = self.encoder_head.parallel(&normed, SIDE);
+        let moments = self.encoder_head.parallel(&normed, PIECE);
         let mut latent = Vec::with_capacity(LATENT);
         for cell in moments.chunks_exact(2 * CHANNELS) {
             let channels = cell.iter().zip(&self.latent_mean).zip(&self.latent_std);
@@ -152,36 +176,36 @@ impl OccVae {
         Ok(latent)
     }
 
-    /// The sum of one embedding per occupied voxel, for every cell.
-    fn embed_cells(&self, grid: &VoxelGrid) -> Result<Vec<f32>, ModelError> {
-        let width = self.config.encoder_width;
-        let mut out = vec![0.0; CELLS * width];
-        out.par_chunks_mut(width)
+    /// The sum of one embedding per occupied voxel, for every column.
+    fn embed_columns(&self, grid: &VoxelGrid) -> Result<Map, ModelError> {
+        let width = self.config.widths[0];
+        let (rows, columns) = (GridSpec::NX, GridSpec::NY);
+        let mut data = vec![0.0; rows * columns * width];
+        data.par_chunks_mut(columns * width)
             .enumerate()
-            .try_for_each(|(cell, sum)| {
-                let (x0, y0) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
-                for column in 0..COLUMNS * COLUMNS {
-                    let (x, y) = (x0 + column / COLUMNS, y0 + column % COLUMNS);
+            .try_for_each(|(x, row)| {
+                for (y, sum) in row.chunks_exact_mut(width).enumerate() {
                     for (z, label) in grid.column(x, y).iter().enumerate() {
                         if *label == Class::FREE {
                             continue;
                         }
                         if *label > Class::FREE {
-                            return Err(ModelError::Label {
-                                x,
-                                y,
-                                z,
-                                found: *label,
-                            });
+                            let found = *label;
+                            return Err(ModelError::Label { x, y, z, found });
                         }
-                        let entry = (column * GridSpec::NZ + z) * OCCUPIED + usize::from(*label);
+                        let entry = z * OCCUPIED + usize::from(*label);
                         let embedding = &self.embed[entry * width..][..width];
                         sum.iter_mut().zip(embedding).for_each(|(s, e)| *s += e);
                     }
                 }
                 Ok(())
             })?;
-        Ok(out)
+        Ok(Map {
+            data,
+            rows,
+            columns,
+            width,
+        })
     }
 
     /// The likeliest label of every voxel; the lowest class wins a tie.
@@ -193,20 +217,27 @@ impl OccVae {
     /// can see, and gives them the labels that [`decode`](Self::decode) gives.
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
         check_length("cell mask", cells.len(), CELLS)?;
+        check_length("latent", latent.len(), LATENT)?;
         let mut grid = VoxelGrid::new();
         let Some(window) = Window::around(cells, self.decoder_reach()) else {
-            check_length("latent", latent.len(), LATENT)?;
             return Ok(grid);
         };
         let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
-        let pieces = wanted.par_chunks(PIECE_CELLS);
-        let labels: Vec<[u8; VOXELS]> = pieces
-            .flat_map_iter(|cells| self.label_cells(&map, window, cells))
+        let labels: Vec<[u8; COLUMNS * COLUMNS * HEIGHT]> = wanted
+            .par_iter()
+            .map(|cell| {
+                let mut labels = [0; COLUMNS * COLUMNS * HEIGHT];
+                let logits = self.cell_logits(&map, window, *cell);
+                let columns = logits.chunks_exact(CLASSES * HEIGHT).zip(labels.chunks_exact_mut(HEIGHT));
+                // Weights and normed features are finite and small, so no logit can be NaN.
+                columns.for_each(|(logits, labels)| kernels::likeliest(logits, labels));
+                labels
+            })
             .collect();
         for (cell, labels) in wanted.iter().zip(&labels) {
             let (x0, y0) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
-            for (column, labels) in labels.chunks_exact(GridSpec::NZ).enumerate() {
+            for (column, labels) in labels.chunks_exact(HEIGHT).enumerate() {
                 if labels.iter().any(|l| *l != Class::FREE) {
                     let (x, y) = (x0 + column / COLUMNS, y0 + column % COLUMNS);
                     grid.column_mut(x, y).copy_from_slice(labels);
@@ -216,33 +247,24 @@ impl OccVae {
         Ok(grid)
     }
 
-    /// Class logits `[voxel][class]` of one cell, for tests and uncertainty.
+    /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
     pub fn logits(&self, latent: &[f32], cell: usize) -> Result<Vec<f32>, ModelError> {
         let mut cells = [false; CELLS];
         cells[cell] = true;
+        check_length("latent", latent.len(), LATENT)?;
         let Some(window) = Window::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
         let map = self.decoder_map(latent, window)?;
-        let features = self.decoder_head.vector(map.cell(window, cell)); // [feature][voxel]
-        let mut out = vec![0.0; VOXELS * CLASSES];
-        for (voxel, logits) in out.chunks_exact_mut(CLASSES).enumerate() {
-            for (class, logit) in logits.iter_mut().enumerate() {
-                let row = &self.class_table[class * FEATURES..][..FEATURES];
-                let dot: f32 = row
-                    .iter()
-                    .enumerate()
-                    .map(|(f, t)| t * features[f * VOXELS + voxel])
-                    .sum();
-                *logit = dot + self.class_bias[class];
-            }
-        }
-        Ok(out)
+        let logits = self.cell_logits(&map, window, cell);
+        let columns = logits.chunks_exact(CLASSES * HEIGHT);
+        Ok(columns
+            .flat_map(|column| (0..HEIGHT * CLASSES).map(|i| column[i % CLASSES * HEIGHT + i / CLASSES]))
+            .collect())
     }
 
-    /// The decoder's blocks over a window, up to its last norm.
+    /// The decoder's blocks over a window, up to its last norm: one place per column of voxels.
     fn decoder_map(&self, latent: &[f32], window: Window) -> Result<Map, ModelError> {
-        check_length("latent", latent.len(), LATENT)?;
         check_finite("latent", latent)?;
         let mut scaled = Vec::with_capacity(window.rows * window.columns * CHANNELS);
         for cell in window.cells() {
@@ -255,76 +277,71 @@ impl OccVae {
             );
         }
         let mut map = Map {
-            data: self.decoder_stem.parallel(&scaled, SIDE),
+            data: self.decoder_stem.parallel(&scaled, PIECE),
             rows: window.rows,
             columns: window.columns,
-            width: self.config.decoder_width,
+            width: self.config.widths[2],
         };
-        for block in &self.decoder {
-            block.apply(&mut map);
+        self.decoder[0].apply(&mut map);
+        for (up, level) in self.up.iter().zip(&self.decoder[1..]) {
+            map = through(up, &map).unfold();
+            level.apply(&mut map);
         }
         let mut normed = vec![0.0; map.data.len()];
-        self.decoder_norm.rows(&map.data, &mut normed);
+        normed
+            .par_chunks_mut(PIECE * map.width)
+            .zip(map.data.par_chunks(PIECE * map.width))
+            .for_each(|(out, x)| self.decoder_norm.rows(x, out));
         check_finite("decoder features", &normed)?;
         map.data = normed;
         Ok(map)
     }
 
-    /// Labels of a few cells: one product with the decoder's head for all of them.
-    fn label_cells(&self, map: &Map, window: Window, cells: &[usize]) -> Vec<[u8; VOXELS]> {
-        let rows: Vec<f32> = cells.iter().flat_map(|c| map.cell(window, *c)).copied().collect();
-        let mut features = vec![0.0; cells.len() * VOXELS * FEATURES];
-        self.decoder_head.rows(&rows, &mut features);
-        // Weights and normed features are finite and small, so no logit can be NaN.
-        let label = |features: &[f32]| {
-            let mut labels = [0; VOXELS];
-            kernels::likeliest(features, &self.class_table, &self.class_bias, &mut labels);
-            labels
-        };
-        features.chunks_exact(VOXELS * FEATURES).map(label).collect()
-    }
-}
-
-/// A rectangle of cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Window {
-    x: usize,
-    y: usize,
-    rows: usize,
-    columns: usize,
-}
-
-impl Window {
-    /// The wanted cells and `reach` more on every side, cut to the map; `None` if none is wanted.
-    fn around(cells: &[bool], reach: usize) -> Option<Self> {
-        let wanted = || (0..CELLS).filter(|c| cells[*c]);
-        let (x0, x1) = (
-            wanted().map(|c| c / SIDE).min()?,
-            wanted().map(|c| c / SIDE).max()?,
+    /// Logits `[dx][dy][class][z]` of a cell of the window.
+    fn cell_logits(&self, map: &Map, window: Window, cell: usize) -> Vec<f32> {
+        let (x, y) = (
+            (cell / SIDE - window.x) * COLUMNS,
+            (cell % SIDE - window.y) * COLUMNS,
         );
-        let (y0, y1) = (
-            wanted().map(|c| c % SIDE).min()?,
-            wanted().map(|c| c % SIDE).max()?,
-        );
-        let (x, y) = (x0.saturating_sub(reach), y0.saturating_sub(reach));
-        let (x_end, y_end) = ((x1 + reach + 1).min(SIDE), (y1 + reach + 1).min(SIDE));
-        Some(Self {
-            x,
-            y,
-            rows: x_end - x,
-            columns: y_end - y,
-        })
-    }
-
-    fn cells(self) -> impl Iterator<Item = usize> {
-        (self.x..self.x + self.rows)
-            .flat_map(move |x| (self.y..self.y + self.columns).map(move |y| x * SIDE + y))
+        let mut columns = Vec::with_capacity(COLUMNS * COLUMNS * map.width);
+        for dx in 0..COLUMNS {
+            let from = ((x + dx) * map.columns + y) * map.width;
+            columns.extend_from_slice(&map.data[from..from + COLUMNS * map.width]);
+        }
+        let mut logits = vec![0.0; COLUMNS * COLUMNS * CLASSES * HEIGHT];
+        self.decoder_head.rows(&columns, &mut logits);
+        logits
     }
 }
 
-impl Map {
-    fn cell(&self, window: Window, cell: usize) -> &[f32] {
-        let (x, y) = (cell / SIDE - window.x, cell % SIDE - window.y);
-        &self.data[(x * self.columns + y) * self.width..][..self.width]
+/// The decoder's head with the class table multiplied in: logit(class, z) = table(class) . feature(z)
+/// + bias(class) is one linear map of a column's channels.
+fn head(w: &mut WeightFile<'_>, width: usize) -> Result<Linear, WeightsError> {
+    let weight = w.take("decoder_head.weight", &[HEIGHT * FEATURES, width, 1, 1])?;
+    let bias = w.take("decoder_head.bias", &[HEIGHT * FEATURES])?;
+    let table = w.take("class_table", &[CLASSES, FEATURES])?;
+    let class_bias = w.take("class_bias", &[CLASSES])?;
+    let mut folded = vec![0.0; CLASSES * HEIGHT * width];
+    let mut folded_bias = vec![0.0; CLASSES * HEIGHT];
+    for (at, row) in folded.chunks_exact_mut(width).enumerate() {
+        let (class, z) = (at / HEIGHT, at % HEIGHT);
+        folded_bias[at] = class_bias[class];
+        for f in 0..FEATURES {
+            let (t, feature) = (table[class * FEATURES + f], z * FEATURES + f);
+            folded_bias[at] += t * bias[feature];
+            let from = weight[feature * width..][..width].iter();
+            row.iter_mut().zip(from).for_each(|(r, v)| *r += t * v);
+        }
+    }
+    Ok(Linear::from_parts(&folded, folded_bias, width))
+}
+
+/// A linear layer at every place of a map.
+fn through(linear: &Linear, map: &Map) -> Map {
+    let data = linear.parallel(&map.data, PIECE);
+    Map {
+        width: data.len() / (map.rows * map.columns),
+        data,
+        ..*map
     }
 }

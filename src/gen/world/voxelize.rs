@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::World;
 use super::draw::Draw;
-use crate::scene::{Class, GridSpec, LidarPattern, Polyline, PolylineKind, VoxelGrid};
+use crate::scene::raster::bev_channels;
+use crate::scene::{BevLayer, Class, GridSpec, LidarPattern, Polyline, PolylineKind, VoxelGrid};
 
 /// Where the ground sits vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -26,9 +27,11 @@ const SAMPLES: usize = 3;
 
 /// Every voxel that a solid fills, and the ground under them: what a sensor that sees everything
 /// would label. A voxel belongs to a solid if a third of its 27 samples are inside, or any for
-/// solids thinner than a voxel.
+/// solids thinner than a voxel. An object's voxels stay in the columns of its box's footprint, as the
+/// layout's do: what sticks out by less than half a column belongs to no column.
 pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
     let mut best = vec![(0u8, Class::FREE); GridSpec::VOXELS]; // votes, class
+    let bev = bev_channels(&world.layout, world.boxes.values());
     for s in world.solids() {
         let (lo, hi) = (s.center - s.reach(), s.center + s.reach());
         let (lo, hi) = (GridSpec::to_voxel_units(lo), GridSpec::to_voxel_units(hi));
@@ -38,8 +41,12 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
         };
         let thin = s.reach().min_element() < GridSpec::VOXEL_M * 0.75;
         let needed = if thin { 1 } else { 9 };
+        let layer = BevLayer::of_object(s.class).map_or(0, BevLayer::bit);
         for x in span(0) {
             for y in span(1) {
+                if layer != 0 && bev[x * GridSpec::NY + y] & layer == 0 {
+                    continue;
+                }
                 for z in span(2) {
                     let mut votes = 0;
                     for i in 0..SAMPLES.pow(3) {
