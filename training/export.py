@@ -49,13 +49,14 @@ def vae_golden(vae, frames):
     grid[100:160, 70:130] = frames.read(0, "labels")[100:160, 70:130]
     where = np.flatnonzero(grid.reshape(-1) != 17)
     latent = vae.encode(as_tensor([grid]))
-    features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2))
+    features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2))[0]
+    cells = torch.stack([features[c // 50 * 4 :, c % 50 * 4 :][:4, :4].reshape(256, -1) for c in GOLDEN_CELLS])
     return {
         "voxels": torch.from_numpy(where.astype(np.int32)),
         "labels": torch.from_numpy(grid.reshape(-1)[where]),
         "latent": latent.reshape(-1),
         "cells": torch.tensor(GOLDEN_CELLS, dtype=torch.int32),
-        "logits": vae.logits(features[list(GOLDEN_CELLS)]),
+        "logits": vae.logits(cells),
     }
 
 

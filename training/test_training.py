@@ -7,7 +7,7 @@ import torch
 
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
-from models.occ_vae import OccVae, VaeConfig, from_cells, to_cells
+from models.occ_vae import OccVae, VaeConfig, fold, unfold
 from schedule import alpha_bar, ddim_sample
 
 
@@ -53,8 +53,9 @@ def row_32_losses():
 
 
 def shapes_and_schedule():
-    labels = torch.randint(18, (2, 200, 200, 16), dtype=torch.uint8)
-    assert torch.equal(from_cells(to_cells(labels)), labels)
+    x = torch.randn(2, 3, 20, 12)
+    assert torch.equal(unfold(fold(x)), x)
+    assert torch.equal(fold(x)[0, :, 4, 5], x[0, :, 8:10, 10:12].permute(1, 2, 0).reshape(-1))
     x = torch.randn(2, 50, 50, 8)
     assert torch.equal(unpatchify(patchify(x), 8), x)
     abar = alpha_bar()
@@ -73,11 +74,11 @@ def shapes_and_schedule():
 def networks_learn():
     """Both networks run, every parameter gets a gradient, nothing outside an encoder's reach matters."""
     torch.manual_seed(0)
-    vae = OccVae(VaeConfig(encoder_width=32, decoder_width=32))
+    vae = OccVae(VaeConfig(widths=(8, 16, 32)))
     labels = torch.full((1, 200, 200, 16), 17, dtype=torch.uint8)
     labels[:, :, :, 0] = 11
     labels[0, 100:110, 100:104, :4] = 4
-    vae_loss(vae, to_cells(labels))[0].backward()
+    vae_loss(vae, labels)[0].backward()
     assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in vae.parameters())
     moved = labels.clone()
     moved[0, 104, 104, 3] = 7
@@ -86,7 +87,7 @@ def networks_learn():
     far[24:29, 24:29] = 0  # two cells around cell (26, 26)
     assert far.max() < 1e-5
     empty = torch.full_like(labels, 17)
-    assert torch.isfinite(vae_loss(vae, to_cells(empty))[0])
+    assert torch.isfinite(vae_loss(vae, empty)[0])
 
     dit = OccDit(DitConfig(width=64, depth=2))
     torch.nn.init.normal_(dit.final.weight)

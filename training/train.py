@@ -18,6 +18,7 @@ from models.occ_vae import OccVae, VaeConfig
 from schedule import STEPS, alpha_bar, ddim_sample
 
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
+FIRST_OBJECT_LAYER, OBJECT_WEIGHT = 8, 2.0  # the ten object layers follow eight map layers
 
 
 def load_vae(path, device):
@@ -114,8 +115,8 @@ def train_vae(args, device, dtype):
 
 
 def dit_loss(model, abar, target, condition_parts, mask, generator):
-    """v-prediction, weight min(SNR + 1, 5) in x0 space (2303.09556, finite at SNR 0); generated cells count fully, kept
-    cells a tenth: at inference they are replayed, not predicted."""
+    """v-prediction, weight min(SNR + 1, 5) in x0 space (2303.09556, finite at SNR 0); generated cells count fully, those
+    with objects more (they are few, and what a user looks at), kept cells a tenth: at inference they are replayed."""
     b = len(target)
     # Stratified over the batch: less noise in the loss than independent draws.
     u = (torch.arange(b) + torch.rand(b, generator=generator)) / b
@@ -125,7 +126,9 @@ def dit_loss(model, abar, target, condition_parts, mask, generator):
     noise = torch.randn(target.shape, generator=generator).to(target.device)
     v = model(alpha * target + sigma * noise, t.float(), model.condition(mask, *condition_parts))
     error = ((v - (alpha * noise - sigma * target)) ** 2).mean(-1)
-    cell = mask + 0.1 * (1 - mask)
+    layers = condition_parts[2].view(b, 50, 50, 16, 18)
+    objects = layers[..., FIRST_OBJECT_LAYER:].amax((3, 4))
+    cell = (mask + 0.1 * (1 - mask)) * (1 + OBJECT_WEIGHT * objects)
     error = (error * cell).sum((1, 2)) / cell.sum((1, 2))
     snr1 = 1 / (1 - a)  # SNR + 1
     return (error * (snr1.clamp(max=5.0) / snr1).float()).mean(), error.detach().mean().item()

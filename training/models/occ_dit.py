@@ -3,7 +3,9 @@
 Inputs per 50x50 cell: noisy latent 8 | edit mask 1 (1 = generate), clean context latent 8 (0 where the mask is 1),
 draft latent 8 (the VAE's encoding of the layout extruded naively), 18 layout layers of the cell's 4x4 columns (288).
 A token is 2x2 cells: 625 tokens. Predicts v = alpha eps - sigma x0 (Salimans and Ho, 2202.00512).
-Blocks: adaLN-Zero (Peebles and Xie, 2212.09748).
+Blocks: adaLN-Zero (Peebles and Xie, 2212.09748). The draft is close to the answer nearly everywhere, and the best linear
+guess of v from the noisy latent and the draft depends on the timestep alone: a gate per channel gives that guess, so the
+blocks only learn what is different.
 """
 import math
 from dataclasses import asdict, dataclass
@@ -108,25 +110,30 @@ class OccDit(nn.Module):
         self.blocks = nn.ModuleList(Block(c.width, c.heads) for _ in range(c.depth))
         self.final_ada = nn.Linear(c.width, 2 * c.width)
         self.final = nn.Linear(c.width, patch * c.latent)
+        self.skip = nn.Linear(c.width, 2 * c.latent)  # gates of the noisy latent and of the draft
         self.register_buffer("positions", positions(c.width), persistent=False)
         nn.init.normal_(self.embed_x.weight, std=0.1)
         # Sparse 0/1 inputs: many channels, few of them set at once.
         nn.init.normal_(self.embed_condition.weight, std=0.04)
         for layer in (self.time1, self.time2):
             nn.init.normal_(layer.weight, std=0.02)
-        for layer in (self.final_ada, self.final):
+        for layer in (self.final_ada, self.final, self.skip):
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
 
     def condition(self, mask, context, draft, layout):
-        """mask [B,50,50], context, draft [B,50,50,8], layout [B,50,50,288] -> [B,625,width]."""
-        return self.embed_condition(patchify(torch.cat([mask[..., None], context, draft, layout], -1))) + self.positions
+        """mask [B,50,50], context, draft [B,50,50,8], layout [B,50,50,288] -> tokens [B,625,width] and the draft."""
+        tokens = self.embed_condition(patchify(torch.cat([mask[..., None], context, draft, layout], -1)))
+        return tokens + self.positions, draft
 
     def forward(self, x, t, condition):
         """x [B,50,50,8], t [B] in 0..=999, condition from above -> v [B,50,50,8]."""
+        tokens, draft = condition
         c = F.silu(self.time2(F.silu(self.time1(timestep_embedding(t, self.config.frequencies)))))
-        x = self.embed_x(patchify(x)) + condition
+        h = self.embed_x(patchify(x)) + tokens
         for block in self.blocks:
-            x = block(x, c)
+            h = block(h, c)
         shift, scale = self.final_ada(c).chunk(2, 1)
-        return unpatchify(self.final(modulate(x, shift, scale)).float(), self.config.latent)
+        v = unpatchify(self.final(modulate(h, shift, scale)).float(), self.config.latent)
+        of_x, of_draft = self.skip(c).float()[:, None, None].chunk(2, -1)
+        return v + of_x * x + of_draft * draft

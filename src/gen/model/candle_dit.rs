@@ -87,8 +87,10 @@ impl CandleDit {
         self.linear("embed_condition", &tokens)? + self.positions()?
     }
 
-    /// v [2500 * 8] for the noisy latent `x` at training step `t`.
-    pub fn forward(&self, x: &[f32], t: f64, condition: &Tensor) -> Result<Vec<f32>> {
+    /// v [2500 * 8] for the noisy latent `state` at training step `t`; `condition` is what
+    /// [`condition`](Self::condition) makes of `c`.
+    pub fn forward(&self, state: &[f32], t: f64, c: &DitCondition, condition: &Tensor) -> Result<Vec<f32>> {
+        let draft = &c.draft_latent;
         let frequencies = self.tensors["time1.weight"].dim(1)? / 2;
         let angle = |i: usize| t * (-(10000f64.ln()) * i as f64 / frequencies as f64).exp();
         let mut time: Vec<f32> = (0..frequencies).map(|i| angle(i).cos() as f32).collect();
@@ -97,7 +99,7 @@ impl CandleDit {
         let c = self
             .linear("time2", &self.linear("time1", &time)?.silu()?)?
             .silu()?; // [1, W]
-        let tokens = patches(|i, j| x[(i * 50 + j) * CHANNELS..][..CHANNELS].to_vec());
+        let tokens = patches(|i, j| state[(i * 50 + j) * CHANNELS..][..CHANNELS].to_vec());
         let tokens = Tensor::from_vec(tokens, (TOKENS, 4 * CHANNELS), &Device::Cpu)?;
         let mut x = (self.linear("embed_x", &tokens)? + condition)?; // [625, W]
         for i in 0..self.depth {
@@ -127,11 +129,15 @@ impl CandleDit {
             .linear("final", &Self::modulate(&x, &ada[0], &ada[1])?)?
             .flatten_all()?
             .to_vec1()?;
+        let gates: Vec<f32> = self.linear("skip", &c)?.flatten_all()?.to_vec1()?;
         let mut latent = vec![0.0; 2500 * CHANNELS];
         for (k, cell) in out.chunks_exact(CHANNELS).enumerate() {
             let (token, part) = (k / 4, k % 4);
             let (i, j) = (token / 25 * 2 + part / 2, token % 25 * 2 + part % 2);
-            latent[(i * 50 + j) * CHANNELS..][..CHANNELS].copy_from_slice(cell);
+            for (channel, value) in cell.iter().enumerate() {
+                let at = (i * 50 + j) * CHANNELS + channel;
+                latent[at] = value + gates[channel] * state[at] + gates[CHANNELS + channel] * draft[at];
+            }
         }
         Ok(latent)
     }

@@ -79,9 +79,14 @@ pub struct DitCondition {
     pub context: Vec<f32>,
 }
 
-/// The part of the token embedding that depends on neither state nor time, `[token][width]`.
+/// What of a condition depends on neither state nor time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Prepared(Vec<f32>);
+pub struct Prepared {
+    /// `[token][width]`.
+    tokens: Vec<f32>,
+    /// Draft latent, 50x50x8.
+    draft: Vec<f32>,
+}
 
 struct Block {
     ada: Linear,
@@ -101,6 +106,8 @@ pub struct OccDit {
     blocks: Vec<Block>,
     final_ada: Linear,
     last: Linear,
+    /// Gates of the noisy latent and of the draft per channel: the linear part of the answer.
+    skip: Linear,
     positions: Vec<f32>, // [token][width]
 }
 
@@ -134,6 +141,7 @@ impl OccDit {
                 .collect::<Result<_, WeightsError>>()?,
             final_ada: Linear::new(w, "final_ada", width, 2 * width, &[])?,
             last: Linear::new(w, "final", width, PATCH_CELLS * CHANNELS, &[])?,
+            skip: Linear::new(w, "skip", width, 2 * CHANNELS, &[])?,
             positions: positions(TOKENS_PER_SIDE, TOKENS_PER_SIDE, width),
             config,
         };
@@ -192,7 +200,10 @@ impl OccDit {
             .iter_mut()
             .zip(&self.positions)
             .for_each(|(e, p)| *e += p);
-        Ok(Prepared(embedded))
+        Ok(Prepared {
+            tokens: embedded,
+            draft: condition.draft_latent.clone(),
+        })
     }
 
     /// v for the state `x` (50x50x8) at training step `t` (0 to 999, fractions allowed).
@@ -203,7 +214,7 @@ impl OccDit {
             return Err(ModelError::Timestep(t));
         }
         let width = self.config.width;
-        check_length("condition", condition.0.len(), TOKENS * width)?;
+        check_length("condition", condition.tokens.len(), TOKENS * width)?;
         let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
         time.iter_mut().for_each(|v| *v = kernels::silu(*v));
         let mut time = self.time2.vector(&time);
@@ -214,7 +225,7 @@ impl OccDit {
             patches.extend_from_slice(&x[cell * CHANNELS..][..CHANNELS]);
         }
         let mut tokens = self.embed_x.parallel(&patches, PIECE);
-        tokens.iter_mut().zip(&condition.0).for_each(|(t, c)| *t += c);
+        tokens.iter_mut().zip(&condition.tokens).for_each(|(t, c)| *t += c);
         let modulations: Vec<Vec<f32>> = self.blocks.par_iter().map(|b| b.ada.vector(&time)).collect();
         for (block, ada) in self.blocks.iter().zip(&modulations) {
             block.apply(&mut tokens, ada, self.config.heads);
@@ -226,8 +237,13 @@ impl OccDit {
         kernels::norm_rows(&tokens, NORM_EPS, &scale, shift, &mut normed);
         let patches = self.last.parallel(&normed, PIECE);
         let mut out = vec![0.0; LATENT];
+        let gates = self.skip.vector(&time);
+        let (of_x, of_draft) = gates.split_at(CHANNELS);
         for (cell, values) in (0..TOKENS).flat_map(patch).zip(patches.chunks_exact(CHANNELS)) {
-            out[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
+            for (c, value) in values.iter().enumerate() {
+                let at = cell * CHANNELS + c;
+                out[at] = value + of_x[c] * x[at] + of_draft[c] * condition.draft[at];
+            }
         }
         check_finite("predicted v", &out)?;
         Ok(out)
