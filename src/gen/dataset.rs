@@ -51,7 +51,7 @@ pub struct DatasetReport {
 }
 
 /// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
-/// [N,200,200,16] and i32 `bev` [N,200,200]. Shards that exist are kept, so an interrupted run resumes.
+/// `[N,200,200,16]` and i32 `bev` `[N,200,200]`. Shards that exist are kept, so an interrupted run resumes.
 /// `progress` gets the number of finished frames and may end the run by returning false.
 pub fn write_occupancy(
     dir: &Path,

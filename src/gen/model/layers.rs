@@ -84,7 +84,7 @@ pub fn matmul(
     }
 }
 
-/// y = x W + b; the weight is kept as [inputs][outputs], which the product reads fastest.
+/// y = x W + b; the weight is kept as `[inputs][outputs]`, which the product reads fastest.
 pub struct Linear {
     weight: Vec<f32>,
     bias: Vec<f32>,
@@ -122,7 +122,7 @@ impl Linear {
         Ok(Self::from_parts(&weight, vec![0.0; outputs], inputs))
     }
 
-    /// From a weight [outputs][inputs].
+    /// From a weight `[outputs][inputs]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, inputs: usize) -> Self {
         Self {
             weight: transposed(weight, bias.len(), inputs),
@@ -252,7 +252,7 @@ impl ResBlock {
         })
     }
 
-    /// [out][in][kernel][kernel] to [out][kernel * kernel * in].
+    /// `[out][in][kernel][kernel]` to `[out][kernel * kernel * in]`.
     fn convolution(weight: &[f32], bias: Vec<f32>, width: usize, kernel: usize) -> Linear {
         let taps = kernel * kernel;
         let mut moved = vec![0.0; weight.len()];

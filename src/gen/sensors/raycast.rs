@@ -1,7 +1,7 @@
 //! Exact ray cast through the voxels, over one 16-bit mask per column.
 //!
-//! Two parts work together: [`scan`] finds, in whole steps along the ray's main axis, the next slab
-//! of columns that may hold a hit, and [`walk`] goes through that slab voxel by voxel. The scan only
+//! Two parts work together: `scan` finds, in whole steps along the ray's main axis, the next slab
+//! of columns that may hold a hit, and `walk` goes through that slab voxel by voxel. The scan only
 //! ever leaves out slabs that are provably empty, so the result is the walk's.
 
 mod scan;
