@@ -139,17 +139,16 @@ impl SceneloomApp {
         ctx: &egui::Context,
     ) -> std::io::Result<Self> {
         theme::apply(ctx);
-        let wake = {
-            let ctx = ctx.clone();
-            move || ctx.request_repaint()
-        };
+        // On a software rasteriser a frame costs the time of a step of generation: fewer of them then.
+        let view3d = View3d::new(render_state);
+        let wake = waker(ctx, if view3d.is_software() { 0.15 } else { 0.015 });
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         Ok(Self {
             document: Document::new(config.scene),
             state: UiState::default(),
             canvas: Canvas::default(),
-            view3d: View3d::new(render_state),
+            view3d,
             live: Live::new(config.params, config.full_params, config.warm_up),
             receipt: None,
             toasts: Toasts::default(),
@@ -186,7 +185,7 @@ impl SceneloomApp {
 
     /// True if LiDAR and cameras show the state on screen.
     pub fn sensors_are_current(&self) -> bool {
-        let rev = self.shown_scene().rev;
+        let rev = self.document.scene().rev;
         !self.sensing.cameras_stale(rev) && !self.sensing.lidar_stale(rev)
     }
 
@@ -234,8 +233,9 @@ impl SceneloomApp {
             Advice::Cancel => self.worker.cancel(),
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
-        let dragging = self.document.is_dragging();
-        self.sensing.ask(&self.shown_scene(), dragging);
+        // Small pictures while they will not last; the large ones cost as much as the generation itself.
+        let for_a_moment = self.document.is_dragging() || self.live.running.is_some();
+        self.sensing.ask(self.document.scene(), for_a_moment);
     }
 
     pub(super) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
@@ -379,8 +379,10 @@ impl SceneloomApp {
         self.bars(ui, &scene, &mut commands);
         self.side_panels(ui, &mut commands);
         self.views(ui, &scene, &mut commands);
+        // Asked before: the key that closes a dialog is no shortcut.
+        let dialog = self.unsaved.is_some() || self.dialogs.is_open() || self.state.keys_open;
         self.overlays(ui, &scene, &mut commands);
-        if self.unsaved.is_none() && !self.dialogs.is_open() {
+        if !dialog {
             let flying =
                 ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
             keys::commands(ui.ctx(), &mut self.state, flying, &mut commands);
@@ -436,7 +438,7 @@ impl SceneloomApp {
             .frame(theme::bar_frame())
             .show_separator_line(false)
             .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
-        let cameras = cameras_input(scene, &self.sensing);
+        let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
         let (strip, state) = (&mut self.strip, &mut self.state);
         egui::Panel::bottom("cameras")
             .resizable(true)
@@ -516,12 +518,12 @@ impl SceneloomApp {
 
     fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
-        let cameras = cameras_input(scene, &self.sensing);
+        let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
         self.strip
             .enlarged(ui, self.center, &cameras, &mut self.state, commands);
         self.toasts.log_window(ui, self.center, &mut self.state.log_open);
         if self.state.keys_open {
-            dialogs::keys_window(ui, &mut self.state.keys_open);
+            dialogs::keys_sheet(ui, &mut self.state.keys_open);
         }
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
@@ -551,11 +553,29 @@ impl SceneloomApp {
     }
 }
 
-fn cameras_input<'a>(scene: &'a Scene, sensing: &'a Sensing) -> CamerasInput<'a> {
+/// Asks for a frame when called, at once but at most one per `every_s`.
+fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    let last: Arc<std::sync::Mutex<Option<Instant>>> = Arc::default();
+    move || {
+        let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let now = Instant::now();
+        let every = std::time::Duration::from_secs_f64(every_s);
+        match last.map(|at| now.saturating_duration_since(at)) {
+            Some(since) if since < every => ctx.request_repaint_after(every - since),
+            _ => {
+                *last = Some(now);
+                ctx.request_repaint();
+            }
+        }
+    }
+}
+
+fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> CamerasInput<'a> {
     CamerasInput {
         rig: &scene.rig,
         maps: sensing.cameras(),
-        stale: sensing.cameras_stale(scene.rev),
+        stale: sensing.cameras_stale(rev),
         lidar_points: sensing.lidar().map(|l| l.points.len()),
     }
 }

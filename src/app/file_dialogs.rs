@@ -163,7 +163,7 @@ impl FileDialogs {
     /// Draws the path field, if it is open; the path once the user is done.
     pub fn show(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
         let field = self.field.as_mut()?;
-        let modal = egui::Modal::new(egui::Id::unique("path field"));
+        let modal = egui::Modal::new(egui::Id::unique("path field")).frame(theme::dialog_frame(ui.style()));
         let answer = modal.show(ui.ctx(), |ui| field_ui(ui, field));
         if answer.inner == Choice::Cancel || answer.should_close() {
             self.field = None;

@@ -114,6 +114,11 @@ fn visuals(v: &mut egui::Visuals) {
     widget(&mut w.open, FIELD_HOVER, TEXT_STRONG);
 }
 
+/// Frame of a dialog.
+pub fn dialog_frame(style: &egui::Style) -> egui::Frame {
+    egui::Frame::window(style).inner_margin(Margin::same(18))
+}
+
 /// Colour of an sRGB triple.
 pub fn rgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)

@@ -151,7 +151,8 @@ impl View3d {
         response
     }
 
-    fn is_software(&self) -> bool {
+    /// True if pictures are made by the processor.
+    pub fn is_software(&self) -> bool {
         self.gpu.as_ref().is_some_and(|g| g.software)
     }
 

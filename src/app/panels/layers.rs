@@ -101,7 +101,7 @@ fn classes(ui: &mut Ui, shown: &[Class], chosen: &mut Class, verb: &str) {
             for class in pair {
                 let label = class.label();
                 let short = match class {
-                    Class::ConstructionVehicle => "Construction".to_owned(),
+                    Class::ConstructionVehicle => "Digger, crane".to_owned(),
                     Class::DriveableSurface => "Driveable".to_owned(),
                     _ => theme::sentence(&label),
                 };

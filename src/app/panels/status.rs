@@ -171,7 +171,7 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         commands.push(Command::CancelGeneration);
     }
     ui.ctx()
-        .request_repaint_after(std::time::Duration::from_millis(100));
+        .request_repaint_after(std::time::Duration::from_millis(250));
 }
 
 fn stage_text(stage: Stage) -> &'static str {
