@@ -2,4 +2,5 @@
 
 pub mod agreement;
 pub mod iou;
+pub mod occupancy;
 pub mod stats;

@@ -1,0 +1,77 @@
+//! `eval world`: simulated labels beside what is known of real ones.
+
+use rayon::prelude::*;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::{Bar, Eval, TEST_SEED};
+use crate::app::cli::progress::Progress;
+use crate::generation::dataset::occupancy_frame;
+use crate::generation::metrics::occupancy::OccupancyStatistics;
+use crate::generation::world::World;
+use crate::generation::world::draw::hash;
+use crate::scene::Class;
+
+/// Figures of real labels.
+const TARGETS: &str = include_str!("../../../../assets/statistics/occ3d.json");
+
+#[derive(Deserialize)]
+struct Targets {
+    targets: Vec<Target>,
+}
+
+/// One figure: what was measured, and between which values the mean of a data set is plausible.
+#[derive(Deserialize)]
+struct Target {
+    metric: String,
+    value: f64,
+    accept: [f64; 2],
+}
+
+impl Eval {
+    /// Statistics of simulated labels; the bar is the share of figures inside their accepted range.
+    pub(super) fn world(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
+        let targets: Targets = serde_json::from_str(TARGETS)?;
+        let mut statistics = OccupancyStatistics::default();
+        let frames: Vec<usize> = (0..self.frames).collect();
+        for some in frames.chunks(8) {
+            progress.at("world", some[0], self.frames);
+            let made: Vec<_> = some
+                .par_iter()
+                .map(|i| occupancy_frame(TEST_SEED, *i as u64).labels)
+                .collect();
+            for (i, labels) in some.iter().zip(&made) {
+                statistics.add(labels);
+                let world = World::random(hash(hash(TEST_SEED) ^ *i as u64));
+                for (class, name) in [(Class::Car, "cars"), (Class::Pedestrian, "pedestrians")] {
+                    let count = world.boxes.values().filter(|b| b.class == class).count();
+                    statistics.ratio(&format!("layout.{name}_per_frame_pm40"), count, 1);
+                }
+            }
+        }
+        let means = statistics.means();
+        let mut inside = 0;
+        let rows: Vec<Value> = targets
+            .targets
+            .iter()
+            .map(|target| {
+                let found = means.get(target.metric.as_str()).copied();
+                let [low, high] = target.accept;
+                let accepted = found.is_some_and(|f| (low..=high).contains(&f));
+                inside += usize::from(accepted);
+                json!({
+                    "metric": target.metric,
+                    "found": found.map(|f| (f * 1e5).round() / 1e5),
+                    "real": target.value,
+                    "accept": target.accept,
+                    "inside": accepted,
+                    // In half widths of the accepted range: 0 is equal, 1 about at its edge.
+                    "distance": found.map(|f| ((f - target.value).abs() / (high - low) * 2e3).round() / 1e3),
+                })
+            })
+            .collect();
+        let share = inside as f64 / rows.len() as f64;
+        let report = json!({ "statistics": rows, "inside": inside, "of": targets.targets.len() });
+        Ok((report, vec![("figures inside their accepted range", share, 1.0)]))
+    }
+}
