@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::schedule::ScheduleError;
-use super::solver::{Guidance, SolverError};
+use super::solver::{Guidance, SolverError, SolverKind};
 use crate::scene::{Scene, SceneRev, VoxelGrid};
 
 /// What part of the scene is regenerated.
@@ -40,8 +40,10 @@ pub enum Quality {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GenParams {
-    /// DDIM steps, 1 to 1000.
+    /// Sampling steps, 1 to 1000.
     pub steps: u32,
+    /// How a step is made; with O-BELM the inversion is exact.
+    pub solver: SolverKind,
     /// Classifier-free guidance weight; 1 = none, half the network calls, where inversion is good.
     pub guidance: f64,
     /// See [`Guidance::rescale`].
@@ -67,6 +69,7 @@ impl Default for GenParams {
     fn default() -> Self {
         Self {
             steps: 10,
+            solver: SolverKind::Ddim,
             guidance: 1.0,
             guidance_rescale: 0.0,
             seed: 0,
@@ -82,7 +85,7 @@ impl Default for GenParams {
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(&self) -> ([u32; 3], [u64; 4], RegionMode, Quality, bool) {
+    fn bits(&self) -> ([u32; 3], [u64; 4], SolverKind, RegionMode, Quality, bool) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (
@@ -93,6 +96,7 @@ impl GenParams {
                 bits(self.guidance_rescale),
                 bits(self.strength),
             ],
+            self.solver,
             self.region,
             self.quality,
             self.keep_objects,

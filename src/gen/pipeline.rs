@@ -15,8 +15,7 @@ use super::model::{DitCondition, OccModels, Prepared};
 use super::region::{CELLS, Region};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
-use super::schedule::{Schedule, Spacing};
-use super::solver::{Branch, Denoiser, Guidance, Prediction, Sampler};
+use super::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use crate::scene::{BevLayout, Frame, SceneBox, VoxelGrid, draft, raster};
 
 /// Numbers per latent cell.
@@ -32,11 +31,14 @@ struct SourceKey {
     draft: u64,
     steps: u32,
     iterations: u32,
+    exact: bool,
 }
 
 #[derive(Clone)]
 struct Source {
     key: SourceKey,
+    /// What edits of it are to be sampled with: O-BELM continues only what it inverted itself.
+    solver: SolverKind,
     trajectory: Arc<Trajectory>,
     report: Option<InversionReport>, // none for a trajectory that sampling made
 }
@@ -85,7 +87,6 @@ impl Denoiser for Network<'_> {
 /// that the next edit of a scene needs no inversion.
 pub struct OccPipeline {
     models: Arc<OccModels>,
-    schedule: Schedule,
     sources: VecDeque<Source>,
 }
 
@@ -94,7 +95,6 @@ impl OccPipeline {
     pub fn new(models: Arc<OccModels>) -> Self {
         Self {
             models,
-            schedule: Schedule::standard(),
             sources: VecDeque::new(),
         }
     }
@@ -107,15 +107,6 @@ impl OccPipeline {
     /// The networks in use.
     pub fn models(&self) -> &OccModels {
         &self.models
-    }
-
-    fn sampler(&self, params: &GenParams, guidance: Guidance) -> Result<Sampler, GenError> {
-        let levels = self.schedule.levels(params.steps as usize, Spacing::Trailing)?;
-        Ok(Sampler {
-            levels,
-            prediction: Prediction::V,
-            guidance,
-        })
     }
 
     fn network(
@@ -160,6 +151,7 @@ impl OccPipeline {
             draft: label_hash(&condition.draft),
             steps: params.steps,
             iterations: params.inversion_iterations,
+            exact: params.solver == SolverKind::OBelm,
         }
     }
 
@@ -183,24 +175,40 @@ impl OccPipeline {
         if let Some(known) = self.sources.iter().find(|s| s.key == key) {
             return Ok(known.clone());
         }
-        let sampler = self.sampler(params, Guidance::NONE)?;
         ctx.progress(Stage::Encode, 0, 1)?;
         let latent = report
             .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
-            let mut network =
-                self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
-            let refinement = Refinement::damped(params.inversion_iterations as usize);
-            invert(&sampler, &clean, refinement, &mut network, |k, n| {
-                ctx.progress(Stage::Invert, k, n)
-            })
+        let mut network = report.timed(Stage::Encode, |_| {
+            self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)
         })?;
-        report.inversion_calls = inversion.calls;
-        report.network_calls += inversion.calls;
+        let refinement = Refinement::damped(params.inversion_iterations as usize);
+        let mut solver = params.solver;
+        let (trajectory, inversion) = loop {
+            let sampler = Sampler::standard(solver, params.steps as usize, Guidance::NONE)?;
+            let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
+                invert(&sampler, &clean, refinement, &mut network, |k, n| {
+                    ctx.progress(Stage::Invert, k, n)
+                })
+            })?;
+            report.inversion_calls += inversion.calls;
+            if solver != SolverKind::OBelm || inversion.moments_ok() {
+                break (trajectory, inversion);
+            }
+            // Noise that no draw would give: edits from it look wrong. The plain inverse is approximate but
+            // tame, and replay needs no more.
+            report.notes.push(format!(
+                "exact inversion gave unusual noise (std {:.2}, max {:.1}): plain inversion was used",
+                inversion.std, inversion.max_abs
+            ));
+            solver = SolverKind::Ddim;
+        };
+        drop(network);
+        report.network_calls += report.inversion_calls;
         let source = Source {
             key,
+            solver,
             trajectory: Arc::new(trajectory),
             report: Some(inversion),
         };
@@ -221,7 +229,7 @@ impl OccPipeline {
         let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
         let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
         let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
-        let sampler = self.sampler(&job.params, Guidance::NONE)?;
+        let sampler = Sampler::standard(source.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
         })
@@ -231,7 +239,7 @@ impl OccPipeline {
         let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
         let condition = Condition::of(&frame.layout, frame.boxes.values());
-        let sampler = self.sampler(params, params.guidance())?;
+        let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
         let guided = sampler.guidance.calls() > 1;
         let mut network = report.timed(Stage::Encode, |_| {
@@ -260,7 +268,7 @@ impl OccPipeline {
         }
         let source = &frame.source.occupancy;
         let result = self.finish(job, source, &generated, &region, &mut report);
-        self.adopt(&result.occupancy, &condition, params, trajectory);
+        self.adopt(&result.occupancy, &condition, params, sampler.solver, trajectory);
         Ok(result)
     }
 
@@ -287,7 +295,7 @@ impl OccPipeline {
             }
         }
         let condition = Condition::of(&frame.layout, frame.boxes.values());
-        let sampler = self.sampler(params, params.guidance())?;
+        let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
         let guided = sampler.guidance.calls() > 1;
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
@@ -347,7 +355,7 @@ impl OccPipeline {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
-        self.adopt(&result.occupancy, &condition, params, edited.trajectory);
+        self.adopt(&result.occupancy, &condition, params, sampler.solver, edited.trajectory);
         Ok(result)
     }
 
@@ -357,11 +365,13 @@ impl OccPipeline {
         occupancy: &VoxelGrid,
         condition: &Condition,
         params: &GenParams,
+        solver: SolverKind,
         trajectory: Trajectory,
     ) {
         let key = self.key(occupancy, condition, params);
         self.remember(Source {
             key,
+            solver,
             trajectory: Arc::new(trajectory),
             report: None,
         });

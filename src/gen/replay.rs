@@ -84,14 +84,21 @@ pub fn edit_with_replay<D: Denoiser + ?Sized>(
     }
     check_finite(&start, 0, steps)?;
     let mut states = vec![start];
-    for k in 0..steps {
+    let mut stepper = sampler.stepper();
+    // O-BELM's noise is two states: where the region starts from the source's, it starts from both.
+    if sampler.states_of_noise() > 1 && noise.strength == 0.0 {
+        stepper.pass(&states[0]);
+        states.push(source.states[1].clone());
+    }
+    let given = states.len() - 1;
+    for k in given..steps {
         let x = &states[k];
         let level = sampler.levels[k];
-        let step = sampler.step(k).map_err(SolverError::from)?;
         let predicted = sampler.guidance.predict(model, x, level.t)?;
+        let stepped = stepper.advance(k, x, &predicted)?;
         let mut next = source.states[k + 1].clone();
         for i in edited() {
-            next[i] = step.apply(x[i], predicted[i]);
+            next[i] = stepped[i];
         }
         check_finite(&next, k + 1, steps)?;
         on_step(StepView::new(
@@ -109,7 +116,7 @@ pub fn edit_with_replay<D: Denoiser + ?Sized>(
     Ok(Edited {
         latent: trajectory.latent_f32(),
         trajectory,
-        calls: steps * sampler.guidance.calls(),
+        calls: (steps - given) * sampler.guidance.calls(),
     })
 }
 
@@ -120,13 +127,13 @@ mod tests {
     use crate::generation::rng::normal_field;
     use crate::generation::schedule::{Schedule, Spacing};
     use crate::generation::solver::tests::toy;
-    use crate::generation::solver::{Branch, Guidance};
+    use crate::generation::solver::{Branch, Guidance, SolverKind};
 
     const CELLS: usize = 2500;
     const CHANNELS: usize = 8;
 
     fn sampler() -> Sampler {
-        Sampler::standard(5, Guidance::NONE).expect("valid")
+        Sampler::standard(SolverKind::Ddim, 5, Guidance::NONE).expect("valid")
     }
 
     fn source() -> Trajectory {
@@ -284,7 +291,7 @@ mod tests {
             edit(&sampler(), &[true; 7], CHANNELS),
             Err("a state of the trajectory has 20000 values, expected 56".into())
         );
-        let longer = Sampler::standard(6, Guidance::NONE).expect("valid");
+        let longer = Sampler::standard(SolverKind::Ddim, 6, Guidance::NONE).expect("valid");
         assert_eq!(
             edit(&longer, &[true; CELLS], CHANNELS),
             Err("the trajectory has 6 values, expected 7".into())

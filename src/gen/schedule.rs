@@ -74,6 +74,12 @@ pub enum ScheduleError {
         /// Last variance.
         last: f64,
     },
+    /// A solver that divides by the signal met a level without any.
+    #[error("no signal at t = {t}, expected a noisiest level with alpha above 0")]
+    NoSignal {
+        /// The training step.
+        t: f64,
+    },
     /// With alpha = 0 a noise prediction says nothing about the data.
     #[error("noise prediction cannot leave t = {t}, where alpha is 0; expected v prediction")]
     EpsilonWithoutSignal {
@@ -193,6 +199,14 @@ impl Schedule {
             });
         }
         Ok(steps)
+    }
+
+    /// `n` levels spaced evenly over the training steps below `top`, noisiest first, then clean data.
+    pub fn levels_below(&self, top: usize, n: usize) -> Result<Vec<Level>, ScheduleError> {
+        let below = Self {
+            log_alpha_bar: self.log_alpha_bar[..top.min(self.train_steps())].to_vec(),
+        };
+        below.levels(n, Spacing::Trailing)
     }
 
     /// The `n + 1` levels that a sampler visits, from noise to clean data.

@@ -22,6 +22,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::app::open;
 use crate::generation::job::{GenParams, RegionMode};
+use crate::generation::solver::SolverKind;
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -77,6 +78,9 @@ struct Gen {
     /// Steps of the sampler.
     #[arg(long, value_name = "N")]
     steps: Option<u32>,
+    /// Method of the sampler: ddim, dpmpp2m, unipc, or obelm, whose inversion is exact.
+    #[arg(long)]
+    solver: Option<SolverKind>,
     /// Classifier-free guidance weight; 1 means none.
     #[arg(long, value_name = "W")]
     guidance: Option<f64>,
@@ -101,6 +105,7 @@ impl Gen {
     fn params(&self, default: GenParams) -> GenParams {
         GenParams {
             steps: self.steps.unwrap_or(default.steps),
+            solver: self.solver.unwrap_or(default.solver),
             guidance: self.guidance.unwrap_or(default.guidance),
             seed: self.seed,
             region: match self.region.as_deref() {

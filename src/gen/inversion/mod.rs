@@ -3,11 +3,14 @@
 //!
 //! Plain inversion is first order: it reads the network at the state it comes from instead of the one it
 //! goes to. [`Refinement`] iterates towards the true preimage (Pan et al. 2023, arXiv 2309.04907), damped,
-//! because undamped iteration diverges on stiff steps.
+//! because undamped iteration diverges on stiff steps. With O-BELM as solver the inverse is exact: see
+//! [`obelm`].
+
+mod obelm;
 
 use super::schedule::Level;
 use super::solver::{
-    DdimStep, Denoiser, Sampler, SolverError, check_finite, check_length, standard_deviation,
+    DdimStep, Denoiser, Sampler, SolverError, SolverKind, check_finite, check_length, standard_deviation,
 };
 
 /// All states between noise and data of one latent, from noise to data.
@@ -85,6 +88,18 @@ pub struct InversionReport {
 }
 
 impl InversionReport {
+    /// The moments of a noise; no calls yet.
+    fn of_noise(noise: &[f64]) -> Self {
+        Self {
+            calls: 0,
+            residual_rms: Vec::new(),
+            fallback_steps: 0,
+            mean: noise.iter().sum::<f64>() / noise.len().max(1) as f64,
+            std: standard_deviation(noise),
+            max_abs: noise.iter().fold(0.0, |m, v| m.max(v.abs())),
+        }
+    }
+
     /// True if the noise could be a draw: standard deviation in 0.9 to 1.1 and nothing at 6 or beyond.
     /// Where it could not, edits that start from it are likely to look wrong.
     pub fn moments_ok(&self) -> bool {
@@ -92,7 +107,8 @@ impl InversionReport {
     }
 }
 
-/// Inverts `clean` with the sampler's levels. `on_step(done, steps)` runs after each step and may end
+/// Inverts `clean` with the sampler's levels; exactly if its solver is O-BELM, which needs no
+/// refinement, else as DDIM does. `on_step(done, steps)` runs after each step and may end
 /// the run with an error. Errors also if a state is not finite.
 pub fn invert<D: Denoiser + ?Sized>(
     sampler: &Sampler,
@@ -101,6 +117,9 @@ pub fn invert<D: Denoiser + ?Sized>(
     model: &mut D,
     mut on_step: impl FnMut(usize, usize) -> Result<(), D::Error>,
 ) -> Result<(Trajectory, InversionReport), D::Error> {
+    if sampler.solver == SolverKind::OBelm {
+        return obelm::invert(sampler, clean, model, on_step);
+    }
     let steps = sampler.steps();
     check_finite(clean, 0, steps)?;
     let mut predictions = 0;
@@ -129,15 +148,11 @@ pub fn invert<D: Denoiser + ?Sized>(
         states.push(state);
     }
     states.reverse();
-    let noise = &states[0];
-    let n = noise.len().max(1) as f64;
     let report = InversionReport {
         calls: predictions * sampler.guidance.calls(),
         residual_rms,
         fallback_steps,
-        mean: noise.iter().sum::<f64>() / n,
-        std: standard_deviation(noise),
-        max_abs: noise.iter().fold(0.0, |m, v| m.max(v.abs())),
+        ..InversionReport::of_noise(&states[0])
     };
     let levels = sampler.levels.clone();
     Ok((Trajectory { levels, states }, report))
@@ -205,9 +220,8 @@ pub fn round_trip_error<D: Denoiser + ?Sized>(
     mut on_step: impl FnMut(usize, usize) -> Result<(), D::Error>,
 ) -> Result<f64, D::Error> {
     check_length("the trajectory", trajectory.states.len(), sampler.levels.len())?;
-    let states = sampler.sample(trajectory.noise().to_vec(), model, |view| {
-        on_step(view.step, view.steps)
-    })?;
+    let given = trajectory.states[..sampler.states_of_noise()].to_vec();
+    let states = sampler.sample_from(given, model, |view| on_step(view.step, view.steps))?;
     let latent = trajectory.latent();
     let size = rms_difference(latent, &vec![0.0; latent.len()]);
     let error = rms_difference(&states[states.len() - 1], latent);
@@ -224,7 +238,7 @@ mod tests {
 
     fn sampler(n: usize, weight: f64) -> Sampler {
         let guidance = Guidance { weight, rescale: 0.0 };
-        Sampler::standard(n, guidance).expect("valid")
+        Sampler::standard(SolverKind::Ddim, n, guidance).expect("valid")
     }
 
     /// A smooth nonlinear v: data lie near +-0.8 (two-peak Gaussian mixture, exact posterior mean).
