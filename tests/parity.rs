@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use safetensors::{Dtype, SafeTensors};
-use sceneloom::generation::model::{CELLS, CHANNELS, DitCondition, LATENT, ModelError, OccModels};
+use sceneloom::generation::model::{
+    CELLS, CHANNELS, DitCondition, KeysValues, LATENT, ModelError, OccModels, tokens_of,
+};
 use sceneloom::scene::VoxelGrid;
 
 const TOLERANCE: f32 = 1e-4;
@@ -272,6 +274,42 @@ fn row_17_same_bits_on_any_number_of_threads() {
     };
     let one = run(1);
     assert!(one == run(2) && one == run(5));
+}
+
+/// Row 30 of the extremes table: no token, one, some and all of them; all is dense bit for bit, some agree
+/// with dense as long as the others' keys and values are those of the same state.
+#[test]
+fn row_30_dirty_tokens() {
+    let (models, condition, x) = (models(), condition(), uniform(LATENT, 1));
+    let all = models.dit.prepare(&condition).expect("a condition");
+    let dense = models.dit.forward(&x, 321.0, &all).expect("a finite state");
+    let mut kept = KeysValues::default();
+    let again = models.dit.forward_some(&x, 321.0, &all, &mut kept).expect("finite");
+    assert_eq!((again, kept.bytes()), (dense.clone(), 8 * 625 * 2 * 192 * 4));
+    let mut cells = vec![false; CELLS];
+    for (wanted, tokens) in [(0..0, 0), (510..511, 1), (300..460, 52), (0..CELLS, 625)] {
+        cells[wanted.clone()].fill(true);
+        let places = tokens_of(&cells, 0);
+        assert_eq!(places.len(), tokens);
+        let some = models.dit.prepare_some(&condition, places).expect("a condition");
+        let mut seen = kept.clone();
+        let found = models.dit.forward_some(&x, 321.0, &some, &mut seen).expect("finite");
+        let scale = dense.iter().fold(0f32, |m, v| m.max(v.abs()));
+        for cell in wanted {
+            for i in cell * CHANNELS..(cell + 1) * CHANNELS {
+                assert!((found[i] - dense[i]).abs() <= 1e-5 * scale, "{} and {}", found[i], dense[i]);
+            }
+        }
+        assert_eq!(found.iter().filter(|v| **v != 0.0).count(), tokens * 4 * CHANNELS);
+        cells.fill(false);
+    }
+    // Without keys and values only all tokens make sense.
+    let one = models.dit.prepare_some(&condition, vec![7]).expect("a condition");
+    let error = models.dit.forward_some(&x, 321.0, &one, &mut KeysValues::default());
+    assert_eq!(
+        error.expect_err("too few tokens").to_string(),
+        "tokens has 1 values, expected 625"
+    );
 }
 
 #[test]

@@ -58,6 +58,10 @@ pub struct GenParams {
     pub inversion_iterations: u32,
     /// Columns around an edit that are redrawn with it.
     pub halo_columns: u32,
+    /// Computes only the tokens around an edit; the others show what they held in the source.
+    pub local: bool,
+    /// Tokens (3.2 m) around an edited region that are computed with it.
+    pub halo_tokens: u32,
     /// How much work the result is worth.
     pub quality: Quality,
     /// Puts the draft of an added or changed box in where the networks left out most of it, so that
@@ -77,6 +81,8 @@ impl Default for GenParams {
             strength: 0.0,
             inversion_iterations: 0,
             halo_columns: 2,
+            local: true,
+            halo_tokens: 1,
             quality: Quality::Final,
             keep_objects: true,
         }
@@ -85,11 +91,16 @@ impl Default for GenParams {
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(&self) -> ([u32; 3], [u64; 4], SolverKind, RegionMode, Quality, bool) {
+    fn bits(&self) -> ([u32; 4], [u64; 4], SolverKind, RegionMode, Quality, [bool; 2]) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (
-            [self.steps, self.inversion_iterations, self.halo_columns],
+            [
+                self.steps,
+                self.inversion_iterations,
+                self.halo_columns,
+                self.halo_tokens,
+            ],
             [
                 self.seed,
                 bits(self.guidance),
@@ -99,7 +110,7 @@ impl GenParams {
             self.solver,
             self.region,
             self.quality,
-            self.keep_objects,
+            [self.keep_objects, self.local],
         )
     }
 

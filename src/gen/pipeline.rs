@@ -2,7 +2,7 @@
 //! the touched region under the new layout. UniScene (occupancy, C.1 editing) with trajectory replay
 //! outside the region and a composite in label space.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
@@ -11,7 +11,7 @@ use super::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
 use super::keep_objects::keep_objects;
-use super::model::{DitCondition, OccModels, Prepared};
+use super::model::{DitCondition, KeysValues, OccModels, Prepared, tokens_of};
 use super::region::{CELLS, Region};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
@@ -22,6 +22,11 @@ use crate::scene::{BevLayout, Frame, SceneBox, VoxelGrid, draft, raster};
 const CHANNELS: usize = 8;
 /// Trajectories kept; each is about 2 MB at ten steps.
 const KEPT_TRAJECTORIES: usize = 24;
+/// Memory for the keys and values of the latest of them; 7.7 MB a step.
+const KEYS_VALUES_BYTES: usize = 256 << 20;
+
+/// Keys and values by training step (its bits).
+type StepKeysValues = BTreeMap<u64, KeysValues>;
 
 /// What a trajectory was made for. Equal keys, equal trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +45,8 @@ struct Source {
     /// What edits of it are to be sampled with: O-BELM continues only what it inverted itself.
     solver: SolverKind,
     trajectory: Arc<Trajectory>,
+    /// What the network made of the trajectory's states; none where memory did not allow it.
+    keys_values: Option<Arc<StepKeysValues>>,
     report: Option<InversionReport>, // none for a trajectory that sampling made
 }
 
@@ -63,23 +70,25 @@ struct Network<'a> {
     models: &'a OccModels,
     condition: Prepared,
     without: Option<Prepared>,
+    /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
+    /// computed; none if nobody wants them.
+    keys_values: Option<StepKeysValues>,
 }
 
 impl Denoiser for Network<'_> {
     type Error = GenError;
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
-        let condition = match (branch, &self.without) {
-            (Branch::Unconditional, Some(without)) => without,
-            _ => &self.condition,
-        };
         let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
-        let v = self
-            .models
-            .dit
-            .forward(&x, t as f32, condition)
-            .map_err(GenError::failed)?;
-        Ok(v.into_iter().map(f64::from).collect())
+        let (dit, step) = (&self.models.dit, t as f32);
+        let v = match (branch, &self.without, &mut self.keys_values) {
+            (Branch::Unconditional, Some(without), _) => dit.forward(&x, step, without),
+            (_, _, Some(kept)) => {
+                dit.forward_some(&x, step, &self.condition, kept.entry(t.to_bits()).or_default())
+            }
+            _ => dit.forward(&x, step, &self.condition),
+        };
+        Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
     }
 }
 
@@ -109,9 +118,28 @@ impl OccPipeline {
         &self.models
     }
 
+    /// The tokens that an edit computes: those of its region and a few around, if the source's keys and
+    /// values can stand for the others; `None` for all tokens.
+    fn local_tokens(
+        &self,
+        source: &Source,
+        sampler: &Sampler,
+        region: &Region,
+        params: &GenParams,
+    ) -> Option<Vec<usize>> {
+        let kept = source.keys_values.as_ref().filter(|_| params.local)?;
+        let first = sampler.states_of_noise() - 1;
+        let mut asked = sampler.levels[first..sampler.steps()].iter();
+        let known = asked.all(|level| kept.contains_key(&level.t.to_bits()));
+        (known && sampler.guidance.weight == 1.0)
+            .then(|| tokens_of(&region.cells, params.halo_tokens as usize))
+    }
+
+    /// The network under a condition, for some tokens or (`None`) all.
     fn network(
         &self,
         condition: &Condition,
+        tokens: Option<Vec<usize>>,
         mask: Vec<f32>,
         context: Vec<f32>,
         guided: bool,
@@ -127,7 +155,11 @@ impl OccPipeline {
             mask,
             context,
         };
-        let prepared = self.models.dit.prepare(&full).map_err(GenError::failed)?;
+        let prepared = match tokens {
+            Some(tokens) => self.models.dit.prepare_some(&full, tokens),
+            None => self.models.dit.prepare(&full),
+        };
+        let prepared = prepared.map_err(GenError::failed)?;
         let without = if guided {
             let null = self.models.dit.null_condition(&full);
             Some(self.models.dit.prepare(&null).map_err(GenError::failed)?)
@@ -138,6 +170,7 @@ impl OccPipeline {
             models: &self.models,
             condition: prepared,
             without,
+            keys_values: None,
         })
     }
 
@@ -159,6 +192,14 @@ impl OccPipeline {
         self.sources.retain(|s| s.key != source.key);
         self.sources.push_front(source);
         self.sources.truncate(KEPT_TRAJECTORIES);
+        let mut bytes = 0;
+        for source in &mut self.sources {
+            let own = source.keys_values.iter().flat_map(|k| k.values());
+            bytes += own.map(KeysValues::bytes).sum::<usize>();
+            if bytes > KEYS_VALUES_BYTES {
+                source.keys_values = None;
+            }
+        }
     }
 
     /// The trajectory of a frame's source: from memory, or inverted now.
@@ -181,8 +222,9 @@ impl OccPipeline {
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
         let mut network = report.timed(Stage::Encode, |_| {
-            self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)
+            self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)
         })?;
+        network.keys_values = Some(StepKeysValues::new());
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let mut solver = params.solver;
         let (trajectory, inversion) = loop {
@@ -204,12 +246,14 @@ impl OccPipeline {
             ));
             solver = SolverKind::Ddim;
         };
+        let keys_values = network.keys_values.take().map(Arc::new);
         drop(network);
         report.network_calls += report.inversion_calls;
         let source = Source {
             key,
             solver,
             trajectory: Arc::new(trajectory),
+            keys_values,
             report: Some(inversion),
         };
         self.remember(source.clone());
@@ -228,7 +272,7 @@ impl OccPipeline {
         let frame = job.scene.frame();
         let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
         let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
-        let mut network = self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
+        let mut network = self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
         let sampler = Sampler::standard(source.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
@@ -241,10 +285,11 @@ impl OccPipeline {
         let condition = Condition::of(&frame.layout, frame.boxes.values());
         let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
-        let guided = sampler.guidance.calls() > 1;
+        let guided = sampler.guidance.weight != 1.0;
         let mut network = report.timed(Stage::Encode, |_| {
-            self.network(&condition, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], guided)
+            self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], guided)
         })?;
+        network.keys_values = Some(StepKeysValues::new());
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
         let states = report.timed(Stage::Denoise, |_| {
             sampler.sample(start, &mut network, |view| {
@@ -252,6 +297,8 @@ impl OccPipeline {
             })
         })?;
         report.network_calls = params.steps as usize * sampler.guidance.calls();
+        report.tokens = network.condition.tokens();
+        let keys_values = network.keys_values.take();
         drop(network);
         let trajectory = Trajectory {
             levels: sampler.levels.clone(),
@@ -268,7 +315,14 @@ impl OccPipeline {
         }
         let source = &frame.source.occupancy;
         let result = self.finish(job, source, &generated, &region, &mut report);
-        self.adopt(&result.occupancy, &condition, params, sampler.solver, trajectory);
+        self.adopt(
+            &result.occupancy,
+            &condition,
+            params,
+            sampler.solver,
+            trajectory,
+            keys_values,
+        );
         Ok(result)
     }
 
@@ -296,7 +350,7 @@ impl OccPipeline {
         }
         let condition = Condition::of(&frame.layout, frame.boxes.values());
         let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
-        let guided = sampler.guidance.calls() > 1;
+        let guided = sampler.guidance.weight != 1.0;
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent
@@ -305,7 +359,13 @@ impl OccPipeline {
             .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
             .collect();
         let models = self.models.clone();
-        let mut network = report.timed(Stage::Encode, |_| self.network(&condition, mask, context, guided))?;
+        let local = self.local_tokens(&source, &sampler, &region, params);
+        let mut network = report.timed(Stage::Encode, |_| {
+            self.network(&condition, local, mask, context, guided)
+        })?;
+        // Starts from those of the source, so that tokens that are not computed show what they hold.
+        network.keys_values = Some(source.keys_values.as_deref().cloned().unwrap_or_default());
+        report.tokens = network.condition.tokens();
         let noise = RegionNoise {
             strength: params.strength,
             seed: params.seed,
@@ -343,6 +403,7 @@ impl OccPipeline {
                 },
             )
         })?;
+        let keys_values = network.keys_values.take();
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
@@ -355,7 +416,14 @@ impl OccPipeline {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
-        self.adopt(&result.occupancy, &condition, params, sampler.solver, edited.trajectory);
+        self.adopt(
+            &result.occupancy,
+            &condition,
+            params,
+            sampler.solver,
+            edited.trajectory,
+            keys_values,
+        );
         Ok(result)
     }
 
@@ -367,12 +435,14 @@ impl OccPipeline {
         params: &GenParams,
         solver: SolverKind,
         trajectory: Trajectory,
+        keys_values: Option<StepKeysValues>,
     ) {
         let key = self.key(occupancy, condition, params);
         self.remember(Source {
             key,
             solver,
             trajectory: Arc::new(trajectory),
+            keys_values: keys_values.map(Arc::new),
             report: None,
         });
     }
@@ -392,7 +462,6 @@ impl OccPipeline {
         report.region_columns = region.column_count();
         report.region_share = region.share();
         report.region_cells = region.cell_count();
-        report.tokens = if report.network_calls > 0 { CELLS / 4 } else { 0 };
         report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
         report.voxels_changed = source.count_different(&occupancy);
         report.seam_change_share = seam_change_share(source, &occupancy, region, 2);

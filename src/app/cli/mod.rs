@@ -96,6 +96,9 @@ struct Gen {
     /// How far an edited region's noise leaves the inverted one, 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     strength: f64,
+    /// Compute every token, not only those around an edit.
+    #[arg(long)]
+    dense: bool,
     /// Leave the networks' output as it is, also where they left out a box that the user placed.
     #[arg(long)]
     raw: bool,
@@ -116,6 +119,7 @@ impl Gen {
             inversion_iterations: self.inversion_iterations,
             strength: self.strength,
             keep_objects: !self.raw,
+            local: !self.dense,
             ..default
         }
     }

@@ -311,11 +311,10 @@ impl ResBlock {
     }
 }
 
-/// Softmax(q k^T) v of one head for a piece of queries. `qkv` rows are `stride` long; q, k and v of
-/// the head start at the given offsets. `q` comes scaled. `out` rows are `out_stride` long.
+/// Softmax(q k^T) v of one head for a piece of queries.
 pub struct Head<'a> {
-    /// All keys and values: rows of queries, keys, values.
-    pub qkv: &'a [f32],
+    /// Keys and values of all tokens, one row each.
+    pub keys_values: &'a [f32],
     /// Length of such a row.
     pub stride: usize,
     /// Rows.
@@ -333,7 +332,7 @@ impl Head<'_> {
     /// rows `out_stride` apart. `scores` is scratch of rows x tokens.
     pub fn attend(&self, queries: &[f32], scores: &mut [f32], out: &mut [f32], out_stride: usize) {
         let rows = queries.len() / self.width;
-        let keys = View::columns(&self.qkv[self.key_at..], self.stride);
+        let keys = View::columns(&self.keys_values[self.key_at..], self.stride);
         matmul(
             scores,
             self.tokens,
@@ -344,7 +343,7 @@ impl Head<'_> {
         );
         let mut sums = vec![0.0; rows];
         kernels::softmax_rows(&mut scores[..rows * self.tokens], self.tokens, &mut sums);
-        let values = View::rows(&self.qkv[self.value_at..], self.stride);
+        let values = View::rows(&self.keys_values[self.value_at..], self.stride);
         matmul(
             out,
             out_stride,

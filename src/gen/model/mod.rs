@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
-pub use occ_dit::{DitCondition, DitConfig, OccDit, Prepared};
+pub use occ_dit::{DitCondition, DitConfig, KeysValues, OccDit, Prepared, tokens_of};
 pub use occ_vae::{OccVae, VaeConfig};
 
 use super::weights::{self, WeightFile, WeightsError};

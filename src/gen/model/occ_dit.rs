@@ -20,8 +20,10 @@ const LAYERS: usize = 18;
 const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 /// Mask, context, draft, layout.
 const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT;
-/// Tokens that are worked on in one piece.
+/// Most tokens that are worked on in one piece.
 const PIECE: usize = 80;
+/// Fewest: small sets are spread over the cores too.
+const SMALL_PIECE: usize = 16;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -79,13 +81,49 @@ pub struct DitCondition {
     pub context: Vec<f32>,
 }
 
-/// What of a condition depends on neither state nor time.
+/// What of a condition depends on neither state nor time, for some of the tokens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
+    /// Which tokens, in rising order.
+    tokens: Vec<usize>,
     /// `[token][width]`.
-    tokens: Vec<f32>,
+    embedded: Vec<f32>,
     /// Draft latent, 50x50x8.
     draft: Vec<f32>,
+}
+
+impl Prepared {
+    /// Number of tokens that are computed.
+    pub fn tokens(&self) -> usize {
+        self.tokens.len()
+    }
+}
+
+/// Keys and values of every token in every block at one state: what tokens that are not computed show to
+/// those that are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeysValues(Vec<Vec<f32>>); // [block][token][keys | values]
+
+impl KeysValues {
+    /// Bytes of memory.
+    pub fn bytes(&self) -> usize {
+        self.0.iter().map(|block| 4 * block.len()).sum()
+    }
+}
+
+/// The tokens that hold a cell of the mask, and those up to `halo` tokens around them, in rising order.
+pub fn tokens_of(cells: &[bool], halo: usize) -> Vec<usize> {
+    let mut wanted = vec![false; TOKENS];
+    for token in (0..TOKENS).filter(|token| patch(*token).any(|c| cells[c])) {
+        let (x, y) = (token / TOKENS_PER_SIDE, token % TOKENS_PER_SIDE);
+        let last = TOKENS_PER_SIDE - 1;
+        for x in x.saturating_sub(halo)..=(x + halo).min(last) {
+            for y in y.saturating_sub(halo)..=(y + halo).min(last) {
+                wanted[x * TOKENS_PER_SIDE + y] = true;
+            }
+        }
+    }
+    (0..TOKENS).filter(|token| wanted[*token]).collect()
 }
 
 struct Block {
@@ -163,8 +201,17 @@ impl OccDit {
         }
     }
 
-    /// Embeds a condition, once per job.
+    /// Embeds a condition for all tokens, once per job.
     pub fn prepare(&self, condition: &DitCondition) -> Result<Prepared, ModelError> {
+        self.prepare_some(condition, (0..TOKENS).collect())
+    }
+
+    /// The same for some tokens, in rising order: only they are computed.
+    pub fn prepare_some(
+        &self,
+        condition: &DitCondition,
+        tokens: Vec<usize>,
+    ) -> Result<Prepared, ModelError> {
         check_length("layout", condition.bev.len(), GridSpec::COLUMNS)?;
         check_length("draft latent", condition.draft_latent.len(), LATENT)?;
         check_length("mask", condition.mask.len(), CELLS)?;
@@ -173,73 +220,86 @@ impl OccDit {
         check_finite("mask", &condition.mask)?;
         check_finite("context", &condition.context)?;
         let row = PATCH_CELLS * CONDITION;
-        let mut tokens = vec![0.0; TOKENS * row];
-        tokens
+        let mut features = vec![0.0; tokens.len() * row];
+        features
             .par_chunks_mut(row)
-            .enumerate()
-            .for_each(|(token, values)| {
-                for (cell, values) in patch(token).zip(values.chunks_exact_mut(CONDITION)) {
-                    values[0] = condition.mask[cell];
-                    values[1..][..CHANNELS]
-                        .copy_from_slice(&condition.context[cell * CHANNELS..][..CHANNELS]);
-                    values[1 + CHANNELS..][..CHANNELS]
-                        .copy_from_slice(&condition.draft_latent[cell * CHANNELS..][..CHANNELS]);
-                    let layout = values[1 + 2 * CHANNELS..].chunks_exact_mut(LAYERS).enumerate();
-                    for (column, layers) in layout {
-                        let x = cell / SIDE * COLUMNS + column / COLUMNS;
-                        let y = cell % SIDE * COLUMNS + column % COLUMNS;
-                        let bits = condition.bev[x * GridSpec::NY + y];
-                        for (layer, value) in layers.iter_mut().enumerate() {
-                            *value = (bits >> layer & 1) as f32;
-                        }
-                    }
+            .zip(&tokens)
+            .for_each(|(values, token)| {
+                for (cell, values) in patch(*token).zip(values.chunks_exact_mut(CONDITION)) {
+                    condition.cell_features(cell, values);
                 }
             });
-        let mut embedded = self.embed_condition.parallel(&tokens, PIECE);
-        embedded
-            .iter_mut()
-            .zip(&self.positions)
-            .for_each(|(e, p)| *e += p);
+        let mut embedded = self.embed_condition.parallel(&features, piece_of(tokens.len()));
+        let width = self.config.width;
+        for (row, token) in embedded.chunks_exact_mut(width).zip(&tokens) {
+            let position = &self.positions[token * width..][..width];
+            row.iter_mut().zip(position).for_each(|(e, p)| *e += p);
+        }
         Ok(Prepared {
-            tokens: embedded,
+            tokens,
+            embedded,
             draft: condition.draft_latent.clone(),
         })
     }
 
-    /// v for the state `x` (50x50x8) at training step `t` (0 to 999, fractions allowed).
+    /// v for the state `x` (50x50x8) at training step `t` (0 to 999, fractions allowed), for all tokens.
     pub fn forward(&self, x: &[f32], t: f32, condition: &Prepared) -> Result<Vec<f32>, ModelError> {
+        check_length("tokens", condition.tokens.len(), TOKENS)?;
+        self.forward_some(x, t, condition, &mut KeysValues::default())
+    }
+
+    /// v at the tokens of `condition`, 0 elsewhere. The other tokens are seen through `keys_values`, where
+    /// the computed tokens leave theirs; if it is empty, all tokens must be computed, and it is filled.
+    pub fn forward_some(
+        &self,
+        x: &[f32],
+        t: f32,
+        condition: &Prepared,
+        keys_values: &mut KeysValues,
+    ) -> Result<Vec<f32>, ModelError> {
         check_length("state", x.len(), LATENT)?;
         check_finite("state", x)?;
         if !(0.0..1000.0).contains(&t) {
             return Err(ModelError::Timestep(t));
         }
-        let width = self.config.width;
-        check_length("condition", condition.tokens.len(), TOKENS * width)?;
+        let (width, places) = (self.config.width, &condition.tokens);
+        check_length("condition", condition.embedded.len(), places.len() * width)?;
+        if keys_values.0.is_empty() {
+            check_length("tokens", places.len(), TOKENS)?;
+            keys_values.0 = vec![vec![0.0; TOKENS * 2 * width]; self.blocks.len()];
+        }
+        check_length("keys and values", keys_values.0.len(), self.blocks.len())?;
+        check_length("keys and values", keys_values.0[0].len(), TOKENS * 2 * width)?;
         let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
         time.iter_mut().for_each(|v| *v = kernels::silu(*v));
         let mut time = self.time2.vector(&time);
         time.iter_mut().for_each(|v| *v = kernels::silu(*v));
 
-        let mut patches = Vec::with_capacity(LATENT);
-        for cell in (0..TOKENS).flat_map(patch) {
-            patches.extend_from_slice(&x[cell * CHANNELS..][..CHANNELS]);
-        }
-        let mut tokens = self.embed_x.parallel(&patches, PIECE);
-        tokens.iter_mut().zip(&condition.tokens).for_each(|(t, c)| *t += c);
+        let cells = || places.iter().flat_map(|token| patch(*token));
+        let patches: Vec<f32> = cells()
+            .flat_map(|cell| &x[cell * CHANNELS..][..CHANNELS])
+            .copied()
+            .collect();
+        let piece = piece_of(places.len());
+        let mut tokens = self.embed_x.parallel(&patches, piece);
+        tokens
+            .iter_mut()
+            .zip(&condition.embedded)
+            .for_each(|(t, c)| *t += c);
         let modulations: Vec<Vec<f32>> = self.blocks.par_iter().map(|b| b.ada.vector(&time)).collect();
-        for (block, ada) in self.blocks.iter().zip(&modulations) {
-            block.apply(&mut tokens, ada, self.config.heads);
+        for ((block, ada), keys_values) in self.blocks.iter().zip(&modulations).zip(&mut keys_values.0) {
+            block.apply(&mut tokens, ada, self.config.heads, places, keys_values);
         }
         let ada = self.final_ada.vector(&time);
         let (shift, scale) = ada.split_at(width);
         let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
         let mut normed = vec![0.0; tokens.len()];
         kernels::norm_rows(&tokens, NORM_EPS, &scale, shift, &mut normed);
-        let patches = self.last.parallel(&normed, PIECE);
-        let mut out = vec![0.0; LATENT];
+        let patches = self.last.parallel(&normed, piece);
         let gates = self.skip.vector(&time);
         let (of_x, of_draft) = gates.split_at(CHANNELS);
-        for (cell, values) in (0..TOKENS).flat_map(patch).zip(patches.chunks_exact(CHANNELS)) {
+        let mut out = vec![0.0; LATENT];
+        for (cell, values) in cells().zip(patches.chunks_exact(CHANNELS)) {
             for (c, value) in values.iter().enumerate() {
                 let at = cell * CHANNELS + c;
                 out[at] = value + of_x[c] * x[at] + of_draft[c] * condition.draft[at];
@@ -250,55 +310,84 @@ impl OccDit {
     }
 }
 
+impl DitCondition {
+    /// Mask, context, draft and layout of one cell.
+    fn cell_features(&self, cell: usize, values: &mut [f32]) {
+        values[0] = self.mask[cell];
+        let of = |latent: &[f32], to: &mut [f32]| to.copy_from_slice(&latent[cell * CHANNELS..][..CHANNELS]);
+        of(&self.context, &mut values[1..][..CHANNELS]);
+        of(&self.draft_latent, &mut values[1 + CHANNELS..][..CHANNELS]);
+        for (column, layers) in values[1 + 2 * CHANNELS..].chunks_exact_mut(LAYERS).enumerate() {
+            let x = cell / SIDE * COLUMNS + column / COLUMNS;
+            let y = cell % SIDE * COLUMNS + column % COLUMNS;
+            let bits = self.bev[x * GridSpec::NY + y];
+            for (layer, value) in layers.iter_mut().enumerate() {
+                *value = (bits >> layer & 1) as f32;
+            }
+        }
+    }
+}
+
+/// Tokens in a piece of work; depends on nothing but their number.
+fn piece_of(tokens: usize) -> usize {
+    tokens.div_ceil(4).clamp(SMALL_PIECE, PIECE)
+}
+
 impl Block {
-    /// In place over all tokens of one sequence. `ada` is shift, scale, gate for attention, then the same for the MLP.
-    fn apply(&self, tokens: &mut [f32], ada: &[f32], heads: usize) {
+    /// In place over some tokens of one sequence, which stand at `places` of it. `keys_values` holds those
+    /// of the whole sequence; these tokens' own are renewed first. `ada` is shift, scale, gate for
+    /// attention, then the same for the MLP.
+    fn apply(
+        &self,
+        tokens: &mut [f32],
+        ada: &[f32],
+        heads: usize,
+        places: &[usize],
+        keys_values: &mut [f32],
+    ) {
         let width = ada.len() / 6;
         let part = |i: usize| &ada[i * width..][..width];
         let scale = |i: usize| part(i).iter().map(|s| 1.0 + s).collect::<Vec<f32>>();
         let (scale1, scale2) = (scale(1), scale(4));
-        let count = tokens.len() / width;
+        let piece_tokens = piece_of(places.len());
 
-        let mut qkv = vec![0.0; count * 3 * width];
-        qkv.par_chunks_mut(PIECE * 3 * width)
-            .zip(tokens.par_chunks(PIECE * width))
+        let mut qkv = vec![0.0; places.len() * 3 * width];
+        qkv.par_chunks_mut(piece_tokens * 3 * width)
+            .zip(tokens.par_chunks(piece_tokens * width))
             .for_each(|(qkv, x)| {
                 let mut normed = vec![0.0; x.len()];
                 kernels::norm_rows(x, NORM_EPS, &scale1, part(0), &mut normed);
                 self.qkv.rows(&normed, qkv);
             });
+        for (row, place) in qkv.chunks_exact(3 * width).zip(places) {
+            keys_values[place * 2 * width..][..2 * width].copy_from_slice(&row[width..]);
+        }
+        let keys_values = &*keys_values;
+        let count = keys_values.len() / (2 * width);
         let head_width = width / heads;
         let shrink = 1.0 / (head_width as f32).sqrt();
         tokens
-            .par_chunks_mut(PIECE * width)
-            .enumerate()
-            .for_each(|(piece, x)| {
-                let rows = x.len() / width;
+            .par_chunks_mut(piece_tokens * width)
+            .zip(qkv.par_chunks(piece_tokens * 3 * width))
+            .for_each(|(x, qkv)| {
                 let mut attended = vec![0.0; x.len()];
-                let mut scores = vec![0.0; rows * count];
-                let mut queries = Vec::with_capacity(rows * head_width);
+                let mut scores = vec![0.0; x.len() / width * count];
+                let mut queries = Vec::with_capacity(x.len() / heads);
                 for head in 0..heads {
                     queries.clear();
-                    for row in qkv[piece * PIECE * 3 * width..]
-                        .chunks_exact(3 * width)
-                        .take(rows)
-                    {
+                    for row in qkv.chunks_exact(3 * width) {
                         queries.extend(row[head * head_width..][..head_width].iter().map(|q| q * shrink));
                     }
+                    let at = head * head_width;
                     let head = Head {
-                        qkv: &qkv,
-                        stride: 3 * width,
+                        keys_values,
+                        stride: 2 * width,
                         tokens: count,
                         width: head_width,
-                        key_at: width + head * head_width,
-                        value_at: 2 * width + head * head_width,
+                        key_at: at,
+                        value_at: width + at,
                     };
-                    head.attend(
-                        &queries,
-                        &mut scores,
-                        &mut attended[head.value_at - 2 * width..],
-                        width,
-                    );
+                    head.attend(&queries, &mut scores, &mut attended[at..], width);
                 }
                 let mut out = vec![0.0; x.len()];
                 self.proj.rows(&attended, &mut out);
@@ -373,8 +462,10 @@ mod tests {
         let mut out = x.to_vec();
         for (half, c) in out.chunks_exact_mut(x.len() / 2).zip(c.chunks_exact(WIDTH)) {
             let time: Vec<f32> = c.iter().map(|v| kernels::silu(*v)).collect();
+            let places: Vec<usize> = (0..length).collect();
             for sequence in half.chunks_exact_mut(length * WIDTH) {
-                block.apply(sequence, &block.ada.vector(&time), HEADS);
+                let mut keys_values = vec![f32::NAN; length * 2 * WIDTH];
+                block.apply(sequence, &block.ada.vector(&time), HEADS, &places, &mut keys_values);
             }
         }
         out
@@ -396,6 +487,19 @@ mod tests {
         // Zero modulation gates both branches off: x comes back bit for bit.
         let zero = Linear::from_parts(&vec![0.0; 6 * WIDTH * WIDTH], vec![0.0; 6 * WIDTH], WIDTH);
         assert_eq!(run(&block(&golden, zero), &x, &c, 12), x);
+    }
+
+    #[test]
+    fn tokens_of_a_mask() {
+        let mut cells = vec![false; CELLS];
+        assert!(tokens_of(&cells, 3).is_empty());
+        cells[3 * SIDE + 4] = true; // row 3, column 4: token (1, 2)
+        assert_eq!(tokens_of(&cells, 0), [TOKENS_PER_SIDE + 2]);
+        assert_eq!(tokens_of(&cells, 1).len(), 9);
+        cells = vec![false; CELLS];
+        cells[CELLS - 1] = true;
+        assert_eq!(tokens_of(&cells, 2).len(), 9);
+        assert_eq!(tokens_of(&[true; CELLS], 0).len(), TOKENS);
     }
 
     #[test]

@@ -4,11 +4,14 @@
 //!
 //! All of them work number by number: a region can be solved while the rest replays stored states.
 
+use serde::{Deserialize, Serialize};
+
 use super::{DdimStep, Prediction, SolverError, clean_estimate};
 use crate::generation::schedule::{Level, ScheduleError};
 
 /// How a prediction becomes the next state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum SolverKind {
     /// First order.
     #[default]
