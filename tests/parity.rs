@@ -225,6 +225,39 @@ fn decode_cells_is_a_part_of_decode() {
     );
 }
 
+/// Renewing the cells around an edit gives what encoding everything gives, bit for bit.
+#[test]
+fn encode_cells_is_a_part_of_encode() {
+    let models = models();
+    let mut grid = scene(&Golden::open("parity_vae.safetensors"));
+    let before = models.vae.encode(&grid).expect("labels");
+    let reach = models.vae.encoder_reach();
+    for (x, y) in [(120, 101), (0, 0), (199, 120)] {
+        (0..5).for_each(|z| grid.set(x, y, z, 4));
+        let near = |c: usize| (c / 50).abs_diff(x / 4) <= reach && (c % 50).abs_diff(y / 4) <= reach;
+        let cells: Vec<bool> = (0..CELLS).map(near).collect();
+        let mut renewed = models.vae.encode(&grid).expect("labels");
+        let all = renewed.clone();
+        // Spoil what is to be renewed.
+        for (c, values) in renewed.chunks_exact_mut(CHANNELS).enumerate() {
+            if cells[c] {
+                values.fill(9.0);
+            }
+        }
+        models
+            .vae
+            .encode_cells(&grid, &cells, &mut renewed)
+            .expect("labels");
+        assert!(renewed == all && all != before);
+    }
+    let mut same = before.clone();
+    models
+        .vae
+        .encode_cells(&grid, &[false; CELLS], &mut same)
+        .expect("nothing to do");
+    assert_eq!(same, before);
+}
+
 /// An edit changes latents only within the encoder's reach, bit for bit.
 #[test]
 fn encoding_is_local() {

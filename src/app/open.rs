@@ -7,10 +7,10 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use crate::formats::{opendrive, project};
+use crate::formats::{occ3d, opendrive, project};
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
-use crate::scene::{Frame, Scene, SensorRig, draft};
+use crate::scene::{Frame, Scene, SensorRig, draft, infer};
 
 /// Largest text file that is read, bytes.
 const LARGEST_TEXT: u64 = 256 << 20;
@@ -21,21 +21,63 @@ pub fn bundled() -> anyhow::Result<Scene> {
     project::from_bytes(bytes).context("the bundled scene")
 }
 
-/// A scene from a file, its kind found by content: a `.loom` project or an OpenDRIVE road network.
-pub fn scene(path: &Path) -> anyhow::Result<Scene> {
+/// What a file is, found by content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A `.loom` project.
+    Project,
+    /// A frame of Occ3D labels.
+    Occ3d,
+    /// An OpenDRIVE road network.
+    OpenDrive,
+}
+
+/// The kind of a file; anything that is no archive is taken for a road network.
+pub fn kind(path: &Path) -> anyhow::Result<Kind> {
     let name = path.display();
-    let mut head = [0u8; 4];
-    let size = std::fs::metadata(path)
-        .with_context(|| format!("open {name}"))?
-        .len();
-    if size >= 4 {
-        let mut file = std::fs::File::open(path).with_context(|| format!("open {name}"))?;
-        std::io::Read::read_exact(&mut file, &mut head).with_context(|| format!("read {name}"))?;
+    let mut head = Vec::new();
+    let file = std::fs::File::open(path).with_context(|| format!("open {name}"))?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(file, 4), &mut head)
+        .with_context(|| format!("read {name}"))?;
+    let has_extension = |wanted: &str| path.extension().is_some_and(|e| e == wanted);
+    let is_archive = head.starts_with(b"PK");
+    Ok(if has_extension("npz") || (is_archive && !has_extension("loom") && is_npz(path)?) {
+        Kind::Occ3d
+    } else if is_archive || has_extension("loom") {
+        Kind::Project
+    } else {
+        Kind::OpenDrive
+    })
+}
+
+fn is_npz(path: &Path) -> anyhow::Result<bool> {
+    let bytes = std::fs::read(path).with_context(|| format!("read {}", path.display()))?;
+    Ok(occ3d::is_npz(&bytes))
+}
+
+/// A scene from a file of any kind.
+pub fn scene(path: &Path) -> anyhow::Result<Scene> {
+    match kind(path)? {
+        Kind::Project => Ok(project::load(path)?),
+        Kind::Occ3d => labels(path),
+        Kind::OpenDrive => Ok(import(path, &Placement::default())?.scene),
     }
-    if head.starts_with(b"PK") || path.extension().is_some_and(|e| e == "loom") {
-        return Ok(project::load(path)?);
-    }
-    Ok(import(path, &Placement::default())?.scene)
+}
+
+/// A scene from labels: their voxels as they are, layout and boxes inferred.
+pub fn labels(path: &Path) -> anyhow::Result<Scene> {
+    let frame = occ3d::load(path).with_context(|| path.display().to_string())?;
+    let (layout, boxes) = (infer::layout(&frame.labels), infer::boxes(&frame.labels));
+    // Data sets name the folder after the frame and the file `labels`.
+    let stem = path.file_stem().map(|s| s.to_string_lossy());
+    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy());
+    let name = match (&stem, &folder) {
+        (Some(stem), Some(folder)) if stem == "labels" => folder,
+        (Some(stem), _) => stem,
+        (None, _) => &std::borrow::Cow::Borrowed("import"),
+    };
+    let frame = Frame::new(layout, boxes, frame.labels);
+    Ok(Scene::single(name, frame, Arc::new(SensorRig::default()), 0))
 }
 
 /// Where and how a road network becomes a scene.

@@ -12,11 +12,11 @@ use super::job::{
 };
 use super::keep_objects::keep_objects;
 use super::model::{DitCondition, KeysValues, OccModels, Prepared, tokens_of};
-use super::region::{CELLS, Region};
+use super::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
 use super::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
-use crate::scene::{BevLayout, Frame, SceneBox, VoxelGrid, draft, raster};
+use crate::scene::{BevLayout, Frame, GridSpec, SceneBox, VoxelGrid, draft, raster};
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
@@ -66,8 +66,8 @@ impl Condition {
 }
 
 /// The network as a solver sees it, under one condition.
-struct Network<'a> {
-    models: &'a OccModels,
+struct Network {
+    models: Arc<OccModels>,
     condition: Prepared,
     without: Option<Prepared>,
     /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
@@ -75,7 +75,7 @@ struct Network<'a> {
     keys_values: Option<StepKeysValues>,
 }
 
-impl Denoiser for Network<'_> {
+impl Denoiser for Network {
     type Error = GenError;
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
@@ -97,6 +97,8 @@ impl Denoiser for Network<'_> {
 pub struct OccPipeline {
     models: Arc<OccModels>,
     sources: VecDeque<Source>,
+    /// The last draft and its latent: the next one differs in a few columns.
+    draft: Option<(VoxelGrid, Vec<f32>)>,
 }
 
 impl OccPipeline {
@@ -105,6 +107,7 @@ impl OccPipeline {
         Self {
             models,
             sources: VecDeque::new(),
+            draft: None,
         }
     }
 
@@ -135,20 +138,36 @@ impl OccPipeline {
             .then(|| tokens_of(&region.cells, params.halo_tokens as usize))
     }
 
+    /// Encodes a draft; where the last one was the same, its latents are taken.
+    fn draft_latent(&mut self, draft: &VoxelGrid) -> Result<Vec<f32>, GenError> {
+        let vae = &self.models.vae;
+        let latent = match self.draft.take() {
+            Some((last, mut latent)) => {
+                let columns = (0..GridSpec::COLUMNS).map(|c| {
+                    let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+                    last.column(x, y) != draft.column(x, y)
+                });
+                let changed = Region::of_columns(columns.collect());
+                let seen = dilate(&changed.cells, CELLS_PER_SIDE, vae.encoder_reach());
+                vae.encode_cells(draft, &seen, &mut latent).map(|()| latent)
+            }
+            None => vae.encode(draft),
+        };
+        let latent = latent.map_err(GenError::failed)?;
+        self.draft = Some((draft.clone(), latent.clone()));
+        Ok(latent)
+    }
+
     /// The network under a condition, for some tokens or (`None`) all.
     fn network(
-        &self,
+        &mut self,
         condition: &Condition,
         tokens: Option<Vec<usize>>,
         mask: Vec<f32>,
         context: Vec<f32>,
         guided: bool,
-    ) -> Result<Network<'_>, GenError> {
-        let draft_latent = self
-            .models
-            .vae
-            .encode(&condition.draft)
-            .map_err(GenError::failed)?;
+    ) -> Result<Network, GenError> {
+        let draft_latent = self.draft_latent(&condition.draft)?;
         let full = DitCondition {
             bev: condition.bev.clone(),
             draft_latent,
@@ -167,7 +186,7 @@ impl OccPipeline {
             None
         };
         Ok(Network {
-            models: &self.models,
+            models: self.models.clone(),
             condition: prepared,
             without,
             keys_values: None,

@@ -146,7 +146,7 @@ fn same_solid(a: &SceneBox, b: &SceneBox) -> bool {
 
 /// Sets every flag within `reach` of a set one, diagonals included, on a square of `side`; first
 /// along rows, then along columns.
-fn dilate(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
+pub(super) fn dilate(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
     if reach == 0 {
         return flags.to_vec();
     }

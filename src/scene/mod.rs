@@ -4,6 +4,7 @@ pub mod boxes;
 pub mod classes;
 pub mod draft;
 pub mod grid;
+pub mod infer;
 pub mod layout;
 pub mod pose;
 pub mod raster;

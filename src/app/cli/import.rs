@@ -1,4 +1,4 @@
-//! `sceneloom import`: a scene from a road network.
+//! `sceneloom import`: a scene from a road network or from labels.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,14 @@ use glam::DVec2;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::app::open::{self, Placement};
+use crate::app::open::{self, Kind, Placement};
 use crate::formats::project;
 use crate::scene::BevLayer;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Import {
-    /// OpenDRIVE file.
+    /// OpenDRIVE road network, or Occ3D labels (`labels.npz`).
     file: PathBuf,
     /// Ego position in the file's frame, m; without it a place on a lane near a junction.
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
@@ -50,6 +50,9 @@ impl Import {
             && !heading.is_finite()
         {
             return Err(anyhow::anyhow!("--heading is {heading}, expected a finite angle in degrees").into());
+        }
+        if open::kind(&self.file)? == Kind::Occ3d {
+            return self.labels();
         }
         let placement = Placement {
             at_m: self.at,
@@ -97,6 +100,34 @@ impl Import {
                 } else {
                     format!("{:?}", imported.skipped)
                 }
+            )
+        });
+        Ok(())
+    }
+
+    /// Labels carry neither layout nor boxes: both are inferred.
+    fn labels(&self) -> Outcome {
+        let scene = open::labels(&self.file)?;
+        project::save(&self.output, &scene).context("write the scene")?;
+        let frame = scene.frame();
+        let report = json!({
+            "format": "occ3d",
+            "boxes": frame.boxes.len(),
+            "roads": 0,
+            "lanes": 0,
+            "skipped": {},
+            "inferred": ["layout", "boxes"],
+            "occupied_voxels": frame.occupancy.count_set(),
+            "file": self.output,
+        });
+        output::report(&self.common, &report, || {
+            format!(
+                "{}: {} occupied voxels; inferred: {} boxes, {} road and {} sidewalk columns",
+                self.output.display(),
+                frame.occupancy.count_set(),
+                frame.boxes.len(),
+                frame.layout.count(BevLayer::DrivableArea),
+                frame.layout.count(BevLayer::Walkway),
             )
         });
         Ok(())

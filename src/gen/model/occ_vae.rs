@@ -158,7 +158,34 @@ impl OccVae {
 
     /// The mean latent `[x][y][channel]`, 50x50x8, of zero mean and unit spread over the training set.
     pub fn encode(&self, grid: &VoxelGrid) -> Result<Vec<f32>, ModelError> {
-        let mut map = self.embed_columns(grid)?;
+        self.encode_window(grid, Window::whole())
+    }
+
+    /// Renews the latents of some of the 2,500 cells, those that [`encode`](Self::encode) would give;
+    /// the others stay. Computes only what those cells can see.
+    pub fn encode_cells(
+        &self,
+        grid: &VoxelGrid,
+        cells: &[bool],
+        latent: &mut [f32],
+    ) -> Result<(), ModelError> {
+        check_length("cell mask", cells.len(), CELLS)?;
+        check_length("latent", latent.len(), LATENT)?;
+        let Some(window) = Window::around(cells, self.encoder_reach()) else {
+            return Ok(());
+        };
+        let found = self.encode_window(grid, window)?;
+        for (cell, values) in window.cells().zip(found.chunks_exact(CHANNELS)) {
+            if cells[cell] {
+                latent[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
+            }
+        }
+        Ok(())
+    }
+
+    /// Latents of the cells of a window, as if nothing were around it.
+    fn encode_window(&self, grid: &VoxelGrid, window: Window) -> Result<Vec<f32>, ModelError> {
+        let mut map = self.embed_columns(grid, window)?;
         self.encoder[0].apply(&mut map);
         for (down, level) in self.down.iter().zip(&self.encoder[1..]) {
             map = through(down, &map.fold());
@@ -167,7 +194,7 @@ impl OccVae {
         let mut normed = vec![0.0; map.data.len()];
         self.encoder_norm.rows(&map.data, &mut normed);
         let moments = self.encoder_head.parallel(&normed, PIECE);
-        let mut latent = Vec::with_capacity(LATENT);
+        let mut latent = Vec::with_capacity(window.rows * window.columns * CHANNELS);
         for cell in moments.chunks_exact(2 * CHANNELS) {
             let channels = cell.iter().zip(&self.latent_mean).zip(&self.latent_std);
             latent.extend(channels.map(|((v, mean), std)| (v - mean) / std));
@@ -176,15 +203,17 @@ impl OccVae {
         Ok(latent)
     }
 
-    /// The sum of one embedding per occupied voxel, for every column.
-    fn embed_columns(&self, grid: &VoxelGrid) -> Result<Map, ModelError> {
+    /// The sum of one embedding per occupied voxel, for every column of a window.
+    fn embed_columns(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
         let width = self.config.widths[0];
-        let (rows, columns) = (GridSpec::NX, GridSpec::NY);
+        let (rows, columns) = (window.rows * COLUMNS, window.columns * COLUMNS);
+        let (x0, y0) = (window.x * COLUMNS, window.y * COLUMNS);
         let mut data = vec![0.0; rows * columns * width];
         data.par_chunks_mut(columns * width)
             .enumerate()
-            .try_for_each(|(x, row)| {
-                for (y, sum) in row.chunks_exact_mut(width).enumerate() {
+            .try_for_each(|(row_index, row)| {
+                for (column_index, sum) in row.chunks_exact_mut(width).enumerate() {
+                    let (x, y) = (x0 + row_index, y0 + column_index);
                     for (z, label) in grid.column(x, y).iter().enumerate() {
                         if *label == Class::FREE {
                             continue;

@@ -200,11 +200,11 @@ fn lines(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 /// phi_2 / (e^h - 1) and 2 phi_3 / (e^h - 1) with phi_2 = (e^h - 1)/h - 1 and phi_3 = phi_2 / h - 1/2:
 /// the right-hand side of UniPC's corrector, h <= 0. Series near 0, where the differences cancel.
 pub(in crate::generation) fn weights_of(h: f64) -> [f64; 2] {
-    let (phi_2, phi_3) = if h.abs() < 1e-3 {
+    let (phi_2, phi_3) = if h.abs() < 1e-2 {
         // phi_2 = sum h^n / (n+1)!, phi_3 = sum h^n / (n+2)!, n from 1.
         let mut terms = (0.0, 0.0);
         let (mut power, mut factorial) = (1.0, 1.0);
-        for n in 1..=6 {
+        for n in 1..=8 {
             power *= h;
             factorial *= f64::from(n) + 1.0;
             terms.0 += power / factorial;

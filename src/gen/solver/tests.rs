@@ -1,7 +1,7 @@
 //! Extremes of guidance, DDIM steps and models that misbehave.
 
 use super::*;
-use crate::generation::schedule::Betas;
+use crate::generation::schedule::{Betas, Level, Schedule, Spacing};
 
 /// A closed-form model from two functions of one value and t; counts its calls.
 pub(in crate::generation) struct Toy<C, U> {

@@ -2,6 +2,7 @@
 //! output is judged: drafts are not put in for boxes that they left out.
 
 mod editing;
+mod edits;
 mod generation;
 mod vae;
 mod world;

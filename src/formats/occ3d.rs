@@ -1,0 +1,245 @@
+//! Occ3D-nuScenes labels: `labels.npz` with `semantics`, `mask_lidar`, `mask_camera`, each
+//! [200, 200, 16], index [x][y][z], ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
+//! Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
+
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+use npyz::{NpyFile, Order};
+use thiserror::Error;
+use zip::ZipArchive;
+
+use crate::scene::{Class, GridSpec, VoxelGrid};
+
+/// Names that the labels may have, in order of preference.
+const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];
+/// Largest array that is unpacked: eight bytes a voxel and a header.
+const LARGEST: u64 = 8 * GridSpec::VOXELS as u64 + 65_536;
+
+/// A labelled frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Occ3dFrame {
+    /// Class of every voxel.
+    pub labels: VoxelGrid,
+    /// Voxels that a LiDAR observed, `[x][y][z]`, if the file says.
+    pub lidar_observed: Option<Vec<bool>>,
+    /// Voxels that a camera observed, if the file says.
+    pub camera_observed: Option<Vec<bool>>,
+}
+
+/// Why a file is no Occ3D frame.
+#[derive(Debug, Error)]
+pub enum Occ3dError {
+    /// The file could not be read.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// No zip archive, or a damaged one.
+    #[error("not an npz archive: {0}")]
+    Archive(String),
+    /// None of the known arrays.
+    #[error("no labels: found {found:?}, expected one of semantics, occ, arr_0")]
+    NoLabels {
+        /// Arrays in the archive.
+        found: Vec<String>,
+    },
+    /// An array that cannot be understood.
+    #[error("array {name}: {problem}")]
+    Array {
+        /// Its name.
+        name: String,
+        /// What was found and what was expected.
+        problem: String,
+    },
+}
+
+/// True for a zip archive with a numpy array in it.
+pub fn is_npz(bytes: &[u8]) -> bool {
+    ZipArchive::new(Cursor::new(bytes)).is_ok_and(|zip| !arrays(&zip).is_empty())
+}
+
+/// Names of the arrays in an archive.
+fn arrays(zip: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
+    let files = zip.file_names().filter_map(Result::ok);
+    let names = files.filter_map(|f| npyz::npz::array_name_from_file_name(&f).map(str::to_string));
+    names.collect()
+}
+
+/// Reads a frame from a file.
+pub fn load(path: &Path) -> Result<Occ3dFrame, Occ3dError> {
+    read(&std::fs::read(path)?)
+}
+
+/// Reads a frame from the bytes of an npz file.
+pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
+    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Occ3dError::Archive(e.to_string()))?;
+    let found = arrays(&zip);
+    let known = NAMES.into_iter().find(|name| found.iter().any(|f| f == name));
+    let name = match (known, found.as_slice()) {
+        (Some(name), _) => name.to_string(),
+        (None, [only]) => only.clone(),
+        _ => return Err(Occ3dError::NoLabels { found }),
+    };
+    let labels = array(&mut zip, &name)?;
+    let wrong = |i: usize, found: i64| Occ3dError::Array {
+        name: name.clone(),
+        problem: format!(
+            "class {found} at voxel {}, {}, {}, expected 0 to {}",
+            i / (GridSpec::NY * GridSpec::NZ),
+            i / GridSpec::NZ % GridSpec::NY,
+            i % GridSpec::NZ,
+            Class::FREE
+        ),
+    };
+    let mut dense = Vec::with_capacity(labels.len());
+    for (i, label) in labels.into_iter().enumerate() {
+        let known = u8::try_from(label).ok().filter(|l| *l <= Class::FREE);
+        dense.push(known.ok_or_else(|| wrong(i, label))?);
+    }
+    let mut mask = |name: &str| -> Result<Option<Vec<bool>>, Occ3dError> {
+        if !found.iter().any(|f| f == name) {
+            return Ok(None);
+        }
+        let values = array(&mut zip, name)?;
+        Ok(Some(values.into_iter().map(|v| v != 0).collect()))
+    };
+    Ok(Occ3dFrame {
+        lidar_observed: mask("mask_lidar")?,
+        camera_observed: mask("mask_camera")?,
+        labels: VoxelGrid::from_dense(&dense).expect("as many labels as voxels"),
+    })
+}
+
+/// One array of the grid's shape, whatever its integer type.
+fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Occ3dError> {
+    let problem = |problem: String| Occ3dError::Array {
+        name: name.into(),
+        problem,
+    };
+    let file = npyz::npz::file_name_from_array_name(name);
+    let entry = zip.by_name(&file).map_err(|e| problem(e.to_string()))?;
+    // The size that the archive declares may lie: no more than the limit is unpacked.
+    let mut bytes = Vec::new();
+    entry
+        .take(LARGEST + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| problem(e.to_string()))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(problem(format!("more than {LARGEST} bytes")));
+    }
+    let npy = NpyFile::new(&bytes[..]).map_err(|e| problem(e.to_string()))?;
+    let expected = [GridSpec::NX as u64, GridSpec::NY as u64, GridSpec::NZ as u64];
+    if npy.shape() != expected {
+        return Err(problem(format!(
+            "shape {:?}, expected {expected:?}",
+            npy.shape()
+        )));
+    }
+    if npy.order() != Order::C {
+        return Err(problem("Fortran order, expected C order".into()));
+    }
+    let dtype = npy.dtype().descr();
+    macro_rules! read_as {
+        ($npy:expr, $($type:ty),+) => {{
+            let npy = $npy;
+            $(let npy = match npy.try_data::<$type>() {
+                Ok(values) => {
+                    let all: std::io::Result<Vec<i64>> = values.map(|v| v.map(i64::from)).collect();
+                    return all.map_err(|e| problem(e.to_string()));
+                }
+                Err(npy) => npy,
+            };)+
+            drop(npy);
+        }};
+    }
+    read_as!(npy, u8, bool, i8, i64, i32, u16, i16, u32);
+    Err(problem(format!("type {dtype}, expected integers")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+    use zip::write::SimpleFileOptions;
+
+    /// An npz of arrays given as (name, dtype, shape, bytes).
+    fn npz(arrays: &[(&str, &str, &str, Vec<u8>)]) -> Vec<u8> {
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, dtype, shape, bytes) in arrays {
+            zip.start_file(format!("{name}.npy"), SimpleFileOptions::default())
+                .expect("an entry");
+            let header = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}");
+            let padded = format!("{header:<117}\n");
+            zip.write_all(b"\x93NUMPY\x01\x00").expect("a header");
+            zip.write_all(&(padded.len() as u16).to_le_bytes())
+                .expect("a header");
+            zip.write_all(padded.as_bytes()).expect("a header");
+            zip.write_all(bytes).expect("data");
+        }
+        zip.finish().expect("an archive").into_inner()
+    }
+
+    const SHAPE: &str = "(200, 200, 16)";
+
+    fn labels() -> Vec<u8> {
+        let mut dense = vec![Class::FREE; GridSpec::VOXELS];
+        dense[(3 * 200 + 7) * 16 + 2] = 4;
+        dense
+    }
+
+    #[test]
+    fn reads_labels_and_masks_of_any_integer_type() {
+        let wide = |v: &[u8]| -> Vec<u8> { v.iter().flat_map(|l| i64::from(*l).to_le_bytes()).collect() };
+        let mut mask = vec![0; GridSpec::VOXELS];
+        mask[5] = 1;
+        let frame = read(&npz(&[
+            ("mask_lidar", "|b1", SHAPE, mask.clone()),
+            ("semantics", "|u1", SHAPE, labels()),
+        ]))
+        .expect("a frame");
+        assert_eq!(frame.labels.get(3, 7, 2), 4);
+        assert_eq!(frame.labels.count_set(), 1);
+        assert_eq!(frame.camera_observed, None);
+        let observed = frame.lidar_observed.expect("a mask");
+        assert_eq!(observed.iter().position(|o| *o), Some(5));
+        for name in ["occ", "arr_0", "whatever"] {
+            let same = read(&npz(&[(name, "<i8", SHAPE, wide(&labels()))])).expect("a frame");
+            assert_eq!(same.labels, frame.labels);
+        }
+    }
+
+    #[test]
+    fn bad_files_give_one_line() {
+        let message = |bytes: &[u8]| read(bytes).expect_err("refused").to_string();
+        let mut wrong = labels();
+        wrong[16] = 23;
+        for (bytes, expected) in [
+            (
+                npz(&[("semantics", "|u1", "(10, 10, 16)", vec![0; 1600])]),
+                "array semantics: shape [10, 10, 16], expected [200, 200, 16]",
+            ),
+            (
+                npz(&[("semantics", "|u1", SHAPE, wrong)]),
+                "array semantics: class 23 at voxel 0, 1, 0, expected 0 to 17",
+            ),
+            (
+                npz(&[("semantics", "<f4", SHAPE, vec![0; 4 * GridSpec::VOXELS])]),
+                "array semantics: type '<f4', expected integers",
+            ),
+            (
+                npz(&[("a", "|u1", SHAPE, labels()), ("b", "|u1", SHAPE, labels())]),
+                "no labels: found [\"a\", \"b\"], expected one of semantics, occ, arr_0",
+            ),
+        ] {
+            assert_eq!(message(&bytes), expected);
+        }
+        let whole = npz(&[("semantics", "|u1", SHAPE, labels())]);
+        for cut in [0, 10, whole.len() / 2, whole.len() - 5] {
+            let line = message(&whole[..cut]);
+            assert!(!line.is_empty() && !line.contains('\n'), "{line}");
+        }
+        let short = npz(&[("semantics", "|u1", SHAPE, vec![0; 99])]);
+        assert!(message(&short).starts_with("array semantics: "));
+        let huge = npz(&[("semantics", "|u1", SHAPE, vec![0; LARGEST as usize + 500])]);
+        assert!(message(&huge).contains("more than"));
+    }
+}
