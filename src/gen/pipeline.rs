@@ -232,8 +232,9 @@ impl OccPipeline {
         let old = &*frame.source;
         let condition = Condition::of(&old.layout, old.boxes.values());
         let key = self.key(&old.occupancy, &condition, params);
-        if let Some(known) = self.sources.iter().find(|s| s.key == key) {
-            return Ok(known.clone());
+        if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
+            self.remember(known.clone()); // used last, forgotten last
+            return Ok(known);
         }
         ctx.progress(Stage::Encode, 0, 1)?;
         let latent = report
