@@ -1,7 +1,7 @@
 //! Scenes from files and templates: what the command line and the window share.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
@@ -153,4 +153,27 @@ pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
     let occupancy = complete(&world, Vertical::Occ3d);
     let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
     Some(Scene::single(name, frame, Arc::new(SensorRig::default()), seed))
+}
+
+/// The label files of a folder, at any depth, in the order of their names.
+pub fn label_files(dir: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut folders = vec![dir.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(&folder).with_context(|| format!("read {}", folder.display()))?;
+        for entry in entries {
+            let entry = entry.with_context(|| format!("read {}", folder.display()))?;
+            // Links are not followed: one that leads upwards would never end.
+            if entry.file_type().is_ok_and(|t| t.is_dir()) {
+                folders.push(entry.path());
+            } else if entry.path().extension().is_some_and(|e| e == "npz") {
+                found.push(entry.path());
+            }
+        }
+    }
+    if found.is_empty() {
+        bail!("{}: no .npz files, expected Occ3D frames", dir.display());
+    }
+    found.sort();
+    Ok(found)
 }

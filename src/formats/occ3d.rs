@@ -1,6 +1,6 @@
 //! Occ3D-nuScenes labels: `labels.npz` with `semantics`, `mask_lidar`, `mask_camera`, each
 //! [200, 200, 16], index [x][y][z], ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
-//! Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
+//! Written with `semantics` alone. Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
 
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -109,6 +109,29 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
     })
 }
 
+/// Labels as an npz file with the array `semantics`, compressed; equal labels give equal bytes.
+pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let header = format!(
+        "{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}), }}",
+        GridSpec::NX,
+        GridSpec::NY,
+        GridSpec::NZ
+    );
+    // Magic, version and length take ten bytes; data starts at a multiple of 64.
+    let padded = format!("{header:<117}\n");
+    let mut npy = b"\x93NUMPY\x01\x00".to_vec();
+    npy.extend((padded.len() as u16).to_le_bytes());
+    npy.extend(padded.bytes());
+    npy.extend(labels.to_dense());
+    let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
+    zip.start_file("semantics.npy", options)
+        .and_then(|()| Ok(std::io::Write::write_all(&mut zip, &npy)?))
+        .and_then(|()| zip.finish())
+        .expect("writing to memory")
+        .into_inner()
+}
+
 /// One array of the grid's shape, whatever its integer type.
 fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Occ3dError> {
     let problem = |problem: String| Occ3dError::Array {
@@ -205,6 +228,14 @@ mod tests {
             let same = read(&npz(&[(name, "<i8", SHAPE, wide(&labels()))])).expect("a frame");
             assert_eq!(same.labels, frame.labels);
         }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let labels = VoxelGrid::from_dense(&labels()).expect("labels");
+        let bytes = to_bytes(&labels);
+        assert!(is_npz(&bytes) && !is_npz(b"PK") && bytes == to_bytes(&labels));
+        assert_eq!(read(&bytes).expect("a frame").labels, labels);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use safetensors::tensor::{Dtype, TensorView};
 use super::world::World;
 use super::world::draw::hash;
 use super::world::voxelize::{Drive, Vertical, complete, labels};
-use crate::scene::{GridSpec, SensorRig, VoxelGrid, draft, raster};
+use crate::scene::{GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
 /// Frames per shard.
 pub const SHARD_FRAMES: usize = 32;
@@ -39,6 +39,20 @@ pub fn occupancy_frame(seed: u64, index: u64) -> OccupancyFrame {
     }
 }
 
+impl OccupancyFrame {
+    /// A frame of a data set that has labels and nothing else: they are both what is seen and what is
+    /// aimed at; layout and boxes are inferred.
+    pub fn of_labels(labels: VoxelGrid) -> Self {
+        let (layout, boxes) = (infer::layout(&labels), infer::boxes(&labels));
+        Self {
+            draft: draft::draft(&layout, boxes.values()),
+            bev: raster::bev_channels(&layout, boxes.values()),
+            dense: labels.clone(),
+            labels,
+        }
+    }
+}
+
 /// What was written.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct DatasetReport {
@@ -52,13 +66,14 @@ pub struct DatasetReport {
 
 /// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
 /// `[N,200,200,16]` and i32 `bev` `[N,200,200]`. Shards that exist are kept, so an interrupted run resumes.
-/// `progress` gets the number of finished frames and may end the run by returning false.
-pub fn write_occupancy(
+/// `make` makes frame i ([`occupancy_frame`], or a file's); its first error ends the run. `progress` gets
+/// the number of finished frames and may end the run by returning false.
+pub fn write_occupancy<E: From<std::io::Error> + Send>(
     dir: &Path,
     frames: usize,
-    seed: u64,
+    make: impl Fn(usize) -> Result<OccupancyFrame, E> + Sync,
     progress: impl Fn(usize) -> bool + Sync,
-) -> std::io::Result<DatasetReport> {
+) -> Result<DatasetReport, E> {
     std::fs::create_dir_all(dir)?;
     let mut report = DatasetReport {
         frames,
@@ -73,14 +88,15 @@ pub fn write_occupancy(
             done.fetch_add(n, Ordering::Relaxed);
             continue;
         }
-        let made: Vec<OccupancyFrame> = (first..first + n)
+        let made: Result<Vec<OccupancyFrame>, E> = (first..first + n)
             .into_par_iter()
             .map(|i| {
-                let frame = occupancy_frame(seed, i as u64);
+                let frame = make(i)?;
                 done.fetch_add(1, Ordering::Relaxed);
-                frame
+                Ok(frame)
             })
             .collect();
+        let made = made?;
         report.bytes += write_shard(&path, &made)?;
         if !progress(done.load(Ordering::Relaxed)) {
             break;

@@ -1,12 +1,14 @@
-//! `sceneloom dataset`: training and evaluation data from procedural worlds.
+//! `sceneloom dataset`: training and evaluation data from procedural worlds or a folder of labels.
 
 use std::path::PathBuf;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 
 use super::progress::Progress;
 use super::{Common, Outcome, output};
-use crate::generation::dataset;
+use crate::app::open;
+use crate::formats::occ3d;
+use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -14,9 +16,12 @@ pub struct Dataset {
     /// What the frames hold.
     #[arg(value_parser = ["occupancy"])]
     kind: String,
-    /// Number of frames.
-    #[arg(long, value_name = "N")]
-    frames: usize,
+    /// Number of frames; of a folder, all by default.
+    #[arg(long, value_name = "N", required_unless_present = "from")]
+    frames: Option<usize>,
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to take instead of procedural worlds.
+    #[arg(long, value_name = "DIR")]
+    from: Option<PathBuf>,
     /// Fixes the worlds; use different seeds for training, validation and test.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -31,14 +36,33 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = std::time::Instant::now();
-        let report = dataset::write_occupancy(&self.output, self.frames, self.seed, |done| {
-            progress.at(&self.kind, done, self.frames);
+        let files = match &self.from {
+            Some(dir) => open::label_files(dir)?,
+            None => Vec::new(),
+        };
+        let frames = self.frames.unwrap_or(files.len());
+        if self.from.is_some() && frames > files.len() {
+            (|| -> anyhow::Result<()> {
+                bail!("--frames is {frames}, expected at most {}, the frames of the folder", files.len())
+            })()?;
+        }
+        let make = |i: usize| -> anyhow::Result<OccupancyFrame> {
+            Ok(match files.get(i) {
+                Some(path) => {
+                    let frame = occ3d::load(path).with_context(|| path.display().to_string())?;
+                    OccupancyFrame::of_labels(frame.labels)
+                }
+                None => occupancy_frame(self.seed, i as u64),
+            })
+        };
+        let report = dataset::write_occupancy(&self.output, frames, make, |done| {
+            progress.at(&self.kind, done, frames);
             true
         })
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
         let mut json = serde_json::to_value(&report)?;
-        json["frames_per_s"] = (self.frames as f64 / start.elapsed().as_secs_f64()).into();
+        json["frames_per_s"] = (frames as f64 / start.elapsed().as_secs_f64()).into();
         output::report(&self.common, &json, || {
             format!(
                 "{}: {} frames, {} bytes written",

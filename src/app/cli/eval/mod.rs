@@ -7,6 +7,7 @@ mod generation;
 mod vae;
 mod world;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -30,9 +31,12 @@ pub struct Eval {
     /// What is measured.
     #[arg(value_parser = ["world", "vae", "generation", "editing"])]
     suite: String,
-    /// Number of held-out worlds.
+    /// Number of held-out worlds, or of frames of --data.
     #[arg(long, value_name = "N", default_value_t = 24)]
     frames: usize,
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE by instead.
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,
@@ -68,7 +72,10 @@ impl Eval {
         } else {
             let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
             let (mut report, bars) = match self.suite.as_str() {
-                "vae" => self.vae(&pipeline, &progress)?,
+                "vae" => match &self.data {
+                    Some(dir) => self.vae_on_files(dir, &pipeline, &progress)?,
+                    None => self.vae(&pipeline, &progress)?,
+                },
                 "generation" => self.generation(&mut pipeline, &progress)?,
                 _ => self.editing(&mut pipeline, &progress)?,
             };
@@ -77,7 +84,7 @@ impl Eval {
         };
         progress.done();
         report["seeds"] = json!({ "test": TEST_SEED });
-        report["n"] = self.frames.into();
+        report["n"] = report.get("files").cloned().unwrap_or_else(|| self.frames.into());
         let missed: Vec<String> = bars
             .iter()
             .filter(|(_, found, least)| found.is_nan() || found < least)

@@ -1,11 +1,15 @@
-//! `eval vae`: what encoding and decoding keep.
+//! `eval vae`: what encoding and decoding keep, of procedural worlds or of a folder of labels.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
+use anyhow::Context;
 use serde_json::{Value, json};
 
 use super::{Bar, Eval, TEST_SEED, scene, with_interval};
 use crate::app::cli::progress::Progress;
+use crate::app::open;
+use crate::formats::occ3d;
 use crate::generation::dataset::{OccupancyFrame, occupancy_frame};
 use crate::generation::metrics::agreement::AgreementCount;
 use crate::generation::metrics::iou::Confusion;
@@ -39,19 +43,7 @@ impl Eval {
         }
         let mut report = json!({});
         for (k, (name, _)) in kinds.iter().enumerate() {
-            let (mean, present) = totals[k].mean_iou();
-            let per_class: BTreeMap<&str, f64> = Class::ALL[..17]
-                .iter()
-                .filter_map(|c| Some((c.name(), (totals[k].class_iou(*c)? * 1e3).round() / 1e3)))
-                .collect();
-            report[*name] = json!({
-                "miou": mean,
-                "iou": totals[k].occupied_iou(),
-                "classes_present": present,
-                "miou_per_frame": with_interval(&frames[k][0]),
-                "iou_per_frame": with_interval(&frames[k][1]),
-                "per_class": per_class,
-            });
+            report[*name] = figures(&totals[k], &frames[k]);
         }
         report["complete"]["layout_agreement_of_reconstructions"] = json!(agreement.iou());
         let bars = vec![
@@ -60,4 +52,45 @@ impl Eval {
         ];
         Ok((report, bars))
     }
+
+    /// The same for labels from files; no bars, since what can be reached depends on the data.
+    pub(super) fn vae_on_files(
+        &self,
+        dir: &Path,
+        pipeline: &OccPipeline,
+        progress: &Progress,
+    ) -> anyhow::Result<(Value, Vec<Bar>)> {
+        let vae = &pipeline.models().vae;
+        let (mut total, mut frames) = (Confusion::default(), [Vec::new(), Vec::new()]);
+        let files = open::label_files(dir)?;
+        let used = &files[..files.len().min(self.frames)];
+        for (i, path) in used.iter().enumerate() {
+            progress.at("vae", i, used.len());
+            let truth = occ3d::load(path).with_context(|| path.display().to_string())?.labels;
+            let mut one = Confusion::default();
+            one.add(&truth, &vae.decode(&vae.encode(&truth)?)?);
+            total.merge(&one);
+            frames[0].extend(one.mean_iou().0);
+            frames[1].extend(one.occupied_iou());
+        }
+        let report = json!({ "data": dir, "files": used.len(), "labels": figures(&total, &frames) });
+        Ok((report, Vec::new()))
+    }
+}
+
+/// mIoU and IoU over all frames, per frame and per class.
+fn figures(total: &Confusion, frames: &[Vec<f64>; 2]) -> Value {
+    let (mean, present) = total.mean_iou();
+    let per_class: BTreeMap<&str, f64> = Class::ALL[..17]
+        .iter()
+        .filter_map(|c| Some((c.name(), (total.class_iou(*c)? * 1e3).round() / 1e3)))
+        .collect();
+    json!({
+        "miou": mean,
+        "iou": total.occupied_iou(),
+        "classes_present": present,
+        "miou_per_frame": with_interval(&frames[0]),
+        "iou_per_frame": with_interval(&frames[1]),
+        "per_class": per_class,
+    })
 }
