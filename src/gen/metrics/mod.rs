@@ -1,6 +1,39 @@
 //! Figures of merit, each with its definition.
 
 pub mod agreement;
+pub mod frechet;
 pub mod iou;
+pub mod kernel;
 pub mod occupancy;
+#[cfg(test)]
+mod reference;
 pub mod stats;
+
+use thiserror::Error;
+
+/// Samples that no figure can be made from.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MetricError {
+    /// Fewer than two samples.
+    #[error("{which} has {found} samples, expected at least 2")]
+    TooFew {
+        /// Which set.
+        which: &'static str,
+        /// Its size.
+        found: usize,
+    },
+    /// Samples of different length.
+    #[error("a sample has {found} numbers, expected {expected}")]
+    Width {
+        /// Its length.
+        found: usize,
+        /// That of the first sample.
+        expected: usize,
+    },
+    /// NaN or infinity.
+    #[error("{which} holds a number that is not finite")]
+    NotFinite {
+        /// Which set.
+        which: &'static str,
+    },
+}
