@@ -1,22 +1,22 @@
 //! The rough effect of an edit on the voxels, shown in the same frame: boxes cleared or stamped,
 //! ground laid. Generation replaces it within moments. Painted voxels are locked and never touched.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::scene::draft::{box_columns, ground_class};
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
 
-/// How far voxels of an object may reach beyond its box, m.
-const MARGIN_M: f64 = 0.3;
+/// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
+const MARGIN_M: f64 = 0.6;
 /// Bins in which ground classes lie in Occ3D labels.
 const GROUND_BINS: usize = 3;
 /// How far a column without layout looks for ground to continue, columns.
 const MAX_REACH: usize = 24;
 
 /// Clears the voxels of a box that has just left `frame.boxes`, and lays ground where they stood.
-/// Voxels inside another box of the same class stay.
+/// Voxels that lie nearer to another box of the same class stay.
 pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
     let class = old.class.id();
     let others: Vec<SceneBox> = frame
@@ -28,7 +28,7 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
     let top_m = old.center_m.z + old.size_m.z / 2.0 + MARGIN_M;
     let mut emptied = Vec::new();
     box_cells(old, MARGIN_M, |x, y| {
-        if others.iter().any(|b| footprint_holds(b, x, y)) {
+        if others.iter().any(|b| outside_m(b, x, y) <= outside_m(old, x, y)) {
             return;
         }
         let painted = *frame.painted.column(x, y);
@@ -159,7 +159,10 @@ fn near(a: &SceneBox, b: &SceneBox) -> bool {
     a.center_m.truncate().distance(b.center_m.truncate()) <= reach + 2.0 * MARGIN_M
 }
 
-fn footprint_holds(b: &SceneBox, x: usize, y: usize) -> bool {
+/// Distance of a column's centre from a box's footprint, m; 0 inside.
+fn outside_m(b: &SceneBox, x: usize, y: usize) -> f64 {
     let p = GridSpec::center(x, y, 0);
-    b.contains(DVec3::new(p.x, p.y, b.center_m.z), 0.0)
+    let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z)).truncate();
+    let beyond = local.abs() - b.size_m.truncate() / 2.0;
+    beyond.max(DVec2::ZERO).length()
 }
