@@ -23,7 +23,7 @@ fn main() {
         context: vec![0.0; latent.len()],
     };
     let all = models.dit.prepare(&condition).expect("a sound condition");
-    let mut kept = KeysValues::default();
+    let (mut kept, mut kept_dense) = (KeysValues::default(), KeysValues::default());
     models
         .dit
         .forward_some(&latent, 500.0, &all, &mut kept)
@@ -42,7 +42,7 @@ fn main() {
         for run in 0..RUNS + 2 {
             let timed: [&mut dyn FnMut(); 4] = [
                 &mut || drop(models.dit.forward_some(&latent, 500.0, &some, &mut kept)),
-                &mut || drop(models.dit.forward_some(&latent, 500.0, &all, &mut kept)),
+                &mut || drop(models.dit.forward_some(&latent, 500.0, &all, &mut kept_dense)),
                 &mut || drop(models.vae.decode_cells(&latent, &cells)),
                 &mut || drop(models.vae.decode(&latent)),
             ];

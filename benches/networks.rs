@@ -42,7 +42,10 @@ fn main() {
         timed(&mut encode, || models.vae.encode(&frame.dense)).expect("a sound grid");
         timed(&mut decode, || models.vae.decode(&latent)).expect("a sound latent");
         timed(&mut ours, || models.dit.forward(&latent, 500.0, &prepared)).expect("finite");
-        timed(&mut theirs, || candle.forward(&latent, 500.0, &condition, &tokens)).expect("finite");
+        timed(&mut theirs, || {
+            candle.forward(&latent, 500.0, &condition, &tokens)
+        })
+        .expect("finite");
     }
     println!("median of {RUNS}, ms");
     for (name, values) in [

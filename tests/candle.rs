@@ -36,7 +36,9 @@ fn dit_agrees_with_candle() {
     let x = numbers(20_000, 3);
     for t in [0.0f32, 437.5, 999.0] {
         let a = models.dit.forward(&x, t, &ours).expect("finite");
-        let b = candle.forward(&x, f64::from(t), &condition, &theirs).expect("finite");
+        let b = candle
+            .forward(&x, f64::from(t), &condition, &theirs)
+            .expect("finite");
         let largest = b.iter().fold(0f32, |m, v| m.max(v.abs()));
         let worst = a.iter().zip(&b).fold(0f32, |m, (a, b)| m.max((a - b).abs()));
         assert!(

@@ -330,7 +330,10 @@ fn occ3d_frames_are_scenes_and_training_data() {
     let labels = format!("{data}/scene-1/a1/labels.npz");
     let imported = dir.path("imported.loom");
     let report = json(&sceneloom(&["import", &labels, "-o", &imported, "--json"]));
-    assert_eq!((&report["format"], &report["inferred"][1]), (&"occ3d".into(), &"boxes".into()));
+    assert_eq!(
+        (&report["format"], &report["inferred"][1]),
+        (&"occ3d".into(), &"boxes".into())
+    );
     let found = project::load(Path::new(&imported)).expect("a scene");
     assert_eq!((&*found.name, &found.frame().occupancy), ("a1", &frame.occupancy));
     // Most cars of the scene have a box of their class near their centre.
@@ -340,23 +343,53 @@ fn occ3d_frames_are_scenes_and_training_data() {
         boxes.any(|f| f.class == b.class && f.center_m.truncate().distance(b.center_m.truncate()) < 0.8)
     };
     let hit = cars.iter().filter(|b| near(b)).count();
-    assert!(hit * 10 >= cars.len() * 8 && hit > 0, "{hit} of {} cars", cars.len());
+    assert!(
+        hit * 10 >= cars.len() * 8 && hit > 0,
+        "{hit} of {} cars",
+        cars.len()
+    );
 
     let shards = dir.path("shards");
-    let report = json(&sceneloom(&["dataset", "occupancy", "--from", &data, "-o", &shards, "--json"]));
+    let report = json(&sceneloom(&[
+        "dataset",
+        "occupancy",
+        "--from",
+        &data,
+        "-o",
+        &shards,
+        "--json",
+    ]));
     assert_eq!(report["frames"], 2);
     assert!(Path::new(&shards).join("shard_00000.safetensors").exists());
     let report = json(&sceneloom(&["eval", "vae", "--data", &data, "--json"]));
     assert_eq!(report["files"], 2);
     assert!(report["labels"]["iou"].as_f64() > Some(0.5), "{report}");
 
-    refused(&["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards], &["none"]);
-    refused(&["dataset", "occupancy", "--from", &shards, "-o", &shards], &["no .npz files"]);
     refused(
-        &["dataset", "occupancy", "--from", &data, "--frames", "9", "-o", &shards],
+        &["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards],
+        &["none"],
+    );
+    refused(
+        &["dataset", "occupancy", "--from", &shards, "-o", &shards],
+        &["no .npz files"],
+    );
+    refused(
+        &[
+            "dataset",
+            "occupancy",
+            "--from",
+            &data,
+            "--frames",
+            "9",
+            "-o",
+            &shards,
+        ],
         &["--frames is 9", "at most 2"],
     );
     let broken = dir.write("labels.npz", "PK broken");
-    refused(&["import", &broken, "-o", &dir.path("x.loom")], &["labels.npz", "not an npz archive"]);
+    refused(
+        &["import", &broken, "-o", &dir.path("x.loom")],
+        &["labels.npz", "not an npz archive"],
+    );
     assert!(!Path::new(&dir.path("x.loom")).exists());
 }

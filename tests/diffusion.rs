@@ -269,8 +269,8 @@ impl Denoiser for ObelmModel<'_> {
 #[test]
 fn row_21_and_23_obelm() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/obelm.json");
-    let file: ObelmFile =
-        serde_json::from_str(&std::fs::read_to_string(path).expect("the reference file")).expect("its format");
+    let file: ObelmFile = serde_json::from_str(&std::fs::read_to_string(path).expect("the reference file"))
+        .expect("its format");
     let schedule = schedule("linear", 1000, false);
     let mut order: Vec<(usize, f64)> = Vec::new();
     for run in &file.runs {
@@ -287,7 +287,9 @@ fn row_21_and_23_obelm() {
             gauss,
             schedule: &schedule,
         };
-        let states = sampler.sample(run.x_noise.clone(), &mut model, |_| Ok(())).expect("finite");
+        let states = sampler
+            .sample(run.x_noise.clone(), &mut model, |_| Ok(()))
+            .expect("finite");
         let error = distance(&states[run.n], &run.sample_x) / largest(&run.sample_x).max(1.0);
         assert!(error <= 1e-10, "{name}: sample {error:e}");
         if let Some(exact) = run.exact_sample_x.as_ref().filter(|_| run.grid == "t") {
@@ -302,7 +304,11 @@ fn row_21_and_23_obelm() {
         )
         .expect("finite");
         assert_eq!(report.calls, run.n);
-        for (state, expected) in trajectory.states.iter().zip([&run.inverse_end_x0, &run.inverse_end_x1]) {
+        for (state, expected) in trajectory
+            .states
+            .iter()
+            .zip([&run.inverse_end_x0, &run.inverse_end_x1])
+        {
             let error = distance(state, expected) / run.max_abs_inverted.max(1.0);
             assert!(error <= 1e-9, "{name}: inverse {error:e}");
         }
@@ -313,7 +319,10 @@ fn row_21_and_23_obelm() {
     for pair in order.windows(2) {
         let ((n, error), (more, less)) = (pair[0], pair[1]);
         let halvings = (more as f64 / n as f64).log2();
-        assert!(less / error <= 0.35f64.powf(halvings), "N {n} to {more}: {error:e} to {less:e}");
+        assert!(
+            less / error <= 0.35f64.powf(halvings),
+            "N {n} to {more}: {error:e} to {less:e}"
+        );
     }
 }
 

@@ -317,7 +317,10 @@ fn row_30_dirty_tokens() {
     let all = models.dit.prepare(&condition).expect("a condition");
     let dense = models.dit.forward(&x, 321.0, &all).expect("a finite state");
     let mut kept = KeysValues::default();
-    let again = models.dit.forward_some(&x, 321.0, &all, &mut kept).expect("finite");
+    let again = models
+        .dit
+        .forward_some(&x, 321.0, &all, &mut kept)
+        .expect("finite");
     assert_eq!((again, kept.bytes()), (dense.clone(), 8 * 625 * 2 * 192 * 4));
     let mut cells = vec![false; CELLS];
     for (wanted, tokens) in [(0..0, 0), (510..511, 1), (300..460, 50), (0..CELLS, 625)] {
@@ -326,11 +329,19 @@ fn row_30_dirty_tokens() {
         assert_eq!(places.len(), tokens);
         let some = models.dit.prepare_some(&condition, places).expect("a condition");
         let mut seen = kept.clone();
-        let found = models.dit.forward_some(&x, 321.0, &some, &mut seen).expect("finite");
+        let found = models
+            .dit
+            .forward_some(&x, 321.0, &some, &mut seen)
+            .expect("finite");
         let scale = dense.iter().fold(0f32, |m, v| m.max(v.abs()));
         for cell in wanted {
             for i in cell * CHANNELS..(cell + 1) * CHANNELS {
-                assert!((found[i] - dense[i]).abs() <= 1e-5 * scale, "{} and {}", found[i], dense[i]);
+                assert!(
+                    (found[i] - dense[i]).abs() <= 1e-5 * scale,
+                    "{} and {}",
+                    found[i],
+                    dense[i]
+                );
             }
         }
         assert_eq!(found.iter().filter(|v| **v != 0.0).count(), tokens * 4 * CHANNELS);
@@ -338,7 +349,9 @@ fn row_30_dirty_tokens() {
     }
     // Without keys and values only all tokens make sense.
     let one = models.dit.prepare_some(&condition, vec![7]).expect("a condition");
-    let error = models.dit.forward_some(&x, 321.0, &one, &mut KeysValues::default());
+    let error = models
+        .dit
+        .forward_some(&x, 321.0, &one, &mut KeysValues::default());
     assert_eq!(
         error.expect_err("too few tokens").to_string(),
         "tokens has 1 values, expected 625"

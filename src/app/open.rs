@@ -41,13 +41,15 @@ pub fn kind(path: &Path) -> anyhow::Result<Kind> {
         .with_context(|| format!("read {name}"))?;
     let has_extension = |wanted: &str| path.extension().is_some_and(|e| e == wanted);
     let is_archive = head.starts_with(b"PK");
-    Ok(if has_extension("npz") || (is_archive && !has_extension("loom") && is_npz(path)?) {
-        Kind::Occ3d
-    } else if is_archive || has_extension("loom") {
-        Kind::Project
-    } else {
-        Kind::OpenDrive
-    })
+    Ok(
+        if has_extension("npz") || (is_archive && !has_extension("loom") && is_npz(path)?) {
+            Kind::Occ3d
+        } else if is_archive || has_extension("loom") {
+            Kind::Project
+        } else {
+            Kind::OpenDrive
+        },
+    )
 }
 
 fn is_npz(path: &Path) -> anyhow::Result<bool> {
@@ -70,7 +72,10 @@ pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     let (layout, boxes) = (infer::layout(&frame.labels), infer::boxes(&frame.labels));
     // Data sets name the folder after the frame and the file `labels`.
     let stem = path.file_stem().map(|s| s.to_string_lossy());
-    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy());
+    let folder = path
+        .parent()
+        .and_then(Path::file_name)
+        .map(|s| s.to_string_lossy());
     let name = match (&stem, &folder) {
         (Some(stem), Some(folder)) if stem == "labels" => folder,
         (Some(stem), _) => stem,

@@ -1,5 +1,5 @@
 //! Occ3D-nuScenes labels: `labels.npz` with `semantics`, `mask_lidar`, `mask_camera`, each
-//! [200, 200, 16], index [x][y][z], ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
+//! [200, 200, 16], index `[x][y][z]`, ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
 //! Written with `semantics` alone. Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
 
 use std::io::{Cursor, Read};
@@ -152,10 +152,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Oc
     let npy = NpyFile::new(&bytes[..]).map_err(|e| problem(e.to_string()))?;
     let expected = [GridSpec::NX as u64, GridSpec::NY as u64, GridSpec::NZ as u64];
     if npy.shape() != expected {
-        return Err(problem(format!(
-            "shape {:?}, expected {expected:?}",
-            npy.shape()
-        )));
+        return Err(problem(format!("shape {:?}, expected {expected:?}", npy.shape())));
     }
     if npy.order() != Order::C {
         return Err(problem("Fortran order, expected C order".into()));

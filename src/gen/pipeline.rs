@@ -242,7 +242,13 @@ impl OccPipeline {
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
         let mut network = report.timed(Stage::Encode, |_| {
-            self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)
+            self.network(
+                &condition,
+                None,
+                vec![1.0; CELLS],
+                vec![0.0; CELLS * CHANNELS],
+                false,
+            )
         })?;
         network.keys_values = Some(StepKeysValues::new());
         let refinement = Refinement::damped(params.inversion_iterations as usize);
@@ -292,7 +298,13 @@ impl OccPipeline {
         let frame = job.scene.frame();
         let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
         let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
-        let mut network = self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], false)?;
+        let mut network = self.network(
+            &condition,
+            None,
+            vec![1.0; CELLS],
+            vec![0.0; CELLS * CHANNELS],
+            false,
+        )?;
         let sampler = Sampler::standard(source.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
@@ -307,7 +319,13 @@ impl OccPipeline {
         ctx.progress(Stage::Encode, 0, 1)?;
         let guided = sampler.guidance.weight != 1.0;
         let mut network = report.timed(Stage::Encode, |_| {
-            self.network(&condition, None, vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS], guided)
+            self.network(
+                &condition,
+                None,
+                vec![1.0; CELLS],
+                vec![0.0; CELLS * CHANNELS],
+                guided,
+            )
         })?;
         network.keys_values = Some(StepKeysValues::new());
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);

@@ -43,7 +43,10 @@ impl Dataset {
         let frames = self.frames.unwrap_or(files.len());
         if self.from.is_some() && frames > files.len() {
             (|| -> anyhow::Result<()> {
-                bail!("--frames is {frames}, expected at most {}, the frames of the folder", files.len())
+                bail!(
+                    "--frames is {frames}, expected at most {}, the frames of the folder",
+                    files.len()
+                )
             })()?;
         }
         let make = |i: usize| -> anyhow::Result<OccupancyFrame> {

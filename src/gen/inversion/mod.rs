@@ -3,8 +3,8 @@
 //!
 //! Plain inversion is first order: it reads the network at the state it comes from instead of the one it
 //! goes to. [`Refinement`] iterates towards the true preimage (Pan et al. 2023, arXiv 2309.04907), damped,
-//! because undamped iteration diverges on stiff steps. With O-BELM as solver the inverse is exact: see
-//! [`obelm`].
+//! because undamped iteration diverges on stiff steps. With O-BELM as solver the inverse is exact
+//! (`obelm.rs`).
 
 mod obelm;
 

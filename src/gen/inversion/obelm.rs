@@ -24,7 +24,8 @@ pub(super) fn invert<D: Denoiser + ?Sized>(
         let state = if k + 1 == steps {
             // The first step is a plain inverse one, made at the clean end (networks know no t below 0).
             let predicted = sampler.guidance.predict(model, clean, levels[steps].t.max(0.0))?;
-            let up = DdimStep::new(sampler.prediction, &levels[steps], &levels[k]).map_err(SolverError::from)?;
+            let up =
+                DdimStep::new(sampler.prediction, &levels[steps], &levels[k]).map_err(SolverError::from)?;
             up.apply_all(clean, &predicted)
         } else {
             let (x, next) = (&states[done - 1], &states[done - 2]);

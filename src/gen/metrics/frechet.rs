@@ -90,7 +90,10 @@ mod tests {
                 .map(|r| r.iter().map(|v| v * scale + offset).collect())
                 .collect();
             let found = frechet_distance(&x, &x).expect("sound");
-            assert!(found <= 1e-9 * 12.0 * scale * scale, "{scale} {offset}: {found:e}");
+            assert!(
+                found <= 1e-9 * 12.0 * scale * scale,
+                "{scale} {offset}: {found:e}"
+            );
         }
         let one = vec![vec![1.0, 2.0]];
         let two = vec![vec![1.0, 2.0], vec![f64::NAN, 0.0]];
@@ -104,7 +107,9 @@ mod tests {
             "x holds a number that is not finite"
         );
         assert_eq!(
-            frechet_distance(&ragged, &ragged).expect_err("ragged").to_string(),
+            frechet_distance(&ragged, &ragged)
+                .expect_err("ragged")
+                .to_string(),
             "a sample has 1 numbers, expected 2"
         );
     }

@@ -85,9 +85,11 @@ pub fn mmd2_with_interval(
     let whole = mmd2(kernel, x, y)?;
     let parts = subsets.min(x.len() / 2).min(y.len() / 2).max(1);
     // Every `parts`-th sample belongs to one part.
-    let part = |s: &[Vec<f64>], k: usize| -> Vec<Vec<f64>> { s.iter().skip(k).step_by(parts).cloned().collect() };
-    let values: Result<Vec<f64>, MetricError> =
-        (0..parts).map(|k| mmd2(kernel, &part(x, k), &part(y, k))).collect();
+    let part =
+        |s: &[Vec<f64>], k: usize| -> Vec<Vec<f64>> { s.iter().skip(k).step_by(parts).cloned().collect() };
+    let values: Result<Vec<f64>, MetricError> = (0..parts)
+        .map(|k| mmd2(kernel, &part(x, k), &part(y, k)))
+        .collect();
     Ok((whole, mean_ci95(&values?).1))
 }
 

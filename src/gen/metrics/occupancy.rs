@@ -26,7 +26,10 @@ impl OccupancyStatistics {
         self.vertical(&labels);
         self.thickness(&labels);
         self.cars(&labels);
-        for (cells, name) in [(2, "driveable.holes_closing_0.8m"), (5, "driveable.holes_closing_2.0m")] {
+        for (cells, name) in [
+            (2, "driveable.holes_closing_0.8m"),
+            (5, "driveable.holes_closing_2.0m"),
+        ] {
             let (holes, area) = road_holes(&labels, cells);
             self.ratio(name, holes, area);
         }
@@ -103,7 +106,11 @@ impl OccupancyStatistics {
                 } else {
                     if run > 0 && z > run {
                         self.ratio("nonground_vertical_runs_ge_3_share", usize::from(run >= 3), 1);
-                        self.ratio("nonground_vertical_runs_exactly_3_share", usize::from(run == 3), 1);
+                        self.ratio(
+                            "nonground_vertical_runs_exactly_3_share",
+                            usize::from(run == 3),
+                            1,
+                        );
                     }
                     run = 0;
                 }
@@ -191,7 +198,11 @@ fn for_occupied(labels: &[u8], mut visit: impl FnMut(usize, [usize; 3])) {
 fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
     let inside = place.iter().zip(N).all(|(p, n)| (0..n as isize).contains(p));
     if inside {
-        labels[place.iter().zip(STRIDE).map(|(p, s)| *p as usize * s).sum::<usize>()]
+        labels[place
+            .iter()
+            .zip(STRIDE)
+            .map(|(p, s)| *p as usize * s)
+            .sum::<usize>()]
     } else {
         Class::FREE
     }

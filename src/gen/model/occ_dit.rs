@@ -207,11 +207,7 @@ impl OccDit {
     }
 
     /// The same for some tokens, in rising order: only they are computed.
-    pub fn prepare_some(
-        &self,
-        condition: &DitCondition,
-        tokens: Vec<usize>,
-    ) -> Result<Prepared, ModelError> {
+    pub fn prepare_some(&self, condition: &DitCondition, tokens: Vec<usize>) -> Result<Prepared, ModelError> {
         check_length("layout", condition.bev.len(), GridSpec::COLUMNS)?;
         check_length("draft latent", condition.draft_latent.len(), LATENT)?;
         check_length("mask", condition.mask.len(), CELLS)?;
@@ -465,7 +461,13 @@ mod tests {
             let places: Vec<usize> = (0..length).collect();
             for sequence in half.chunks_exact_mut(length * WIDTH) {
                 let mut keys_values = vec![f32::NAN; length * 2 * WIDTH];
-                block.apply(sequence, &block.ada.vector(&time), HEADS, &places, &mut keys_values);
+                block.apply(
+                    sequence,
+                    &block.ada.vector(&time),
+                    HEADS,
+                    &places,
+                    &mut keys_values,
+                );
             }
         }
         out

@@ -57,7 +57,12 @@ impl VaeConfig {
 struct Level(Vec<ResBlock>);
 
 impl Level {
-    fn new(w: &mut WeightFile<'_>, name: &str, width: usize, kernels: &[usize]) -> Result<Self, WeightsError> {
+    fn new(
+        w: &mut WeightFile<'_>,
+        name: &str,
+        width: usize,
+        kernels: &[usize],
+    ) -> Result<Self, WeightsError> {
         let all = kernels.iter().enumerate();
         let blocks = all.map(|(i, k)| ResBlock::new(w, &format!("{name}.blocks.{i}"), width, *k));
         Ok(Self(blocks.collect::<Result<_, _>>()?))
@@ -258,7 +263,9 @@ impl OccVae {
             .map(|cell| {
                 let mut labels = [0; COLUMNS * COLUMNS * HEIGHT];
                 let logits = self.cell_logits(&map, window, *cell);
-                let columns = logits.chunks_exact(CLASSES * HEIGHT).zip(labels.chunks_exact_mut(HEIGHT));
+                let columns = logits
+                    .chunks_exact(CLASSES * HEIGHT)
+                    .zip(labels.chunks_exact_mut(HEIGHT));
                 // Weights and normed features are finite and small, so no logit can be NaN.
                 columns.for_each(|(logits, labels)| kernels::likeliest(logits, labels));
                 labels

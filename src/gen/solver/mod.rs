@@ -76,7 +76,11 @@ pub enum SolverError {
 }
 
 /// Fails unless `found` is `expected`.
-pub(in crate::generation) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), SolverError> {
+pub(in crate::generation) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), SolverError> {
     if found == expected {
         return Ok(());
     }
@@ -87,7 +91,11 @@ pub(in crate::generation) fn check_length(what: &'static str, found: usize, expe
     })
 }
 
-pub(in crate::generation) fn check_finite(state: &[f64], step: usize, steps: usize) -> Result<(), SolverError> {
+pub(in crate::generation) fn check_finite(
+    state: &[f64],
+    step: usize,
+    steps: usize,
+) -> Result<(), SolverError> {
     if state.iter().all(|v| v.is_finite()) {
         return Ok(());
     }

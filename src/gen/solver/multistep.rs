@@ -103,7 +103,9 @@ impl<'a> Stepper<'a> {
                     let step = ObelmStep::new([&self.levels[back], from, to])?;
                     let states = self.before.iter().zip(x).zip(predicted);
                     states
-                        .map(|((before, x), p)| step.forward(*before, *x, noise(self.prediction, from, *x, *p)))
+                        .map(|((before, x), p)| {
+                            step.forward(*before, *x, noise(self.prediction, from, *x, *p))
+                        })
                         .collect()
                 }
             };
@@ -154,7 +156,11 @@ impl<'a> Stepper<'a> {
         let h = half_log_snr(to) - half_log_snr(from);
         let (keep, push) = (to.sigma / from.sigma, -to.alpha * (-h).exp_m1());
         let mut next = lines(&corrected, clean, |x, m| keep * x + push * m);
-        let order = if k == 0 || k + 2 == self.levels.len() { 1 } else { 2 };
+        let order = if k == 0 || k + 2 == self.levels.len() {
+            1
+        } else {
+            2
+        };
         if order == 2 {
             let r = (half_log_snr(&self.levels[k - 1]) - half_log_snr(from)) / h;
             let old = &self.clean[self.clean.len() - 1];

@@ -1,8 +1,6 @@
 //! A sampler: everything about sampling but the network.
 
-use super::{
-    DdimStep, Denoiser, Guidance, Prediction, SolverKind, Stepper, check_finite, clean_estimate,
-};
+use super::{DdimStep, Denoiser, Guidance, Prediction, SolverKind, Stepper, check_finite, clean_estimate};
 use crate::generation::schedule::{Level, Schedule, ScheduleError, Spacing};
 
 /// Training steps that O-BELM uses: above, the signal (6 % here) is too weak to divide by.

@@ -233,7 +233,10 @@ fn row_09_unipc_weights() {
         let (one, two, three) = (series(0), series(1), series(2));
         let found = multistep::weights_of(h);
         for (found, truth) in found.into_iter().zip([two / one, 2.0 * three / one]) {
-            assert!((found / truth - 1.0).abs() <= 1e-10, "h {h:e}: {found}, expected {truth}");
+            assert!(
+                (found / truth - 1.0).abs() <= 1e-10,
+                "h {h:e}: {found}, expected {truth}"
+            );
         }
     }
     assert_eq!(multistep::weights_of(0.0), [0.5, 1.0 / 3.0]);
@@ -249,7 +252,9 @@ fn row_22_obelm_needs_signal() {
         ..Sampler::standard(SolverKind::Ddim, 5, Guidance::NONE).expect("valid")
     };
     let mut model = toy(|x, _| x, |_, _| 0.0);
-    let error = with_pure_noise.sample(vec![0.5], &mut model, |_| Ok(())).expect_err("no signal");
+    let error = with_pure_noise
+        .sample(vec![0.5], &mut model, |_| Ok(()))
+        .expect_err("no signal");
     assert_eq!(
         error.to_string(),
         "no signal at t = 999, expected a noisiest level with alpha above 0"

@@ -121,14 +121,20 @@ fn around(points: &[DVec2]) -> (DVec2, DVec2, f64) {
     if size.x >= size.y {
         (center, size, yaw)
     } else {
-        (center, DVec2::new(size.y, size.x), yaw + std::f64::consts::FRAC_PI_2)
+        (
+            center,
+            DVec2::new(size.y, size.x),
+            yaw + std::f64::consts::FRAC_PI_2,
+        )
     }
 }
 
 /// Centre and size of the rectangle of that heading. Half a column more on every side than the centres.
 fn extent(points: &[DVec2], yaw: f64) -> (DVec2, DVec2) {
     let along = DVec2::from_angle(yaw);
-    let local = points.iter().map(|p| DVec2::new(p.dot(along), p.dot(along.perp())));
+    let local = points
+        .iter()
+        .map(|p| DVec2::new(p.dot(along), p.dot(along.perp())));
     let (low, high) = local.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
         (low.min(p), high.max(p))
     });
@@ -173,8 +179,8 @@ fn split(class: Class, component: &Component) -> Vec<Rectangle> {
     // Cells of an object: at least a voxel each way, so that small things are not cut to crumbs.
     let cell = usual.max(DVec2::splat(2.0 * GridSpec::VOXEL_M));
     let (columns, rows) = (count(size.x, cell.x), count(size.y, cell.y));
-    let height_m = ((component.top + 1) as f64 * GridSpec::VOXEL_M - SMEAR_M)
-        .clamp(0.5 * typical.z, 2.0 * typical.z);
+    let height_m =
+        ((component.top + 1) as f64 * GridSpec::VOXEL_M - SMEAR_M).clamp(0.5 * typical.z, 2.0 * typical.z);
     let mut out = Vec::new();
     for i in 0..columns as usize {
         for j in 0..rows as usize {
@@ -197,14 +203,7 @@ fn split(class: Class, component: &Component) -> Vec<Rectangle> {
 }
 
 /// Grown to the class's usual size where the labels show only the near side: away from the ego.
-fn fitted(
-    middle: DVec2,
-    part: DVec2,
-    yaw: f64,
-    usual: DVec2,
-    height_m: f64,
-    sideways: bool,
-) -> Rectangle {
+fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sideways: bool) -> Rectangle {
     let along = DVec2::from_angle(yaw);
     let axes = [along, along.perp()];
     let size = part.max(usual * 0.9).min(usual * SEVERAL);
@@ -247,7 +246,9 @@ mod tests {
         let mut labels = VoxelGrid::new();
         for b in objects {
             let top = ((b.size_m.z + SMEAR_M) / GridSpec::VOXEL_M).round() as usize;
-            box_cells(b, 0.0, |x, y| (0..top).for_each(|z| labels.set(x, y, z, b.class.id())));
+            box_cells(b, 0.0, |x, y| {
+                (0..top).for_each(|z| labels.set(x, y, z, b.class.id()))
+            });
         }
         labels
     }
@@ -261,14 +262,23 @@ mod tests {
     #[test]
     fn boxes_come_back_from_their_voxels() {
         for class in [Class::Car, Class::Truck, Class::Bus, Class::Barrier] {
-            for (x, y, yaw) in [(12.0, 3.0, 0.0), (-15.0, 8.0, 35.0), (20.0, -18.0, 91.0), (3.0, 25.0, 160.0)] {
+            for (x, y, yaw) in [
+                (12.0, 3.0, 0.0),
+                (-15.0, 8.0, 35.0),
+                (20.0, -18.0, 91.0),
+                (3.0, 25.0, 160.0),
+            ] {
                 let truth = object(class, x, y, yaw);
                 let found: Vec<SceneBox> = boxes(&painted(&[truth])).into_values().collect();
                 let [one] = found[..] else {
                     panic!("{class:?} at {yaw}: {} boxes", found.len());
                 };
                 assert_eq!((one.class, one.problem()), (class, None));
-                assert!(one.center_m.distance(truth.center_m) < 0.5, "{class:?} {yaw}: {}", one.center_m);
+                assert!(
+                    one.center_m.distance(truth.center_m) < 0.5,
+                    "{class:?} {yaw}: {}",
+                    one.center_m
+                );
                 assert!(
                     (one.size_m - truth.size_m).abs().max_element() < 0.95,
                     "{class:?} {yaw}: {}",
@@ -281,7 +291,10 @@ mod tests {
 
     #[test]
     fn touching_cars_are_two_and_half_a_car_is_one() {
-        let row = [object(Class::Car, 10.0, 4.0, 0.0), object(Class::Car, 14.7, 4.0, 0.0)];
+        let row = [
+            object(Class::Car, 10.0, 4.0, 0.0),
+            object(Class::Car, 14.7, 4.0, 0.0),
+        ];
         assert_eq!(boxes(&painted(&row)).len(), 2);
         let mut half = painted(&[object(Class::Car, 14.0, 0.0, 0.0)]);
         for x in 136..200 {
@@ -308,7 +321,10 @@ mod tests {
         ]);
         let found = boxes(&labels);
         let count = |class: Class| found.values().filter(|b| b.class == class).count();
-        assert_eq!((count(Class::Pedestrian), count(Class::TrafficCone), found.len()), (2, 1, 3));
+        assert_eq!(
+            (count(Class::Pedestrian), count(Class::TrafficCone), found.len()),
+            (2, 1, 3)
+        );
         assert!(found.values().all(|b| b.size_m.truncate().max_element() < 1.6));
     }
 }

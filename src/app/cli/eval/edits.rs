@@ -120,16 +120,11 @@ impl Trial {
     pub fn judge(&self, before: &VoxelGrid, after: &VoxelGrid) -> Reached {
         let replaced = self.filled.map(|b| b.class);
         Reached {
-            gone: self
-                .gone
-                .and_then(|b| removed_share(&b, replaced, before, after)),
+            gone: self.gone.and_then(|b| removed_share(&b, replaced, before, after)),
             filled: self.filled.map(|b| filled_share(&b, after)),
             road: (!self.road.is_empty()).then(|| {
-                let is_road = |[x, y]: &&[usize; 2]| {
-                    after
-                        .column(*x, *y)
-                        .contains(&Class::DriveableSurface.id())
-                };
+                let is_road =
+                    |[x, y]: &&[usize; 2]| after.column(*x, *y).contains(&Class::DriveableSurface.id());
                 self.road.iter().filter(is_road).count() as f64 / self.road.len() as f64
             }),
         }
@@ -240,7 +235,10 @@ fn verge(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
     };
     for _ in 0..400 {
         let (x, y) = (10 + draw.below(180), 10 + draw.below(180));
-        let beside = bare(x, y) && [(x - 3, y), (x + 3, y), (x, y - 3), (x, y + 3)].iter().any(|(x, y)| is_road(*x, *y));
+        let beside = bare(x, y)
+            && [(x - 3, y), (x + 3, y), (x, y - 3), (x, y + 3)]
+                .iter()
+                .any(|(x, y)| is_road(*x, *y));
         let mut cells = Vec::new();
         disc_cells(GridSpec::center(x, y, 0).truncate(), 2.0, |x, y| {
             if bare(x, y) {
@@ -258,7 +256,8 @@ fn verge(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
 fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
     let mut draw = Draw::new(seed, "crossing");
     let cells = frame.bev_channels();
-    let road_only = |x: usize, y: usize| cells[x * GridSpec::NY + y] & !line_bits() == BevLayer::DrivableArea.bit();
+    let road_only =
+        |x: usize, y: usize| cells[x * GridSpec::NY + y] & !line_bits() == BevLayer::DrivableArea.bit();
     let lanes: Vec<_> = frame
         .layout
         .polylines

@@ -18,7 +18,11 @@ use crate::scene::{Class, VoxelGrid};
 
 impl Eval {
     /// Encode and decode: complete worlds and simulated labels.
-    pub(super) fn vae(&self, pipeline: &OccPipeline, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
+    pub(super) fn vae(
+        &self,
+        pipeline: &OccPipeline,
+        progress: &Progress,
+    ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let vae = &pipeline.models().vae;
         type Pick = fn(&OccupancyFrame) -> &VoxelGrid;
         let kinds: [(&str, Pick); 2] = [("complete", |f| &f.dense), ("labels", |f| &f.labels)];
@@ -66,7 +70,9 @@ impl Eval {
         let used = &files[..files.len().min(self.frames)];
         for (i, path) in used.iter().enumerate() {
             progress.at("vae", i, used.len());
-            let truth = occ3d::load(path).with_context(|| path.display().to_string())?.labels;
+            let truth = occ3d::load(path)
+                .with_context(|| path.display().to_string())?
+                .labels;
             let mut one = Confusion::default();
             one.add(&truth, &vae.decode(&vae.encode(&truth)?)?);
             total.merge(&one);
