@@ -12,7 +12,7 @@ use crate::editor::Document;
 use crate::generation::job::{GenParams, GenReport, Job, JobCtx, Pipeline};
 use crate::generation::metrics::stats::{mean_ci95, median};
 use crate::generation::pipeline::OccPipeline;
-use crate::scene::{Scene, VoxelGrid};
+use crate::scene::{GridSpec, Scene, VoxelGrid};
 
 /// What was measured of one kind of edit.
 #[derive(Default)]
@@ -24,6 +24,8 @@ struct Kind {
     wall_s: Vec<f64>,
     tokens: Vec<f64>,
     seam: Vec<f64>,
+    dense_wall_s: Vec<f64>,
+    differs_from_dense: Vec<f64>,
 }
 
 impl Kind {
@@ -44,7 +46,11 @@ impl Kind {
             "tokens_median": median(&self.tokens),
             "seam_change_share": with_interval(&self.seam),
         });
+        if !self.dense_wall_s.is_empty() {
+            out["dense_wall_s_median"] = median(&self.dense_wall_s).into();
+        }
         for (name, shares) in [
+            ("region_voxels_that_differ_from_dense", &self.differs_from_dense),
             ("voxels_gone", &self.gone),
             ("columns_filled", &self.filled),
             ("columns_road", &self.road),
@@ -90,7 +96,20 @@ impl Eval {
                 let (after, report) = edited(pipeline, &scene, &trial, params)?;
                 let reached = trial.judge(&scene.frame().occupancy, &after);
                 untouched += report.untouched_voxels_changed;
-                kinds.entry(kind).or_default().add(reached, &report);
+                let entry = kinds.entry(kind).or_default();
+                entry.add(reached, &report);
+                if params.local && report.region_columns > 0 {
+                    // What the other tokens' stored keys and values cost in accuracy, and save in time.
+                    let dense = GenParams {
+                        local: false,
+                        ..params
+                    };
+                    let (all, dense_report) = edited(pipeline, &scene, &trial, dense)?;
+                    let voxels = report.region_columns * GridSpec::NZ;
+                    let share = all.count_different(&after) as f64 / voxels as f64;
+                    entry.differs_from_dense.push(share);
+                    entry.dense_wall_s.push(dense_report.total_s());
+                }
             }
         }
         let report = json!({
