@@ -251,6 +251,8 @@ pub struct GenReport {
     pub voxels_changed: usize,
     /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
     pub objects_kept: usize,
+    /// Columns whose painted ground the networks did not follow, and that were given it.
+    pub ground_kept: usize,
     /// Relative RMS error of encode, invert and sample again, where it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_error: Option<f64>,

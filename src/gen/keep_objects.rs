@@ -1,5 +1,5 @@
-//! The user's word on objects: a box that was placed does not vanish, one that was taken away does not
-//! come back, whatever the networks made of it. Counted, so that reports show when it was needed.
+//! The user's word on objects and ground: a box that was placed does not vanish, one that was taken away does not
+//! come back, painted ground stays, whatever the networks made of it. Counted, so that reports show when it was needed.
 
 use crate::scene::raster::box_cells;
 use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
@@ -26,6 +26,33 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     for (id, b) in &frame.boxes {
         if all || changed(id, b) {
             corrected += usize::from(put_in(region, b, generated));
+        }
+    }
+    corrected
+}
+
+/// Columns of the region whose ground the user has just painted: where the networks left the old ground, the
+/// layout's is laid. Returns how many columns needed it.
+pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) -> usize {
+    let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
+    let mut corrected = 0;
+    for (i, (now, before)) in layouts.enumerate() {
+        let wanted = draft::ground_class(*now);
+        if !region.columns[i] || wanted == draft::ground_class(*before) {
+            continue;
+        }
+        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let is_old = |l: &u8| *l != wanted.id() && Class::from_id(*l).is_some_and(Class::is_ground);
+        if generated.column(x, y).iter().any(is_old) {
+            let column = generated.column_mut(x, y);
+            column
+                .iter_mut()
+                .filter(|l| is_old(l))
+                .for_each(|l| *l = Class::FREE);
+            if column[0] == Class::FREE {
+                column[0] = wanted.id();
+            }
+            corrected += 1;
         }
     }
     corrected
@@ -76,7 +103,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::*;
-    use crate::scene::BevLayout;
+    use crate::scene::{BevLayer, BevLayout};
 
     fn car(id: u32, x: f64) -> SceneBox {
         SceneBox {
@@ -87,6 +114,29 @@ mod tests {
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
         }
+    }
+
+    #[test]
+    fn painted_ground_stays() {
+        let layout = BevLayout::default();
+        let before = draft::draft(&layout, std::iter::empty());
+        let mut frame = Frame::new(layout, std::collections::BTreeMap::new(), before.clone());
+        for x in 50..60 {
+            frame.layout.set(BevLayer::DrivableArea, x, 80, true);
+            frame.layout.set(BevLayer::PedCrossing, x, 90, true); // lies on whatever is there
+        }
+        // Networks that followed half of it, and put a tree on a column.
+        let mut generated = before;
+        let road = Class::DriveableSurface.id();
+        (50..55).for_each(|x| generated.set(x, 80, 0, road));
+        generated.set(57, 80, 0, Class::Vegetation.id());
+        let region = Region::of_edit(&frame, 2);
+        assert_eq!(keep_ground(&frame, &region, &mut generated), 4);
+        assert!((50..60).all(|x| x == 57 || generated.get(x, 80, 0) == road));
+        assert_eq!(generated.get(57, 80, 0), Class::Vegetation.id());
+        assert_eq!(keep_ground(&frame, &region, &mut generated), 0);
+        let mut outside = frame.source.occupancy.clone();
+        assert_eq!(keep_ground(&frame, &Region::empty(), &mut outside), 0);
     }
 
     fn holds_car(grid: &VoxelGrid, x_m: f64) -> bool {

@@ -10,7 +10,7 @@ use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_tr
 use super::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
-use super::keep_objects::keep_objects;
+use super::keep_objects::{keep_ground, keep_objects};
 use super::model::{DitCondition, KeysValues, OccModels, Prepared, tokens_of};
 use super::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use super::replay::{RegionNoise, edit_with_replay};
@@ -452,6 +452,7 @@ impl OccPipeline {
             .map_err(GenError::failed)?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
+            report.ground_kept = keep_ground(frame, &region, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
         self.adopt(
