@@ -123,7 +123,7 @@ mod tests {
         let mut frame = Frame::new(layout, std::collections::BTreeMap::new(), before.clone());
         for x in 50..60 {
             frame.layout.set(BevLayer::DrivableArea, x, 80, true);
-            frame.layout.set(BevLayer::PedCrossing, x, 90, true); // lies on whatever is there
+            frame.layout.set(BevLayer::RoadBlock, x, 90, true); // changes no ground
         }
         // Networks that followed half of it, and put a tree on a column.
         let mut generated = before;
