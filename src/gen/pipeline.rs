@@ -271,6 +271,7 @@ impl OccPipeline {
                 inversion.std, inversion.max_abs
             ));
             solver = SolverKind::Ddim;
+            network.keys_values = Some(StepKeysValues::new());
         };
         let keys_values = network.keys_values.take().map(Arc::new);
         drop(network);
