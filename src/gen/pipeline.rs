@@ -399,11 +399,13 @@ impl OccPipeline {
             .collect();
         let models = self.models.clone();
         let local = self.local_tokens(&source, &sampler, &region, params);
+        // Tokens that are not computed show what they held in the source; if all are, nothing is shown.
+        let kept = source.keys_values.as_deref().filter(|_| local.is_some());
+        let keys_values = kept.cloned().unwrap_or_default();
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(&condition, local, mask, context, guided)
         })?;
-        // Starts from those of the source, so that tokens that are not computed show what they hold.
-        network.keys_values = Some(source.keys_values.as_deref().cloned().unwrap_or_default());
+        network.keys_values = Some(keys_values);
         report.tokens = network.condition.tokens();
         let noise = RegionNoise {
             strength: params.strength,
