@@ -94,7 +94,7 @@ impl World {
             return 0.0;
         };
         match self.ground_class(x, y) {
-            Class::Sidewalk => 0.17 + 0.06 * noise(self.seed, p.x / 14.0, p.y / 14.0),
+            Class::Sidewalk => 0.21 + 0.05 * noise(self.seed, p.x / 14.0, p.y / 14.0),
             Class::Terrain => 0.08 + 0.1 * noise(self.seed, p.x / 9.0, p.y / 9.0),
             Class::OtherFlat => 0.15,
             _ => 0.0,

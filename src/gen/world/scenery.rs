@@ -91,8 +91,8 @@ impl Site<'_> {
 
     fn buildings(&mut self, city: f64) {
         let mut draw = Draw::new(self.seed, "buildings");
-        let setback = draw.range(1.0, 5.0) + (1.0 - city) * 5.0;
-        let tries = (90.0 * city) as usize + 6;
+        let setback = draw.range(0.6, 4.0) + (1.0 - city) * 4.0;
+        let tries = (260.0 * city) as usize + 30;
         let mut placed: Vec<(DVec2, f64)> = Vec::new();
         for _ in 0..tries {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
@@ -185,15 +185,16 @@ impl Site<'_> {
             radius,
             radius * 0.6,
         ));
-        for _ in 0..2 + draw.below(3) {
+        // Boughs with gaps between them rather than one ball.
+        for _ in 0..5 + draw.below(5) {
             let off = DVec3::new(
-                draw.range(-0.8, 0.8),
-                draw.range(-0.8, 0.8),
-                draw.range(-0.3, 0.9),
+                draw.range(-1.0, 1.0),
+                draw.range(-1.0, 1.0),
+                draw.range(-0.4, 1.0),
             );
-            let middle = base + DVec3::Z * (trunk + crown * 0.75) + off * (crown * 0.6);
-            let radii = DVec3::new(1.0, draw.range(0.85, 1.15), draw.range(0.7, 1.1))
-                * (crown * draw.range(0.6, 0.95));
+            let middle = base + DVec3::Z * (trunk + crown * 0.75) + off * (crown * 0.85);
+            let radii = DVec3::new(1.0, draw.range(0.7, 1.3), draw.range(0.5, 0.9))
+                * (crown * draw.range(0.3, 0.6));
             self.out
                 .push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.45));
         }
@@ -202,7 +203,7 @@ impl Site<'_> {
     fn trees(&mut self, green: f64, city: f64) {
         let mut draw = Draw::new(self.seed, "trees");
         // Loose trees behind the sidewalk, thicker away from the city.
-        for _ in 0..(110.0 * green * (1.3 - city)) as usize + 8 {
+        for _ in 0..(170.0 * green * (1.3 - city)) as usize + 12 {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
             let grove = noise(self.seed, p.x / 18.0, p.y / 18.0) > -0.25;
             if grove && self.clear(p, 0.4, 0.3) && !self.inside_solid(p, 0.8) {
@@ -229,7 +230,7 @@ impl Site<'_> {
 
     fn hedges_and_walls(&mut self, green: f64) {
         let mut draw = Draw::new(self.seed, "hedges");
-        for _ in 0..14 {
+        for _ in 0..26 {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
             let Some(axis) = self.away_from_road(p) else {
                 continue;

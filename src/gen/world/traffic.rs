@@ -142,7 +142,7 @@ impl Placer<'_> {
                         Class::Motorcycle,
                         Class::Bicycle,
                         Class::ConstructionVehicle,
-                    ][self.draw.weighted(&[0.74, 0.09, 0.05, 0.03, 0.04, 0.03, 0.02])];
+                    ][self.draw.weighted(&[0.72, 0.13, 0.05, 0.05, 0.03, 0.01, 0.01])];
                     let at = pair[0] + d * (next - along) + d.perp() * self.draw.range(-0.4, 0.4);
                     let speed = if self.draw.chance(0.3) {
                         0.0
@@ -203,7 +203,7 @@ impl Placer<'_> {
     }
 
     fn works(&mut self, amount: f64) {
-        if !self.draw.chance(0.3 * amount) {
+        if !self.draw.chance(0.45 * amount) {
             return;
         }
         let cells: Vec<usize> = self.cells_with(BevLayer::DrivableArea.bit());
@@ -220,7 +220,7 @@ impl Placer<'_> {
             Class::TrafficCone
         };
         let step = if class == Class::Barrier { 2.9 } else { 2.2 };
-        for i in 0..3 + self.draw.below(9) {
+        for i in 0..6 + self.draw.below(16) {
             let turn = if class == Class::Barrier {
                 std::f64::consts::FRAC_PI_2
             } else {
@@ -235,7 +235,7 @@ impl Placer<'_> {
                 |_| true,
             );
         }
-        if self.draw.chance(0.5) {
+        if self.draw.chance(0.35) {
             let side = if self.draw.chance(0.5) { 3.5 } else { -3.5 };
             let at = start + d * self.draw.range(4.0, 12.0) + d.perp() * side;
             self.try_add(Class::ConstructionVehicle, at, yaw, 0.0, |_| true);
@@ -263,7 +263,7 @@ impl Placer<'_> {
                 0.0
             };
             let class = [Class::Pedestrian, Class::Bicycle, Class::Motorcycle]
-                [self.draw.weighted(&[0.86, 0.08, 0.06])];
+                [self.draw.weighted(&[0.94, 0.03, 0.03])];
             self.try_add(class, p + jitter, yaw, speed, |cell| cell & walk != 0);
         }
     }

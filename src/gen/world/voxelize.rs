@@ -21,6 +21,8 @@ pub enum Vertical {
 }
 
 const SMEAR: usize = 2;
+/// Highest bin of a lowest hit that still belongs to something standing on the ground, before the smear.
+const HIGHEST_UNDERSIDE: usize = 6;
 
 /// Sub-voxel samples along each axis.
 const SAMPLES: usize = 3;
@@ -154,7 +156,7 @@ pub fn labels(
     seed: u64,
 ) -> VoxelGrid {
     let mut poses = drive_poses(world, drive);
-    let stray = 0.0015; // hits that land a voxel beside their surface: speckle
+    let stray = 0.0004; // hits that land a voxel beside their surface: speckle
     let mount = pattern.ego_from_sensor();
     let sweeps: Vec<Vec<(u32, u8)>> = poses
         .par_drain(..)
@@ -200,24 +202,64 @@ pub fn labels(
             (_, false) => *count -= 1,
         }
     }
+    let mut ground: Vec<Option<(usize, u8)>> = Vec::with_capacity(GridSpec::COLUMNS);
+    for column_votes in votes.chunks_exact_mut(GridSpec::NZ) {
+        let is_ground = |v: &(u16, u8)| Class::from_id(v.1).is_some_and(Class::is_ground);
+        let z = column_votes.iter().position(is_ground);
+        ground.push(z.map(|z| (z, column_votes[z].1)));
+        // What is left are things that stand on it.
+        let all = column_votes.iter_mut().filter(|v| is_ground(v));
+        all.for_each(|v| *v = (0, Class::FREE));
+    }
+    for _ in 0..2 {
+        ground = closed(&ground);
+    }
     let mut grid = VoxelGrid::new();
     for (c, column_votes) in votes.chunks_exact(GridSpec::NZ).enumerate() {
-        if column_votes.iter().all(|v| v.1 == Class::FREE) {
+        let mut column: [u8; GridSpec::NZ] = std::array::from_fn(|z| column_votes[z].1);
+        if vertical == Vertical::Occ3d {
+            extend_to_ground(&mut column);
+        }
+        if ground[c].is_none() && column.iter().all(|l| *l == Class::FREE) {
             continue;
         }
-        let mut column = [Class::FREE; GridSpec::NZ];
-        let mut ground = None;
-        for (z, (_, class)) in column_votes.iter().enumerate() {
-            match Class::from_id(*class) {
-                Some(k) if k.is_ground() => ground = ground.or(Some((z, *class))),
-                _ => column[z] = *class,
-            }
-        }
-        finish_column(&mut column, ground, vertical);
+        finish_column(&mut column, ground[c], vertical);
         grid.column_mut(c / GridSpec::NY, c % GridSpec::NY)
             .copy_from_slice(&column);
     }
     grid
+}
+
+/// Ground with its small holes filled, as surface reconstruction does before labels are made: a column
+/// without any takes that of its neighbours if five of the eight have some.
+fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
+    let at = |x: usize, y: usize| -> Option<(usize, u8)> {
+        let inside = x < GridSpec::NX && y < GridSpec::NY;
+        inside.then(|| ground[x * GridSpec::NY + y]).flatten()
+    };
+    let fill = |c: usize| {
+        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        let around = (0..9).filter(|i| *i != 4);
+        let near: Vec<(usize, u8)> = around
+            .filter_map(|i| at((x + i / 3).wrapping_sub(1), (y + i % 3).wrapping_sub(1)))
+            .collect();
+        let votes = |g: &(usize, u8)| near.iter().filter(|n| *n == g).count();
+        near.iter().max_by_key(|g| votes(g)).copied().filter(|_| near.len() >= 5)
+    };
+    (0..ground.len()).map(|c| ground[c].or_else(|| fill(c))).collect()
+}
+
+/// Real labels of vehicles and people reach the ground although sensors see little of their undersides:
+/// fills an object's column from its lowest hit downwards.
+fn extend_to_ground(column: &mut [u8; GridSpec::NZ]) {
+    let Some(lowest) = column.iter().position(|l| *l != Class::FREE) else {
+        return;
+    };
+    let is_object = Class::from_id(column[lowest]).is_some_and(|c| Class::OBJECTS.contains(&c));
+    if is_object && lowest <= HIGHEST_UNDERSIDE {
+        let label = column[lowest];
+        column[..lowest].fill(label);
+    }
 }
 
 /// Poses of the labelling drive: along the lane nearest to the ego, as far as it stays in the grid.
