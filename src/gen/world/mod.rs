@@ -94,7 +94,7 @@ impl World {
             return 0.0;
         };
         match self.ground_class(x, y) {
-            Class::Sidewalk => 0.21 + 0.05 * noise(self.seed, p.x / 14.0, p.y / 14.0),
+            Class::Sidewalk => 0.225 + 0.05 * noise(self.seed, p.x / 14.0, p.y / 14.0),
             Class::Terrain => 0.08 + 0.1 * noise(self.seed, p.x / 9.0, p.y / 9.0),
             Class::OtherFlat => 0.15,
             _ => 0.0,
@@ -171,7 +171,7 @@ fn ground_classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
     let to_road = scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea));
     let mut draw = draw::Draw::new(seed, "ground");
     // Some verges are paved (plazas, traffic islands): "other flat" in nuScenes.
-    let paved = draw.chance(0.15);
+    let paved = draw.chance(0.25);
     let mut out = Vec::with_capacity(GridSpec::COLUMNS);
     for (c, &cell) in layout.cells().iter().enumerate() {
         out.push(

@@ -140,7 +140,7 @@ impl Site<'_> {
                     axis.perp(),
                 ));
             }
-            if draw.chance(0.4) {
+            if draw.chance(0.25) {
                 // A porch or canopy towards the road.
                 let front = p - axis * (half_depth + 0.6);
                 let canopy = DVec3::new(draw.range(2.0, 4.0), 1.4, 0.3);
@@ -186,7 +186,7 @@ impl Site<'_> {
             radius * 0.6,
         ));
         // Boughs with gaps between them rather than one ball.
-        for _ in 0..5 + draw.below(5) {
+        for _ in 0..6 + draw.below(6) {
             let off = DVec3::new(
                 draw.range(-1.0, 1.0),
                 draw.range(-1.0, 1.0),
@@ -194,7 +194,7 @@ impl Site<'_> {
             );
             let middle = base + DVec3::Z * (trunk + crown * 0.75) + off * (crown * 0.85);
             let radii = DVec3::new(1.0, draw.range(0.7, 1.3), draw.range(0.5, 0.9))
-                * (crown * draw.range(0.3, 0.6));
+                * (crown * draw.range(0.22, 0.55));
             self.out
                 .push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.45));
         }
@@ -203,11 +203,21 @@ impl Site<'_> {
     fn trees(&mut self, green: f64, city: f64) {
         let mut draw = Draw::new(self.seed, "trees");
         // Loose trees behind the sidewalk, thicker away from the city.
-        for _ in 0..(170.0 * green * (1.3 - city)) as usize + 12 {
+        for _ in 0..(200.0 * green * (1.3 - city)) as usize + 12 {
             let p = DVec2::new(draw.range(-39.0, 39.0), draw.range(-39.0, 39.0));
             let grove = noise(self.seed, p.x / 18.0, p.y / 18.0) > -0.25;
             if grove && self.clear(p, 0.4, 0.3) && !self.inside_solid(p, 0.8) {
                 self.tree(p, &mut draw);
+            }
+        }
+        // Undergrowth: slim shrubs and saplings in patches.
+        for _ in 0..(900.0 * green) as usize {
+            let p = DVec2::new(draw.range(-39.5, 39.5), draw.range(-39.5, 39.5));
+            let patch = noise(self.seed ^ 0x5eed, p.x / 7.0, p.y / 7.0) > 0.1;
+            if patch && self.clear(p, 0.2, 0.2) && !self.inside_solid(p, 0.4) {
+                let (height, radius) = (draw.range(0.5, 2.6), draw.range(0.12, 0.3));
+                let stem = Solid::frustum(Class::Vegetation, p.extend(0.0), height, radius, radius * 0.7);
+                self.out.push(stem);
             }
         }
         // An avenue along the kerb: trees in the outer half of the sidewalk.
@@ -288,7 +298,7 @@ impl Site<'_> {
                 .min_by(|a, b| a.distance(p).total_cmp(&b.distance(p)));
             let toward = lane.map_or(DVec2::X, |l| (l - p).normalize_or(DVec2::X));
             let base = p.extend(0.0);
-            match draw.weighted(&[0.45, 0.3, 0.15, 0.1]) {
+            match draw.weighted(&[0.43, 0.29, 0.15, 0.13]) {
                 0 => {
                     // Street lamp with an arm over the road.
                     let height = draw.range(4.6, 7.0);

@@ -231,7 +231,7 @@ pub fn labels(
 }
 
 /// Ground with its small holes filled, as surface reconstruction does before labels are made: a column
-/// without any takes that of its neighbours if five of the eight have some.
+/// without any takes that of its neighbours if half of the eight have some.
 fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
     let at = |x: usize, y: usize| -> Option<(usize, u8)> {
         let inside = x < GridSpec::NX && y < GridSpec::NY;
@@ -244,7 +244,7 @@ fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
             .filter_map(|i| at((x + i / 3).wrapping_sub(1), (y + i % 3).wrapping_sub(1)))
             .collect();
         let votes = |g: &(usize, u8)| near.iter().filter(|n| *n == g).count();
-        near.iter().max_by_key(|g| votes(g)).copied().filter(|_| near.len() >= 5)
+        near.iter().max_by_key(|g| votes(g)).copied().filter(|_| near.len() >= 4)
     };
     (0..ground.len()).map(|c| ground[c].or_else(|| fill(c))).collect()
 }
