@@ -1,5 +1,5 @@
 """Shards written by `sceneloom dataset occupancy`: shard_NNNNN.safetensors with u8 dense, labels, draft
-[N,200,200,16] and i32 bev [N,200,200]. Memory-mapped; one frame is read at a time."""
+[N,200,200,16], i32 bev and u8 heading [N,200,200]. Memory-mapped; one frame is read at a time."""
 import json
 import queue
 import threading
@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
-GRIDS = {"dense": (200, 200, 16), "labels": (200, 200, 16), "draft": (200, 200, 16), "bev": (200, 200)}
+GRIDS = {"dense": (200, 200, 16), "labels": (200, 200, 16), "draft": (200, 200, 16), "bev": (200, 200),
+         "heading": (200, 200)}
 DTYPES = {"U8": np.uint8, "I32": np.int32, "U32": np.uint32}
 
 
@@ -56,6 +57,33 @@ def turned(grid, symmetry):
     """One of the 8 symmetries of the top view: 0..3 quarter turns, then a mirror image for 4..7."""
     grid = np.rot90(grid, symmetry % 4, (0, 1))
     return np.ascontiguousarray(grid[:, ::-1] if symmetry >= 4 else grid)
+
+
+def turned_heading(heading, symmetry):
+    """A grid of headings (0 none, else 1 + 240ths of a turn) in one of the 8 symmetries, its angles turned with it:
+    `turned` maps x to rows and y to columns, so a quarter turn of the array is one of the ego frame."""
+    turn = heading.astype(np.int64) - 1 + 60 * (symmetry % 4)
+    if symmetry >= 4:
+        turn = -turn  # columns are y
+    return turned(np.where(heading > 0, 1 + turn % 240, 0).astype(np.uint8), symmetry)
+
+
+FREE, DRIVABLE = 17, 1  # label; bit of the layout
+LOW = 8  # man-made things that stay below this bin, 2.2 m above the ground, are clutter
+SPREAD = (2.0, 1.6, 6.0)  # so that ordinary worlds fill most of 0 to 1
+
+
+def named(grid, bev):
+    """[vegetation, building, clutter, completeness] of a frame, each 0 to 1. The first three: root of the share of
+    columns off the road that hold any, times `SPREAD`; the last: share of columns that hold anything. Rust twin:
+    scene/density.rs."""
+    off_road = (bev & DRIVABLE) == 0
+    n = max(1, int(off_road.sum()))
+    high = (grid[:, :, LOW:] == 15).any(-1)
+    manmade = (grid == 15).any(-1)
+    clutter = (manmade & ~high) | (grid == 0).any(-1)
+    shares = [(grid == 16).any(-1), high, clutter]
+    return [min(1.0, k * float(np.sqrt((s & off_road).sum() / n))) for k, s in zip(SPREAD, shares)] + [float((grid != FREE).any(-1).mean())]
 
 
 class Places:

@@ -16,7 +16,7 @@ from safetensors.torch import load_file, save_file
 
 from data import Frames, as_tensor
 from latents import latent_space
-from models.occ_dit import DitConfig, OccDit, unshuffle_layout
+from models.occ_dit import DitConfig, OccDit, cell_headings, unshuffle_layout
 from models.occ_vae import OccVae, VaeConfig
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -61,7 +61,7 @@ def vae_golden(vae, frames):
 
 
 def golden_condition():
-    """Mask, context, draft, layout bits from `uniform`."""
+    """Mask, context, draft, layout bits, headings, named numbers: any language can make them alike."""
     mask = torch.zeros(50, 50)
     mask[10:31, 17:40] = 1
     context = uniform(20000, 2).view(50, 50, 8) * (1 - mask[..., None])
@@ -69,13 +69,15 @@ def golden_condition():
     bev = torch.zeros(200, 200, dtype=torch.int32)
     for layer in range(18):
         bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
-    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None]
+    heading = torch.where((x // 8 + y // 4) % 5 == 0, 1 + (x * 7 + y * 3) % 240, 0)
+    named = torch.tensor([[0.25, 0.0, 0.75, 0.5, 1.0, 0.0, 1.0, 1.0]])
+    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], named
 
 
 @torch.no_grad()
 def dit_golden(dit):
-    mask, context, draft, bev = golden_condition()
-    condition = dit.condition(mask, context, draft, unshuffle_layout(bev))
+    mask, context, draft, bev, heading, named = golden_condition()
+    condition = dit.condition(mask, context, draft, unshuffle_layout(bev), cell_headings(heading), named)
     x = uniform(20000, 1).view(1, 50, 50, 8)
     out = [dit(x, torch.tensor([t]), condition).reshape(-1)[::5] for t in GOLDEN_TIMES]
     return {"t": torch.tensor(GOLDEN_TIMES), "every_fifth_v": torch.stack(out)}

@@ -17,8 +17,11 @@ def latent_space(vae_path):
     return name or hashlib.sha256(Path(vae_path).read_bytes()).hexdigest()[:12]
 
 
+KINDS = ("dense", "draft", "labels")
+
+
 class LatentCache:
-    """One sparse file per shard: [frames, 8 symmetries, (dense, draft), 2500*8] f16, and one byte each: filled or not."""
+    """Per shard one sparse file [frames, 8 symmetries, kinds, 2500*8] f16, and one of a byte each: filled or not."""
 
     def __init__(self, frames, vae, folder, device):
         self.frames, self.vae, self.device, self.maps = frames, vae, device, {}
@@ -27,27 +30,29 @@ class LatentCache:
 
     def _map(self, shard):
         if shard.path not in self.maps:
-            made = []
-            for suffix, dtype, shape in ((".f16", np.float16, (shard.frames, 8, 2, 20000)), (".done", np.uint8, (shard.frames, 8))):
+            made, count = [], (shard.frames, 8, len(KINDS))
+            for suffix, dtype, shape in ((".f16", np.float16, (*count, 20000)), (".done", np.uint8, count)):
                 path = self.folder / (shard.path.stem + suffix)
                 made.append(np.memmap(path, dtype, "r+" if path.exists() else "w+", shape=shape))
             self.maps[shard.path] = made
         return self.maps[shard.path]
 
-    def one(self, frame, symmetry):
-        """f16 [2, 20000]: the latent of the complete frame and of its draft, both turned."""
+    def one(self, frame, symmetry, kinds):
+        """f16 [len(kinds), 20000]: latents of a frame's grids, turned."""
         shard, i = self.frames.index[frame]
         latents, done = self._map(shard)
-        if not done[i, symmetry]:
-            grids = as_tensor([turned(self.frames.read(frame, kind), symmetry) for kind in ("dense", "draft")])
+        at = [KINDS.index(kind) for kind in kinds]
+        missing = [k for k in at if not done[i, symmetry, k]]
+        if missing:
+            grids = as_tensor([turned(self.frames.read(frame, KINDS[k]), symmetry) for k in missing])
             with torch.no_grad():
                 latent = self.vae.encode(grids.to(self.device))
-            latents[i, symmetry] = latent.reshape(2, -1).clamp(-60000, 60000).half().cpu().numpy()
-            done[i, symmetry] = 1
-        return latents[i, symmetry]
+            latents[i, symmetry, missing] = latent.reshape(len(missing), -1).clamp(-60000, 60000).half().cpu().numpy()
+            done[i, symmetry, missing] = 1
+        return latents[i, symmetry, at]
 
-    def batch(self, frames, symmetries):
-        """Two tensors [B,50,50,8] f32: targets and drafts."""
-        both = np.stack([self.one(f, s) for f, s in zip(frames, symmetries)]).astype(np.float32)
+    def batch(self, frames, symmetries, targets):
+        """Two tensors [B,50,50,8] f32: latents of the targets ("dense" or "labels" each) and of the drafts."""
+        both = np.stack([self.one(f, s, (k, "draft")) for f, s, k in zip(frames, symmetries, targets)]).astype(np.float32)
         both = torch.from_numpy(both).view(-1, 2, 50, 50, 8).to(self.device)
         return both[:, 0], both[:, 1]

@@ -64,7 +64,7 @@ def kl_to_normal(mean, logvar):
     return 0.5 * (mean**2 + torch.expm1(logvar) - logvar).mean()
 
 
-def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.03):
+def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.01):
     """Cross-entropy and Lovasz on sampled voxels, and the KL term. Returns the loss and its parts."""
     mean, logvar = model.moments(labels)
     latent = mean
@@ -73,7 +73,7 @@ def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_
         # A little of the latent's own spread, so that the decoder forgives what diffusion gets slightly wrong.
         spread = mean.detach().std((0, 2, 3), keepdim=True)
         latent = latent + torch.randn_like(mean) * spread * latent_noise
-    cells = mean.shape[0] * mean.shape[2] * mean.shape[3]
+    cells = labels.shape[0] * labels.shape[1] * labels.shape[2] // 16  # 1.6 m each, whatever the latent
     index, label, weight = sample_voxels(labels, voxels_per_cell * cells)
     logits = model.logits(model.features(latent).reshape(-1, FEATURES)[index])
     ce = (F.cross_entropy(logits, label, reduction="none") * weight).sum() / weight.sum()

@@ -3,8 +3,10 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import torch
 
+from data import named, turned, turned_heading
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
@@ -92,9 +94,32 @@ def networks_learn():
     dit = OccDit(DitConfig(width=64, depth=2))
     torch.nn.init.normal_(dit.final.weight)
     zeros = torch.zeros(1, 50, 50, 8)
-    condition = dit.condition(torch.ones(1, 50, 50), zeros, zeros, torch.zeros(1, 50, 50, 288))
+    nothing = [torch.zeros(1, 50, 50, 288), torch.zeros(1, 50, 50, 2), torch.zeros(1, 8)]
+    condition = dit.condition(torch.ones(1, 50, 50), zeros, zeros, *nothing)
     dit(torch.randn(1, 50, 50, 8), torch.tensor([500.0]), condition).sum().backward()
     assert all(torch.isfinite(p.grad).all() for p in dit.parameters() if p.grad is not None)
+
+
+def headings_turn_with_their_frames():
+    x, y = np.meshgrid(np.arange(200), np.arange(200), indexing="ij")
+    for symmetry in range(8):
+        for code in (1, 31, 61, 200):
+            angle = (code - 1) / 240 * 2 * np.pi
+            ahead = turned(x * np.cos(angle) + y * np.sin(angle), symmetry)  # grows along the heading
+            found = turned_heading(np.full((200, 200), code, np.uint8), symmetry)[100, 100]
+            angle = (found - 1) / 240 * 2 * np.pi
+            assert abs(np.cos(angle) - (ahead[101, 100] - ahead[100, 100])) < 1e-6, (symmetry, code)
+            assert abs(np.sin(angle) - (ahead[100, 101] - ahead[100, 100])) < 1e-6, (symmetry, code)
+    none = np.zeros((200, 200), np.uint8)
+    assert not turned_heading(none, 3).any()
+
+
+def named_numbers():
+    grid, bev = np.full((200, 200, 16), 17, np.uint8), np.ones((200, 200), np.int32)
+    assert named(grid, bev) == [0, 0, 0, 0]  # a map that is all road and empty
+    bev[:100] = 0
+    grid[:100, :50, 3] = 16
+    assert named(grid, bev) == [1.0, 0, 0, 0.125]
 
 
 if __name__ == "__main__":
@@ -102,6 +127,6 @@ if __name__ == "__main__":
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
-    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn):
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers):
         test()
         print(test.__name__, "ok")

@@ -10,13 +10,14 @@ from safetensors import safe_open
 from safetensors.torch import load_file
 
 import losses
-from data import Frames, Places, as_tensor, draw_masks, prefetch, turned
+from data import Frames, Places, as_tensor, draw_masks, named, prefetch, turned, turned_heading
 from latents import LatentCache, latent_space
 from loop import Run, pick_device
-from models.occ_dit import DitConfig, OccDit, unshuffle_layout
+from models.occ_dit import NAMED, PATCH, DitConfig, OccDit, cell_headings, unshuffle_layout
 from models.occ_vae import OccVae, VaeConfig
 from schedule import STEPS, alpha_bar, ddim_sample
 
+ZERO_AT_FIRST = ("conv2.weight", "conv2.bias", "named2.weight", "named2.bias")
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
 FIRST_OBJECT_LAYER, OBJECT_WEIGHT = 8, 2.0  # the ten object layers follow eight map layers
 
@@ -29,18 +30,37 @@ def load_vae(path, device):
     return vae.to(device, memory_format=torch.channels_last).eval().requires_grad_(False)
 
 
+def begin_with(model, path):
+    """Takes over the weights of a smaller network of the same kind: blocks that it lacks begin as nothing (their last
+    layer is zero), inputs that it lacks begin unheard (zero columns at the end of each cell's channels)."""
+    found = {k: v.float() for k, v in load_file(path).items()}
+    state = model.state_dict()
+    for name, tensor in state.items():
+        old = found.get(name)
+        if old is None:
+            if name.endswith(ZERO_AT_FIRST):
+                tensor.zero_()
+        elif old.shape == tensor.shape:
+            tensor.copy_(old)
+        else:
+            a, b = tensor.view(len(tensor), PATCH * PATCH, -1), old.view(len(old), PATCH * PATCH, -1)
+            a.zero_()
+            a[..., : b.shape[-1]] = b
+    model.load_state_dict(state)
+
+
 # ---- VAE ----
 
 
 @torch.no_grad()
 def measure_latents(vae, frames, device, count=48):
     """Sets the mean and spread of each latent channel over `count` frames (complete, labels, drafts)."""
-    total, square, n = torch.zeros(8, dtype=torch.float64), torch.zeros(8, dtype=torch.float64), 0
+    total, square, n = 0.0, 0.0, 0
     pick = np.linspace(0, len(frames) - 1, min(count, len(frames))).astype(int)
     for i, frame in enumerate(pick):
         grid = as_tensor([frames.read(frame, ("dense", "dense", "labels", "draft")[i % 4])]).to(device)
         mean = vae.moments(grid)[0].double().cpu()
-        total, square, n = total + mean.sum((0, 2, 3)), square + (mean**2).sum((0, 2, 3)), n + 2500
+        total, square, n = total + mean.sum((0, 2, 3)), square + (mean**2).sum((0, 2, 3)), n + mean[:, 0].numel()
     mean = total / n
     vae.latent_mean.copy_(mean)
     vae.latent_std.copy_((square / n - mean**2).clamp(min=1e-8).sqrt())
@@ -63,7 +83,9 @@ def vae_figures(vae, frames, device, count):
 
 def train_vae(args, device, dtype):
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
-    model = OccVae(VaeConfig(widths=(args.width // 4, args.width // 2, args.width))).to(device, memory_format=torch.channels_last)
+    model = OccVae(VaeConfig.fine() if args.fine else VaeConfig()).to(device, memory_format=torch.channels_last)
+    if args.init:
+        begin_with(model, args.init)
     if args.decoder_of:
         model.load_state_dict(load_vae(args.decoder_of, device).state_dict())
         for part in (model.embed, model.encoder, model.encoder_norm, model.encoder_head):
@@ -93,7 +115,7 @@ def train_vae(args, device, dtype):
     for grid in prefetch(make):
         model.train()
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, parts = losses.vae_loss(model, grid.to(device))
+            loss, parts = losses.vae_loss(model, grid.to(device), latent_noise=args.latent_noise)
         run.update(loss, len(grid))
         mean = {k: mean.get(k, v) * 0.95 + v * 0.05 for k, v in parts.items()}
         if run.step % 50 == 0:
@@ -134,22 +156,30 @@ def dit_loss(model, abar, target, condition_parts, mask, generator):
     return (error * (snr1.clamp(max=5.0) / snr1).float()).mean(), error.detach().mean().item()
 
 
+def conditions(frames, picks):
+    """Layout [B,50,50,288], headings [B,50,50,2] and named numbers [B,8] of (frame, symmetry, target) each."""
+    bev = as_tensor([turned(frames.read(i, "bev"), s) for i, s, _ in picks])
+    heading = as_tensor([turned_heading(frames.read(i, "heading"), s) for i, s, _ in picks])
+    values = torch.tensor([named(frames.read(i, kind), frames.read(i, "bev")) for i, _, kind in picks])
+    return unshuffle_layout(bev), cell_headings(heading), torch.cat([values, torch.ones_like(values)], 1)
+
+
 @torch.no_grad()
 def dit_figures(model, vae, abar, cache, frames, device, count, sample):
     generator, total, count = torch.Generator().manual_seed(1), 0.0, min(count, len(frames))
     masks = torch.from_numpy(draw_masks(np.random.default_rng(1), count))
-    target, draft = cache.batch(range(count), [0] * count)
-    layout = unshuffle_layout(as_tensor([frames.read(i, "bev") for i in range(count)]).to(device))
+    target, draft = cache.batch(range(count), [0] * count, ["dense"] * count)
+    layout, heading, given = (x.to(device) for x in conditions(frames, [(i, 0, "dense") for i in range(count)]))
     for part in torch.arange(count).split(8):
         mask = masks[part].to(device)
-        parts = (target[part] * (1 - mask[..., None]), draft[part], layout[part])
+        parts = (target[part] * (1 - mask[..., None]), draft[part], layout[part], heading[part], given[part])
         # Four passes over the noise levels: one has too much noise of its own.
         total += sum(dit_loss(model, abar, target[part], parts, mask, generator)[1] for _ in range(4)) / 4 * len(part)
     out = {"held_out_v": total / count, "miou": 0.0, "iou": 0.0, "draft_miou": 0.0}
     if sample:
         n = min(sample, count)
         ones, zeros = torch.ones(n, 50, 50, device=device), torch.zeros_like(target[:n])
-        condition = model.condition(ones, zeros, draft[:n], layout[:n])
+        condition = model.condition(ones, zeros, draft[:n], layout[:n], heading[:n], given[:n])
         noise = torch.randn(target[:n].shape, generator=generator).to(device)
         found = vae.decode(ddim_sample(lambda x, t: model(x, t, condition), noise, 20))
         truth = as_tensor([frames.read(i, "dense") for i in range(n)])
@@ -167,13 +197,20 @@ def train_dit(args, device, dtype):
     name = latent_space(args.vae)
     cache, held_cache = (LatentCache(f, vae, args.data / f"latents-{name}" / f.folder.name, device) for f in (train, held_out))
     model = OccDit(DitConfig(width=args.width, depth=args.depth)).to(device)
+    if args.init:
+        begin_with(model, args.init)
     run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=300)
     rng = np.random.default_rng([args.seed, run.step])
 
     def make():
-        pick = [(int(rng.integers(len(train))), int(rng.choice(args.symmetries))) for _ in range(args.batch)]
-        bev = as_tensor([turned(train.read(i, "bev"), s) for i, s in pick])
-        return pick, unshuffle_layout(bev), torch.from_numpy(draw_masks(rng, args.batch)), rng.random(args.batch) < 0.1
+        kinds = np.where(rng.random(args.batch) < args.labels, "labels", "dense")
+        pick = [(int(rng.integers(len(train))), int(rng.choice(args.symmetries)), str(k)) for k in kinds]
+        layout, heading, given = conditions(train, pick)
+        # Guidance needs samples without any condition; a designer may name some numbers and not others.
+        drop = torch.from_numpy(rng.random(args.batch) < 0.1)
+        told = torch.from_numpy(rng.random((args.batch, NAMED)) < 0.7) & ~drop[:, None]
+        given = given * torch.cat([told, told], 1)
+        return pick, layout, heading, given, torch.from_numpy(draw_masks(rng, args.batch)), drop
 
     meta = {"kind": "occ_dit", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "vae": name}
     mean, noted, since = 0.0, time.monotonic(), (run.samples, time.monotonic())
@@ -188,13 +225,13 @@ def train_dit(args, device, dtype):
         run.note(figures | {"train_v": mean, "per_s": rate})
         run.save(meta)
 
-    for pick, layout, mask, drop in prefetch(make):
+    for pick, layout, heading, given, mask, drop in prefetch(make):
         target, draft = cache.batch(*zip(*pick))
-        layout, mask = layout.to(device), mask.to(device)
-        keep = torch.from_numpy(~drop).to(device).float().view(-1, 1, 1, 1)
-        context = target * (1 - mask[..., None])
+        layout, heading, given, mask = (x.to(device) for x in (layout, heading, given, mask))
+        keep = (~drop).to(device).float().view(-1, 1, 1, 1)
+        parts = (target * (1 - mask[..., None]), draft * keep, layout * keep, heading * keep, given)
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, v = dit_loss(model, abar, target, (context, draft * keep, layout * keep), mask, None)
+            loss, v = dit_loss(model, abar, target, parts, mask, None)
         run.update(loss, len(pick))
         mean = mean * 0.98 + v * 0.02 if mean else v
         if run.step % 50 == 0:
@@ -217,6 +254,9 @@ def main():
     p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--vae", help="weights of the VAE (dit only)")
+    p.add_argument("--init", help="weights of a network of the same kind to begin with; it may lack blocks and inputs")
+    p.add_argument("--fine", action="store_true", help="latents of 100x100x16 instead of 50x50x8 (vae only)")
+    p.add_argument("--latent-noise", type=float, default=0.01, help="noise on latents in training, in their spread (vae only)")
     p.add_argument("--decoder-of", help="weights of a VAE whose decoder alone is trained on: its latents stay (vae only)")
     p.add_argument("--mix", type=float, nargs=3, default=(0.6, 0.25, 0.15), help="shares of complete worlds, labels, drafts (vae only)")
     p.add_argument("--resume", action="store_true")
@@ -226,16 +266,17 @@ def main():
     p.add_argument("--crop", type=int, default=64, help="voxels along a side of a crop (vae only)")
     p.add_argument("--anywhere", type=float, default=0.35, help="share of crops that are not drawn around objects (vae only)")
     p.add_argument("--lr", type=float)
-    p.add_argument("--width", type=int)
+    p.add_argument("--width", type=int, help="channels of a token (dit only)")
     p.add_argument("--depth", type=int, default=8)
     p.add_argument("--held-out", type=int, help="frames of the held-out figures")
-    p.add_argument("--symmetries", type=int, nargs="+", default=[0, 1, 2, 7], help="of the 8, those whose latents are cached")
+    p.add_argument("--labels", type=float, default=0.25, help="share of samples whose target is labels, not a complete world (dit only)")
+    p.add_argument("--symmetries", type=int, nargs="+", default=[0, 2], help="of the 8, those whose latents are cached (dit only)")
     args = p.parse_args()
     torch.manual_seed(args.seed)
     device, dtype = pick_device(args.threads)
     print(f"device {device}, {'f32' if dtype is None else dtype}, {args.threads} threads", flush=True)
     if args.kind == "vae":
-        args.width, args.held_out, args.batch = args.width or 192, args.held_out or 8, args.batch or 16
+        args.held_out, args.batch = args.held_out or 8, args.batch or 16
         train_vae(args, device, dtype)
     else:
         if not args.vae:

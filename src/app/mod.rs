@@ -16,6 +16,7 @@ pub mod panels;
 pub mod picture;
 mod pipeline;
 mod pointer;
+pub mod roads;
 pub mod sensing;
 pub mod state;
 mod theme;

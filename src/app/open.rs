@@ -7,7 +7,8 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use crate::formats::{occ3d, opendrive, project};
+use crate::formats::opendrive::{self, RoadNetwork};
+use crate::formats::{occ3d, project};
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
 use crate::scene::{Frame, Scene, SensorRig, draft, infer};
@@ -112,8 +113,8 @@ pub struct Imported {
     pub pose: (DVec2, f64),
 }
 
-/// Imports a road network: its layout, seeded traffic, and the draft as occupancy until it is generated.
-pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
+/// Reads an OpenDRIVE file.
+pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
     let name = path.display();
     let size = std::fs::metadata(path)
         .with_context(|| format!("open {name}"))?
@@ -122,7 +123,12 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
         bail!("{name}: {size} bytes, expected at most {LARGEST_TEXT}");
     }
     let bytes = std::fs::read(path).with_context(|| format!("read {name}"))?;
-    let network = opendrive::read(&bytes).with_context(|| name.to_string())?;
+    opendrive::read(&bytes).with_context(|| name.to_string())
+}
+
+/// Imports a road network: its layout, seeded traffic, and the draft as occupancy until it is generated.
+pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
+    let network = road_network(path)?;
     let (at, lane_heading) = match placement.at_m {
         Some(at) => network
             .pose_on_lane_near(at)
@@ -160,8 +166,9 @@ pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
     Some(Scene::single(name, frame, Arc::new(SensorRig::default()), seed))
 }
 
-/// The label files of a folder, at any depth, in the order of their names.
-pub fn label_files(dir: &Path) -> anyhow::Result<Vec<PathBuf>> {
+/// The files of a folder with this extension, at any depth, in the order of their names; an error if
+/// there is none, which says `what` they should hold.
+pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut folders = vec![dir.to_path_buf()];
     while let Some(folder) = folders.pop() {
@@ -171,13 +178,13 @@ pub fn label_files(dir: &Path) -> anyhow::Result<Vec<PathBuf>> {
             // Links are not followed: one that leads upwards would never end.
             if entry.file_type().is_ok_and(|t| t.is_dir()) {
                 folders.push(entry.path());
-            } else if entry.path().extension().is_some_and(|e| e == "npz") {
+            } else if entry.path().extension().is_some_and(|e| e == extension) {
                 found.push(entry.path());
             }
         }
     }
     if found.is_empty() {
-        bail!("{}: no .npz files, expected Occ3D frames", dir.display());
+        bail!("{}: no .{extension} files, expected {what}", dir.display());
     }
     found.sort();
     Ok(found)

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use safetensors::tensor::{Dtype, TensorView};
 
-use super::world::World;
 use super::world::draw::hash;
 use super::world::voxelize::{Drive, Vertical, complete, labels};
-use crate::scene::{GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
+use super::world::{World, template, traffic};
+use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
 /// Frames per shard.
 pub const SHARD_FRAMES: usize = 32;
@@ -24,18 +24,29 @@ pub struct OccupancyFrame {
     pub draft: VoxelGrid,
     /// 18 BEV layers as bits, `[x][y]`.
     pub bev: Vec<u32>,
+    /// Headings of objects as [`raster::headings`] gives them, `[x][y]`.
+    pub heading: Vec<u8>,
+}
+
+/// The world of frame `index` of the data set of `seed`, and the frame's own seed. `roads` may give a
+/// layout for that seed, such as a place on an imported road; where it gives none, a template does.
+pub fn world_of(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> (World, u64) {
+    let seed = hash(hash(seed) ^ index);
+    let layout = roads(seed).unwrap_or_else(|| template::any_layout(seed));
+    let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
+    (World::new(layout, boxes, seed), seed)
 }
 
 /// Frame `index` of the data set of `seed`; the same arguments give the same frame.
-pub fn occupancy_frame(seed: u64, index: u64) -> OccupancyFrame {
-    let seed = hash(hash(seed) ^ index);
-    let world = World::random(seed);
+pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> OccupancyFrame {
+    let (world, seed) = world_of(seed, index, roads);
     let rig = SensorRig::default();
     OccupancyFrame {
         dense: complete(&world, Vertical::Occ3d),
         labels: labels(&world, &rig.lidars[0], &Drive::default(), Vertical::Occ3d, seed),
         draft: draft::draft(&world.layout, world.boxes.values()),
         bev: raster::bev_channels(&world.layout, world.boxes.values()),
+        heading: raster::headings(world.boxes.values()),
     }
 }
 
@@ -47,6 +58,7 @@ impl OccupancyFrame {
         Self {
             draft: draft::draft(&layout, boxes.values()),
             bev: raster::bev_channels(&layout, boxes.values()),
+            heading: raster::headings(boxes.values()),
             dense: labels.clone(),
             labels,
         }
@@ -65,7 +77,7 @@ pub struct DatasetReport {
 }
 
 /// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
-/// `[N,200,200,16]` and i32 `bev` `[N,200,200]`. Shards that exist are kept, so an interrupted run resumes.
+/// `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`. Shards that exist are kept, so an interrupted run resumes.
 /// `make` makes frame i ([`occupancy_frame`], or a file's); its first error ends the run. `progress` gets
 /// the number of finished frames and may end the run by returning false.
 pub fn write_occupancy<E: From<std::io::Error> + Send>(
@@ -115,12 +127,14 @@ fn write_shard(path: &PathBuf, frames: &[OccupancyFrame]) -> std::io::Result<u64
         .iter()
         .flat_map(|f| f.bev.iter().flat_map(|b| b.to_le_bytes()))
         .collect();
+    let heading: Vec<u8> = frames.iter().flat_map(|f| &f.heading).copied().collect();
     let view = |dtype, shape: &[usize], data| TensorView::new(dtype, shape.to_vec(), data);
     let tensors = [
         ("dense", view(Dtype::U8, &voxels, &dense)),
         ("labels", view(Dtype::U8, &voxels, &labels)),
         ("draft", view(Dtype::U8, &voxels, &draft)),
         ("bev", view(Dtype::I32, &voxels[..3], &bev)),
+        ("heading", view(Dtype::U8, &voxels[..3], &heading)),
     ];
     let tensors = tensors
         .into_iter()

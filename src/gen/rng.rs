@@ -11,6 +11,8 @@ pub enum Stream {
     Start = 0,
     /// Fresh noise mixed into the edited region.
     Region = 1,
+    /// Where in the encoder's normal distribution a latent is drawn.
+    Encoder = 2,
 }
 
 /// The ten-round Philox block function: four words from four counter words and two key words.

@@ -151,6 +151,21 @@ pub fn bev_channels<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a Scen
     cells
 }
 
+/// Numbers that a quantised heading takes on, besides 0.
+pub const HEADINGS: u8 = 240;
+
+/// The heading of the object in every column, `[x][y]`: 0 where there is none, else 1 +
+/// yaw / (2 pi / [`HEADINGS`]), rounded. A later box covers an earlier one.
+pub fn headings<'a>(boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u8> {
+    let mut cells = vec![0; GridSpec::COLUMNS];
+    for b in boxes.filter(|b| BevLayer::of_object(b.class).is_some()) {
+        let turns = (b.yaw_rad / std::f64::consts::TAU).rem_euclid(1.0);
+        let code = 1 + (turns * f64::from(HEADINGS)).round() as u8 % HEADINGS;
+        box_cells(b, 0.0, |x, y| cells[x * GridSpec::NY + y] = code);
+    }
+    cells
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,6 +186,20 @@ mod tests {
         let mut out = Vec::new();
         box_cells(b, 0.0, |x, y| out.push((x, y)));
         out
+    }
+
+    #[test]
+    fn headings_are_codes_of_the_yaw() {
+        use std::f64::consts::{FRAC_PI_2, TAU};
+        for (yaw, code) in [(0.0, 1), (FRAC_PI_2, 61), (-FRAC_PI_2, 181), (TAU - 1e-9, 1), (3.0 * TAU, 1)] {
+            let b = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], yaw);
+            let found = headings([b.clone()].iter());
+            assert_eq!(found.iter().max(), Some(&code), "yaw {yaw}");
+            let set = found.iter().filter(|c| **c != 0).count();
+            assert_eq!(set, cells(&b).len());
+        }
+        let nowhere = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], f64::NAN);
+        assert!(headings([nowhere].iter()).iter().all(|c| *c == 0));
     }
 
     /// Row 35 of the extremes table.

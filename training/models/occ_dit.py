@@ -1,7 +1,9 @@
 """Latent diffusion transformer for occupancy. Rust twin: src/gen/model/occ_dit.rs.
 
 Inputs per 50x50 cell: noisy latent 8 | edit mask 1 (1 = generate), clean context latent 8 (0 where the mask is 1),
-draft latent 8 (the VAE's encoding of the layout extruded naively), 18 layout layers of the cell's 4x4 columns (288).
+draft latent 8 (the VAE's encoding of the layout extruded naively), 18 layout layers of the cell's 4x4 columns (288),
+mean cosine and sine of the headings of its objects (2). Four numbers are given by name beside the timestep, each with a
+flag that says whether it is given: vegetation, building, clutter, completeness (`data.named`).
 A token is 2x2 cells: 625 tokens. Predicts v = alpha eps - sigma x0 (Salimans and Ho, 2202.00512).
 Blocks: adaLN-Zero (Peebles and Xie, 2212.09748). The draft is close to the answer nearly everywhere, and the best linear
 guess of v from the noisy latent and the draft depends on the timestep alone: a gate per channel gives that guess, so the
@@ -18,6 +20,8 @@ CELLS = 50
 PATCH = 2
 TOKENS = (CELLS // PATCH) ** 2
 LAYERS = 18
+HEADINGS = 240  # a heading h > 0 is the yaw (h - 1) / 240 of a turn
+NAMED = 4
 
 
 @dataclass
@@ -55,6 +59,14 @@ def unshuffle_layout(bev):
     cells = bev.view(b, CELLS, 4, CELLS, 4).permute(0, 1, 3, 2, 4).reshape(b, CELLS, CELLS, 16, 1)
     bits = (cells >> torch.arange(LAYERS, dtype=bev.dtype, device=bev.device)) & 1
     return bits.reshape(b, CELLS, CELLS, 16 * LAYERS).float()
+
+
+def cell_headings(heading):
+    """u8 [B,200,200] -> [B,50,50,2]: sums of cosines and sines over a cell's columns, / 16."""
+    b = heading.shape[0]
+    angle = (heading.float() - 1) * (2 * math.pi / HEADINGS)
+    both = torch.stack([angle.cos(), angle.sin()], -1) * (heading > 0)[..., None]
+    return both.view(b, CELLS, 4, CELLS, 4, 2).mean((2, 4))
 
 
 def patchify(x):
@@ -103,10 +115,12 @@ class OccDit(nn.Module):
         c = self.config = config or DitConfig()
         patch = PATCH * PATCH
         self.embed_x = nn.Linear(patch * c.latent, c.width)
-        # mask, context, draft, layout: does not depend on x or t, so computed once per job in Rust.
-        self.embed_condition = nn.Linear(patch * (1 + 2 * c.latent + 16 * LAYERS), c.width, bias=False)
+        # mask, context, draft, layout, heading: does not depend on x or t, so computed once per job in Rust.
+        self.embed_condition = nn.Linear(patch * (1 + 2 * c.latent + 16 * LAYERS + 2), c.width, bias=False)
         self.time1 = nn.Linear(c.frequencies, c.width)
         self.time2 = nn.Linear(c.width, c.width)
+        self.named1 = nn.Linear(2 * NAMED, c.width)
+        self.named2 = nn.Linear(c.width, c.width)
         self.blocks = nn.ModuleList(Block(c.width, c.heads) for _ in range(c.depth))
         self.final_ada = nn.Linear(c.width, 2 * c.width)
         self.final = nn.Linear(c.width, patch * c.latent)
@@ -117,19 +131,21 @@ class OccDit(nn.Module):
         nn.init.normal_(self.embed_condition.weight, std=0.04)
         for layer in (self.time1, self.time2):
             nn.init.normal_(layer.weight, std=0.02)
-        for layer in (self.final_ada, self.final, self.skip):
+        for layer in (self.named2, self.final_ada, self.final, self.skip):
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
 
-    def condition(self, mask, context, draft, layout):
-        """mask [B,50,50], context, draft [B,50,50,8], layout [B,50,50,288] -> tokens [B,625,width] and the draft."""
-        tokens = self.embed_condition(patchify(torch.cat([mask[..., None], context, draft, layout], -1)))
-        return tokens + self.positions, draft
+    def condition(self, mask, context, draft, layout, heading, named):
+        """mask [B,50,50], context, draft [B,50,50,8], layout [B,50,50,288], heading [B,50,50,2], named [B,8] (values, 0
+        where not given, then flags) -> tokens [B,625,width], the draft, what is added to the embedded time."""
+        tokens = self.embed_condition(patchify(torch.cat([mask[..., None], context, draft, layout, heading], -1)))
+        return tokens + self.positions, draft, self.named2(F.silu(self.named1(named)))
 
     def forward(self, x, t, condition):
         """x [B,50,50,8], t [B] in 0..=999, condition from above -> v [B,50,50,8]."""
-        tokens, draft = condition
-        c = F.silu(self.time2(F.silu(self.time1(timestep_embedding(t, self.config.frequencies)))))
+        tokens, draft, named = condition
+        time = self.time2(F.silu(self.time1(timestep_embedding(t, self.config.frequencies))))
+        c = F.silu(time + named)
         h = self.embed_x(patchify(x)) + tokens
         for block in self.blocks:
             h = block(h, c)

@@ -1,6 +1,6 @@
-"""Occupancy VAE: 200x200x16 labels <-> latent 50x50x8. Rust twin: src/gen/model/occ_vae.rs.
+"""Occupancy VAE: 200x200x16 labels <-> latent 50x50x8, or 100x100x16 ("fine"). Rust twin: src/gen/model/occ_vae.rs.
 
-Three levels in the top view: columns of 0.4 m (all 16 voxels of one place), 0.8 m and 1.6 m. What a column means does
+Levels in the top view: columns of 0.4 m (all 16 voxels of one place), 0.8 m and, unless it is the fine one, 1.6 m. What a column means does
 not depend on where in its latent cell it lies, so columns share their weights: a cone is learnt once, not once for each
 of the sixteen places it can have in a cell. The encoder sums one embedding per occupied voxel and looks two cells
 (3.2 m) around itself, so its cost follows what is there and an edit changes few latents; the decoder looks three.
@@ -20,12 +20,17 @@ FEATURES = 8  # per voxel, before the class table
 
 @dataclass
 class VaeConfig:
-    """Widths at 0.4, 0.8 and 1.6 m; kernels of the residual blocks of each level, in the order they are passed."""
+    """Widths at 0.4, 0.8 (and 1.6) m; kernels of the residual blocks of each level, in the order they are passed. Each
+    level halves the side, so their number says how many columns a latent cell covers."""
 
     latent: int = 8
     widths: tuple = (48, 96, 192)
-    encoder_kernels: tuple = ((1,), (3,), (3,))
-    decoder_kernels: tuple = ((3, 3), (3,), (1,))
+    encoder_kernels: tuple = ((1,), (3,), (3, 1, 1))
+    decoder_kernels: tuple = ((3, 3, 1), (3,), (1, 1))
+
+    @classmethod
+    def fine(cls):
+        return cls(16, (48, 96), ((1,), (3, 1)), ((3, 3), (1, 1)))
 
     def as_dict(self):
         return asdict(self)
@@ -88,16 +93,17 @@ class OccVae(nn.Module):
     def __init__(self, config=None):
         super().__init__()
         c = self.config = config or VaeConfig()
-        fine, middle, coarse = c.widths
+        fine, coarse = c.widths[0], c.widths[-1]
+        steps = list(zip(c.widths, c.widths[1:]))
         self.embed = nn.EmbeddingBag(HEIGHT * FREE, fine, mode="sum")
         nn.init.normal_(self.embed.weight, std=0.3)
         self.encoder = nn.ModuleList(Level(w, k) for w, k in zip(c.widths, c.encoder_kernels))
-        self.down = nn.ModuleList([nn.Conv2d(4 * fine, middle, 1), nn.Conv2d(4 * middle, coarse, 1)])
+        self.down = nn.ModuleList(nn.Conv2d(4 * a, b, 1) for a, b in steps)
         self.encoder_norm = ChannelNorm(coarse)
         self.encoder_head = nn.Conv2d(coarse, 2 * c.latent, 1)
         self.decoder_stem = nn.Conv2d(c.latent, coarse, 1)
         self.decoder = nn.ModuleList(Level(w, k) for w, k in zip(c.widths[::-1], c.decoder_kernels))
-        self.up = nn.ModuleList([nn.Conv2d(coarse, 4 * middle, 1), nn.Conv2d(middle, 4 * fine, 1)])
+        self.up = nn.ModuleList(nn.Conv2d(b, 4 * a, 1) for a, b in steps[::-1])
         self.decoder_norm = ChannelNorm(fine)
         self.decoder_head = nn.Conv2d(fine, HEIGHT * FEATURES, 1)
         self.class_table = nn.Parameter(torch.randn(CLASSES, FEATURES))
@@ -107,7 +113,7 @@ class OccVae(nn.Module):
         self.register_buffer("latent_std", torch.ones(c.latent))
 
     def moments(self, labels):
-        """Labels u8 [B,X,Y,16] -> mean, log variance [B,8,X/4,Y/4], not normalised."""
+        """Labels u8 [B,X,Y,16] -> mean, log variance [B,C,X/f,Y/f], not normalised; f columns a cell."""
         b, nx, ny, _ = labels.shape
         columns = labels.reshape(-1, HEIGHT)
         occupied = columns != FREE
@@ -118,16 +124,16 @@ class OccVae(nn.Module):
         # [B,X,Y,W] seen as [B,W,X,Y] is channels_last already.
         x = self.embed(codes, offsets).view(b, nx, ny, -1).permute(0, 3, 1, 2)
         x = self.encoder[0](x)
-        x = self.encoder[1](self.down[0](fold(x)))
-        x = self.encoder[2](self.down[1](fold(x)))
+        for down, level in zip(self.down, self.encoder[1:]):
+            x = level(down(fold(x)))
         mean, logvar = self.encoder_head(self.encoder_norm(x)).float().chunk(2, 1)
         return mean, logvar.clamp(-30.0, 20.0)
 
     def features(self, latent):
-        """Latent [B,8,x,y], not normalised -> voxel features [B,4x,4y,16,8]."""
+        """Latent [B,C,x,y], not normalised -> voxel features [B,f x,f y,16,8]."""
         x = self.decoder[0](self.decoder_stem(latent.contiguous(memory_format=torch.channels_last)))
-        x = self.decoder[1](unfold(self.up[0](x)))
-        x = self.decoder[2](unfold(self.up[1](x)))
+        for up, level in zip(self.up, self.decoder[1:]):
+            x = level(unfold(up(x)))
         x = self.decoder_head(self.decoder_norm(x)).permute(0, 2, 3, 1)
         return x.reshape(*x.shape[:3], HEIGHT, FEATURES)
 

@@ -7,6 +7,7 @@ use anyhow::{Context, bail};
 use super::progress::Progress;
 use super::{Common, Outcome, output};
 use crate::app::open;
+use crate::app::roads::Roads;
 use crate::formats::occ3d;
 use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
 
@@ -22,6 +23,10 @@ pub struct Dataset {
     /// Folder of Occ3D frames (`labels.npz`, at any depth) to take instead of procedural worlds.
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
+    /// Folder of OpenDRIVE files (`.xodr`, at any depth): a third of the worlds stand on their roads, the
+    /// rest on templates.
+    #[arg(long, value_name = "DIR", conflicts_with = "from")]
+    roads: Option<PathBuf>,
     /// Fixes the worlds; use different seeds for training, validation and test.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -37,7 +42,7 @@ impl Dataset {
         let progress = Progress::new(&self.common);
         let start = std::time::Instant::now();
         let files = match &self.from {
-            Some(dir) => open::label_files(dir)?,
+            Some(dir) => open::files_below(dir, "npz", "Occ3D frames")?,
             None => Vec::new(),
         };
         let frames = self.frames.unwrap_or(files.len());
@@ -49,13 +54,17 @@ impl Dataset {
                 )
             })()?;
         }
+        let roads = match &self.roads {
+            Some(dir) => Roads::open(dir)?,
+            None => Roads::default(),
+        };
         let make = |i: usize| -> anyhow::Result<OccupancyFrame> {
             Ok(match files.get(i) {
                 Some(path) => {
                     let frame = occ3d::load(path).with_context(|| path.display().to_string())?;
                     OccupancyFrame::of_labels(frame.labels)
                 }
-                None => occupancy_frame(self.seed, i as u64),
+                None => occupancy_frame(self.seed, i as u64, |seed| roads.layout(seed)),
             })
         };
         let report = dataset::write_occupancy(&self.output, frames, make, |done| {

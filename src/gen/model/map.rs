@@ -1,7 +1,5 @@
 //! Feature maps over the top view, and rectangles of latent cells.
 
-use super::{CELLS, SIDE};
-
 /// A feature map: `rows x columns` places of `width` channels, channel fastest.
 #[derive(Clone)]
 pub struct Map {
@@ -65,50 +63,56 @@ pub struct Window {
     pub rows: usize,
     /// Cells along y.
     pub columns: usize,
+    /// Cells of the whole map along x and along y.
+    pub side: usize,
 }
 
 impl Window {
-    /// The wanted cells of the 2,500 and `reach` more on every side, cut to the map; `None` if none
+    /// The wanted cells of a square map and `reach` more on every side, cut to the map; `None` if none
     /// is wanted.
     pub fn around(cells: &[bool], reach: usize) -> Option<Self> {
-        let wanted = || (0..CELLS).filter(|c| cells[*c]);
+        let side = cells.len().isqrt();
+        let wanted = || (0..cells.len()).filter(|c| cells[*c]);
         let (x0, x1) = (
-            wanted().map(|c| c / SIDE).min()?,
-            wanted().map(|c| c / SIDE).max()?,
+            wanted().map(|c| c / side).min()?,
+            wanted().map(|c| c / side).max()?,
         );
         let (y0, y1) = (
-            wanted().map(|c| c % SIDE).min()?,
-            wanted().map(|c| c % SIDE).max()?,
+            wanted().map(|c| c % side).min()?,
+            wanted().map(|c| c % side).max()?,
         );
         let (x, y) = (x0.saturating_sub(reach), y0.saturating_sub(reach));
-        let (x_end, y_end) = ((x1 + reach + 1).min(SIDE), (y1 + reach + 1).min(SIDE));
+        let (x_end, y_end) = ((x1 + reach + 1).min(side), (y1 + reach + 1).min(side));
         Some(Self {
             x,
             y,
             rows: x_end - x,
             columns: y_end - y,
+            side,
         })
     }
 
-    /// The whole map.
-    pub fn whole() -> Self {
+    /// The whole map of `side x side` cells.
+    pub fn whole(side: usize) -> Self {
         Self {
             x: 0,
             y: 0,
-            rows: SIDE,
-            columns: SIDE,
+            rows: side,
+            columns: side,
+            side,
         }
     }
 
     /// Numbers of its cells, row by row.
     pub fn cells(self) -> impl Iterator<Item = usize> {
         (self.x..self.x + self.rows)
-            .flat_map(move |x| (self.y..self.y + self.columns).map(move |y| x * SIDE + y))
+            .flat_map(move |x| (self.y..self.y + self.columns).map(move |y| x * self.side + y))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{CELLS, SIDE};
     use super::*;
 
     #[test]
@@ -142,6 +146,7 @@ mod tests {
             y: 7,
             rows: 8,
             columns: 43,
+            side: SIDE,
         };
         assert_eq!(window, expected);
         assert_eq!(window.cells().count(), 8 * 43);

@@ -1,24 +1,25 @@
-//! Occupancy VAE: 200x200x16 labels to a 50x50x8 latent and back. After UniScene's (design/models.md
-//! 5.1), rebuilt for a CPU: an embedding bag, columns that share their weights at three levels of the
-//! top view (0.4, 0.8, 1.6 m), norms that look at one place only. Twin of `training/models/occ_vae.py`.
+//! Occupancy VAE: 200x200x16 labels to a latent of 50x50x8 (or 100x100x16, the fine one) and back. After
+//! UniScene's (design/models.md 5.1), rebuilt for a CPU: an embedding bag, columns that share their weights
+//! at two or three levels of the top view (0.4, 0.8, 1.6 m), norms that look at one place only. Twin of
+//! `training/models/occ_vae.py`.
 
 use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::layers::{Linear, Norm, ResBlock};
 use super::map::{Map, Window};
-use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
+use super::{ModelError, check_finite, check_length, kernels};
+use crate::generation::rng::{self, Stream};
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
-/// Columns along one side of a cell.
-const COLUMNS: usize = GridSpec::NX / SIDE;
 const HEIGHT: usize = GridSpec::NZ;
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
 const CLASSES: usize = Class::COUNT;
+/// Bounds of the encoder's log variance: beyond them exp leaves f32.
+const LOG_VARIANCE: [f32; 2] = [-30.0, 20.0];
 const OCCUPIED: usize = Class::FREE as usize; // free is the last class
-const LEVELS: usize = 3;
 /// Rows of a map that go through a linear layer in one piece.
 const PIECE: usize = 200;
 
@@ -26,21 +27,26 @@ const PIECE: usize = 200;
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VaeConfig {
-    /// Numbers per latent cell; 8.
+    /// Numbers per latent cell.
     pub latent: usize,
-    /// Channels at 0.4, 0.8 and 1.6 m.
-    pub widths: [usize; LEVELS],
-    /// Kernels (1 or 3) of the encoder's blocks at 0.4, 0.8 and 1.6 m.
-    pub encoder_kernels: [Vec<usize>; LEVELS],
-    /// Kernels (1 or 3) of the decoder's blocks at 1.6, 0.8 and 0.4 m.
-    pub decoder_kernels: [Vec<usize>; LEVELS],
+    /// Channels at 0.4, 0.8 and (if latent cells are that large) 1.6 m.
+    pub widths: Vec<usize>,
+    /// Kernels (1 or 3) of the encoder's blocks at every level, finest first.
+    pub encoder_kernels: Vec<Vec<usize>>,
+    /// Kernels (1 or 3) of the decoder's blocks at every level, coarsest first.
+    pub decoder_kernels: Vec<Vec<usize>>,
 }
 
 impl VaeConfig {
     fn check(&self) -> Result<(), String> {
         let kernels = || self.encoder_kernels.iter().chain(&self.decoder_kernels).flatten();
-        if self.latent != CHANNELS {
-            Err(format!("latent: expected {CHANNELS}, found {}", self.latent))
+        let levels = self.widths.len();
+        if !(1..=64).contains(&self.latent) {
+            Err(format!("latent: expected 1 to 64, found {}", self.latent))
+        } else if !(2..=3).contains(&levels) {
+            Err(format!("widths: expected 2 or 3 levels, found {levels}"))
+        } else if [&self.encoder_kernels, &self.decoder_kernels].iter().any(|k| k.len() != levels) {
+            Err(format!("kernels: expected {levels} levels, as many as widths"))
         } else if self.widths.iter().any(|w| !(1..=4096).contains(w)) {
             Err(format!("widths: expected 1 to 4096, found {:?}", self.widths))
         } else if kernels().count() > 256 {
@@ -50,6 +56,11 @@ impl VaeConfig {
         } else {
             Ok(())
         }
+    }
+
+    /// Latent cells along one side of the map.
+    pub fn side(&self) -> usize {
+        GridSpec::NX >> (self.widths.len() - 1)
     }
 }
 
@@ -81,13 +92,13 @@ impl Level {
 pub struct OccVae {
     config: VaeConfig,
     embed: Vec<f32>, // [z][class][width]
-    encoder: [Level; LEVELS],
-    down: [Linear; 2],
+    encoder: Vec<Level>, // finest first
+    down: Vec<Linear>,
     encoder_norm: Norm,
     encoder_head: Linear,
     decoder_stem: Linear,
-    decoder: [Level; LEVELS],
-    up: [Linear; 2],
+    decoder: Vec<Level>, // coarsest first
+    up: Vec<Linear>,
     decoder_norm: Norm,
     decoder_head: Linear, // with the class table multiplied in: logits of a column, [class][z]
     latent_mean: Vec<f32>,
@@ -101,35 +112,33 @@ impl OccVae {
         config
             .check()
             .map_err(|reason| file.config_error("config", reason))?;
-        let [fine, middle, coarse] = config.widths;
+        let (widths, latent) = (config.widths.clone(), config.latent);
+        let (fine, coarse) = (widths[0], widths[widths.len() - 1]);
+        let upwards: Vec<usize> = widths.iter().rev().copied().collect();
         let w = &mut file;
+        let levels = |w: &mut WeightFile<'_>, name: &str, widths: &[usize], kernels: &[Vec<usize>]| {
+            let each = widths.iter().zip(kernels).enumerate();
+            each.map(|(i, (width, kernels))| Level::new(w, &format!("{name}.{i}"), *width, kernels))
+                .collect::<Result<Vec<_>, _>>()
+        };
+        let steps = |w: &mut WeightFile<'_>, name: &str, sizes: Vec<(usize, usize)>| {
+            let each = sizes.into_iter().enumerate();
+            each.map(|(i, (from, to))| Linear::new(w, &format!("{name}.{i}"), from, to, &[1, 1]))
+                .collect::<Result<Vec<_>, _>>()
+        };
         let vae = Self {
             embed: w.take("embed.weight", &[HEIGHT * OCCUPIED, fine])?,
-            encoder: [
-                Level::new(w, "encoder.0", fine, &config.encoder_kernels[0])?,
-                Level::new(w, "encoder.1", middle, &config.encoder_kernels[1])?,
-                Level::new(w, "encoder.2", coarse, &config.encoder_kernels[2])?,
-            ],
-            down: [
-                Linear::new(w, "down.0", 4 * fine, middle, &[1, 1])?,
-                Linear::new(w, "down.1", 4 * middle, coarse, &[1, 1])?,
-            ],
+            encoder: levels(w, "encoder", &widths, &config.encoder_kernels)?,
+            down: steps(w, "down", widths.windows(2).map(|p| (4 * p[0], p[1])).collect())?,
             encoder_norm: Norm::new(w, "encoder_norm", coarse)?,
-            encoder_head: Linear::new(w, "encoder_head", coarse, 2 * CHANNELS, &[1, 1])?,
-            decoder_stem: Linear::new(w, "decoder_stem", CHANNELS, coarse, &[1, 1])?,
-            decoder: [
-                Level::new(w, "decoder.0", coarse, &config.decoder_kernels[0])?,
-                Level::new(w, "decoder.1", middle, &config.decoder_kernels[1])?,
-                Level::new(w, "decoder.2", fine, &config.decoder_kernels[2])?,
-            ],
-            up: [
-                Linear::new(w, "up.0", coarse, 4 * middle, &[1, 1])?,
-                Linear::new(w, "up.1", middle, 4 * fine, &[1, 1])?,
-            ],
+            encoder_head: Linear::new(w, "encoder_head", coarse, 2 * latent, &[1, 1])?,
+            decoder_stem: Linear::new(w, "decoder_stem", latent, coarse, &[1, 1])?,
+            decoder: levels(w, "decoder", &upwards, &config.decoder_kernels)?,
+            up: steps(w, "up", upwards.windows(2).map(|p| (p[0], 4 * p[1])).collect())?,
             decoder_norm: Norm::new(w, "decoder_norm", fine)?,
             decoder_head: head(w, fine)?,
-            latent_mean: w.take("latent_mean", &[CHANNELS])?,
-            latent_std: w.take("latent_std", &[CHANNELS])?,
+            latent_mean: w.take("latent_mean", &[latent])?,
+            latent_std: w.take("latent_std", &[latent])?,
             config,
         };
         if let Some(i) = vae.latent_std.iter().position(|s| *s < 1e-6) {
@@ -148,48 +157,77 @@ impl OccVae {
         &self.config
     }
 
+    /// Latent cells in all.
+    fn cells(&self) -> usize {
+        self.config.side().pow(2)
+    }
+
+    /// Columns of voxels along one side of a cell.
+    fn columns(&self) -> usize {
+        GridSpec::NX / self.config.side()
+    }
+
     /// How many cells around an edited one may get another latent.
     pub fn encoder_reach(&self) -> usize {
-        let [fine, middle, coarse] = self.encoder.each_ref().map(Level::reach);
         // From the last column of a cell outwards.
-        ((COLUMNS - 1 + fine) / 2 + middle) / 2 + coarse
+        let (finest, rest) = self.encoder.split_first().expect("two levels or more");
+        let first = self.columns() - 1 + finest.reach();
+        rest.iter().fold(first, |reach, level| reach / 2 + level.reach())
     }
 
     /// How many cells around a changed latent may get other labels.
     pub fn decoder_reach(&self) -> usize {
-        let [coarse, middle, fine] = self.decoder.each_ref().map(Level::reach);
-        (2 * (2 * coarse + 1 + middle) + 1 + fine) / COLUMNS
+        let (coarsest, rest) = self.decoder.split_first().expect("two levels or more");
+        let columns = rest
+            .iter()
+            .fold(coarsest.reach(), |reach, level| 2 * reach + 1 + level.reach());
+        columns / self.columns()
     }
 
-    /// The mean latent `[x][y][channel]`, 50x50x8, of zero mean and unit spread over the training set.
+    /// The mean latent `[x][y][channel]`, 50x50x8 (fine: 100x100x16), of zero mean and unit spread over the
+    /// training set.
     pub fn encode(&self, grid: &VoxelGrid) -> Result<Vec<f32>, ModelError> {
-        self.encode_window(grid, Window::whole())
+        Ok(self.encode_window(grid, Window::whole(self.config.side()))?.0)
     }
 
-    /// Renews the latents of some of the 2,500 cells, those that [`encode`](Self::encode) would give;
-    /// the others stay. Computes only what those cells can see.
+    /// A latent drawn from the encoder's normal distribution, as training sees them; the same seed gives the
+    /// same latent.
+    pub fn encode_sampled(&self, grid: &VoxelGrid, seed: u64) -> Result<Vec<f32>, ModelError> {
+        let (mut latent, spread) = self.encode_window(grid, Window::whole(self.config.side()))?;
+        let noise = rng::normal_field(seed, Stream::Encoder, self.cells(), self.config.latent);
+        for ((value, spread), noise) in latent.iter_mut().zip(&spread).zip(&noise) {
+            *value += spread * *noise as f32;
+        }
+        Ok(latent)
+    }
+
+    /// Renews the latents of some cells, those that [`encode`](Self::encode) would give; the others stay.
+    /// Computes only what those cells can see.
     pub fn encode_cells(
         &self,
         grid: &VoxelGrid,
         cells: &[bool],
         latent: &mut [f32],
     ) -> Result<(), ModelError> {
-        check_length("cell mask", cells.len(), CELLS)?;
-        check_length("latent", latent.len(), LATENT)?;
+        let channels = self.config.latent;
+        check_length("cell mask", cells.len(), self.cells())?;
+        check_length("latent", latent.len(), self.cells() * channels)?;
         let Some(window) = Window::around(cells, self.encoder_reach()) else {
             return Ok(());
         };
-        let found = self.encode_window(grid, window)?;
-        for (cell, values) in window.cells().zip(found.chunks_exact(CHANNELS)) {
+        let (found, _) = self.encode_window(grid, window)?;
+        for (cell, values) in window.cells().zip(found.chunks_exact(channels)) {
             if cells[cell] {
-                latent[cell * CHANNELS..][..CHANNELS].copy_from_slice(values);
+                latent[cell * channels..][..channels].copy_from_slice(values);
             }
         }
         Ok(())
     }
 
-    /// Latents of the cells of a window, as if nothing were around it.
-    fn encode_window(&self, grid: &VoxelGrid, window: Window) -> Result<Vec<f32>, ModelError> {
+    /// Means and standard deviations of the cells of a window, as if nothing were around it, in units of the
+    /// latent's spread over the training set.
+    fn encode_window(&self, grid: &VoxelGrid, window: Window) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
+        let channels = self.config.latent;
         let mut map = self.embed_columns(grid, window)?;
         self.encoder[0].apply(&mut map);
         for (down, level) in self.down.iter().zip(&self.encoder[1..]) {
@@ -199,20 +237,25 @@ impl OccVae {
         let mut normed = vec![0.0; map.data.len()];
         self.encoder_norm.rows(&map.data, &mut normed);
         let moments = self.encoder_head.parallel(&normed, PIECE);
-        let mut latent = Vec::with_capacity(window.rows * window.columns * CHANNELS);
-        for cell in moments.chunks_exact(2 * CHANNELS) {
-            let channels = cell.iter().zip(&self.latent_mean).zip(&self.latent_std);
-            latent.extend(channels.map(|((v, mean), std)| (v - mean) / std));
+        let mut latent = Vec::with_capacity(window.rows * window.columns * channels);
+        let mut spread = Vec::with_capacity(latent.capacity());
+        for cell in moments.chunks_exact(2 * channels) {
+            let (means, logvars) = cell.split_at(channels);
+            let of = means.iter().zip(&self.latent_mean).zip(&self.latent_std);
+            latent.extend(of.map(|((v, mean), std)| (v - mean) / std));
+            let of = logvars.iter().zip(&self.latent_std);
+            spread.extend(of.map(|(v, std)| (0.5 * v.clamp(LOG_VARIANCE[0], LOG_VARIANCE[1])).exp() / std));
         }
         check_finite("encoded latent", &latent)?;
-        Ok(latent)
+        Ok((latent, spread))
     }
 
     /// The sum of one embedding per occupied voxel, for every column of a window.
     fn embed_columns(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
         let width = self.config.widths[0];
-        let (rows, columns) = (window.rows * COLUMNS, window.columns * COLUMNS);
-        let (x0, y0) = (window.x * COLUMNS, window.y * COLUMNS);
+        let per_cell = self.columns();
+        let (rows, columns) = (window.rows * per_cell, window.columns * per_cell);
+        let (x0, y0) = (window.x * per_cell, window.y * per_cell);
         let mut data = vec![0.0; rows * columns * width];
         data.par_chunks_mut(columns * width)
             .enumerate()
@@ -244,24 +287,25 @@ impl OccVae {
 
     /// The likeliest label of every voxel; the lowest class wins a tie.
     pub fn decode(&self, latent: &[f32]) -> Result<VoxelGrid, ModelError> {
-        self.decode_cells(latent, &[true; CELLS])
+        self.decode_cells(latent, &vec![true; self.cells()])
     }
 
-    /// The same for some of the 2,500 cells; the others stay free. Computes only what those cells
+    /// The same for some of the cells; the others stay free. Computes only what those cells
     /// can see, and gives them the labels that [`decode`](Self::decode) gives.
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
-        check_length("cell mask", cells.len(), CELLS)?;
-        check_length("latent", latent.len(), LATENT)?;
+        check_length("cell mask", cells.len(), self.cells())?;
+        check_length("latent", latent.len(), self.cells() * self.config.latent)?;
+        let (side, per_cell) = (self.config.side(), self.columns());
         let mut grid = VoxelGrid::new();
         let Some(window) = Window::around(cells, self.decoder_reach()) else {
             return Ok(grid);
         };
         let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
-        let labels: Vec<[u8; COLUMNS * COLUMNS * HEIGHT]> = wanted
+        let labels: Vec<Vec<u8>> = wanted
             .par_iter()
             .map(|cell| {
-                let mut labels = [0; COLUMNS * COLUMNS * HEIGHT];
+                let mut labels = vec![0; per_cell * per_cell * HEIGHT];
                 let logits = self.cell_logits(&map, window, *cell);
                 let columns = logits
                     .chunks_exact(CLASSES * HEIGHT)
@@ -272,10 +316,10 @@ impl OccVae {
             })
             .collect();
         for (cell, labels) in wanted.iter().zip(&labels) {
-            let (x0, y0) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
+            let (x0, y0) = (cell / side * per_cell, cell % side * per_cell);
             for (column, labels) in labels.chunks_exact(HEIGHT).enumerate() {
                 if labels.iter().any(|l| *l != Class::FREE) {
-                    let (x, y) = (x0 + column / COLUMNS, y0 + column % COLUMNS);
+                    let (x, y) = (x0 + column / per_cell, y0 + column % per_cell);
                     grid.column_mut(x, y).copy_from_slice(labels);
                 }
             }
@@ -285,9 +329,9 @@ impl OccVae {
 
     /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
     pub fn logits(&self, latent: &[f32], cell: usize) -> Result<Vec<f32>, ModelError> {
-        let mut cells = [false; CELLS];
+        let mut cells = vec![false; self.cells()];
         cells[cell] = true;
-        check_length("latent", latent.len(), LATENT)?;
+        check_length("latent", latent.len(), self.cells() * self.config.latent)?;
         let Some(window) = Window::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
@@ -302,9 +346,10 @@ impl OccVae {
     /// The decoder's blocks over a window, up to its last norm: one place per column of voxels.
     fn decoder_map(&self, latent: &[f32], window: Window) -> Result<Map, ModelError> {
         check_finite("latent", latent)?;
-        let mut scaled = Vec::with_capacity(window.rows * window.columns * CHANNELS);
+        let channels = self.config.latent;
+        let mut scaled = Vec::with_capacity(window.rows * window.columns * channels);
         for cell in window.cells() {
-            let values = latent[cell * CHANNELS..][..CHANNELS].iter();
+            let values = latent[cell * channels..][..channels].iter();
             scaled.extend(
                 values
                     .zip(&self.latent_std)
@@ -316,7 +361,7 @@ impl OccVae {
             data: self.decoder_stem.parallel(&scaled, PIECE),
             rows: window.rows,
             columns: window.columns,
-            width: self.config.widths[2],
+            width: self.config.widths[self.config.widths.len() - 1],
         };
         self.decoder[0].apply(&mut map);
         for (up, level) in self.up.iter().zip(&self.decoder[1..]) {
@@ -335,16 +380,17 @@ impl OccVae {
 
     /// Logits `[dx][dy][class][z]` of a cell of the window.
     fn cell_logits(&self, map: &Map, window: Window, cell: usize) -> Vec<f32> {
+        let (side, per_cell) = (self.config.side(), self.columns());
         let (x, y) = (
-            (cell / SIDE - window.x) * COLUMNS,
-            (cell % SIDE - window.y) * COLUMNS,
+            (cell / side - window.x) * per_cell,
+            (cell % side - window.y) * per_cell,
         );
-        let mut columns = Vec::with_capacity(COLUMNS * COLUMNS * map.width);
-        for dx in 0..COLUMNS {
+        let mut columns = Vec::with_capacity(per_cell * per_cell * map.width);
+        for dx in 0..per_cell {
             let from = ((x + dx) * map.columns + y) * map.width;
-            columns.extend_from_slice(&map.data[from..from + COLUMNS * map.width]);
+            columns.extend_from_slice(&map.data[from..from + per_cell * map.width]);
         }
-        let mut logits = vec![0.0; COLUMNS * COLUMNS * CLASSES * HEIGHT];
+        let mut logits = vec![0.0; per_cell * per_cell * CLASSES * HEIGHT];
         self.decoder_head.rows(&columns, &mut logits);
         logits
     }

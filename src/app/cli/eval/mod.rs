@@ -15,10 +15,9 @@ use serde_json::{Value, json};
 use crate::app::cli::generate::models;
 use crate::app::cli::progress::Progress;
 use crate::app::cli::{Common, Gen, Outcome, Stop, output};
+use crate::generation::dataset::world_of;
 use crate::generation::metrics::stats::mean_ci95;
 use crate::generation::pipeline::OccPipeline;
-use crate::generation::world::World;
-use crate::generation::world::draw::hash;
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::scene::{Frame, Scene, SensorRig};
 
@@ -54,8 +53,7 @@ fn with_interval(values: &[f64]) -> Value {
 
 /// Held-out world `index` as a scene with complete occupancy.
 fn scene(index: u64) -> Scene {
-    let seed = hash(hash(TEST_SEED) ^ index);
-    let world = World::random(seed);
+    let (world, seed) = world_of(TEST_SEED, index, |_| None);
     let grid = complete(&world, Vertical::Occ3d);
     let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
     Scene::single("held out", frame, Arc::new(SensorRig::default()), seed)

@@ -31,7 +31,7 @@ impl Eval {
         let mut agreement = AgreementCount::default();
         for i in 0..self.frames {
             progress.at("vae", i, self.frames);
-            let world = occupancy_frame(TEST_SEED, i as u64);
+            let world = occupancy_frame(TEST_SEED, i as u64, |_| None);
             for (k, (_, pick)) in kinds.iter().enumerate() {
                 let truth = pick(&world);
                 let found = vae.decode(&vae.encode(truth)?)?;
@@ -66,7 +66,7 @@ impl Eval {
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let vae = &pipeline.models().vae;
         let (mut total, mut frames) = (Confusion::default(), [Vec::new(), Vec::new()]);
-        let files = open::label_files(dir)?;
+        let files = open::files_below(dir, "npz", "Occ3D frames")?;
         let used = &files[..files.len().min(self.frames)];
         for (i, path) in used.iter().enumerate() {
             progress.at("vae", i, used.len());

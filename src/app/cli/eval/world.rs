@@ -6,10 +6,8 @@ use serde_json::{Value, json};
 
 use super::{Bar, Eval, TEST_SEED};
 use crate::app::cli::progress::Progress;
-use crate::generation::dataset::occupancy_frame;
+use crate::generation::dataset::{occupancy_frame, world_of};
 use crate::generation::metrics::occupancy::OccupancyStatistics;
-use crate::generation::world::World;
-use crate::generation::world::draw::hash;
 use crate::scene::Class;
 
 /// Figures of real labels.
@@ -38,11 +36,11 @@ impl Eval {
             progress.at("world", some[0], self.frames);
             let made: Vec<_> = some
                 .par_iter()
-                .map(|i| occupancy_frame(TEST_SEED, *i as u64).labels)
+                .map(|i| occupancy_frame(TEST_SEED, *i as u64, |_| None).labels)
                 .collect();
             for (i, labels) in some.iter().zip(&made) {
                 statistics.add(labels);
-                let world = World::random(hash(hash(TEST_SEED) ^ *i as u64));
+                let (world, _) = world_of(TEST_SEED, *i as u64, |_| None);
                 for (class, name) in [(Class::Car, "cars"), (Class::Pedestrian, "pedestrians")] {
                     let count = world.boxes.values().filter(|b| b.class == class).count();
                     statistics.ratio(&format!("layout.{name}_per_frame_pm40"), count, 1);
