@@ -14,10 +14,12 @@ const SIDES: [usize; 5] = [5, 11, 19, 27, 50];
 
 fn main() {
     let models = OccModels::bundled().expect("the shipped weights load");
-    let frame = occupancy_frame(3, 0);
+    let frame = occupancy_frame(3, 0, |_| None);
     let latent = models.vae.encode(&frame.dense).expect("a sound grid");
     let condition = DitCondition {
         bev: frame.bev,
+        heading: frame.heading,
+        named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
         mask: vec![1.0; CELLS],
         context: vec![0.0; latent.len()],

@@ -21,11 +21,13 @@ fn main() {
     let models = OccModels::bundled().expect("the shipped weights load");
     let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
     let candle = CandleDit::new(bytes, 4).expect("the shipped weights load");
-    let frame = occupancy_frame(3, 0);
+    let frame = occupancy_frame(3, 0, |_| None);
     let [mut encode, mut decode, mut ours, mut theirs] = [const { Vec::new() }; 4];
     let latent = models.vae.encode(&frame.dense).expect("a sound grid");
     let condition = DitCondition {
         bev: frame.bev,
+        heading: frame.heading,
+        named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
         mask: vec![1.0; 2500],
         context: vec![0.0; 20_000],

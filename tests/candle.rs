@@ -23,6 +23,8 @@ fn dit_agrees_with_candle() {
         bev: (0..40_000u32)
             .map(|i| i.wrapping_mul(747_796_405) & 0x3_ffff & (i >> 3))
             .collect(),
+        heading: (0..40_000u32).map(|i| (i * 7 % 961 / 4) as u8).collect(),
+        named: [Some(0.5), None, Some(0.1), Some(1.0)],
         draft_latent: numbers(20_000, 1),
         context: numbers(20_000, 2)
             .iter()

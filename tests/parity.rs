@@ -102,8 +102,14 @@ fn condition() -> DitCondition {
             .map(|l| u32::from((x * 3 + y * 5 + l * 37) % 97 < 11) << l)
             .sum()
     };
+    let heading = |x: usize, y: usize| match (x / 8 + y / 4) % 5 {
+        0 => 1 + ((x * 7 + y * 3) % 240) as u8,
+        _ => 0,
+    };
     DitCondition {
         bev: (0..40_000).map(|c| bits(c / 200, c % 200)).collect(),
+        heading: (0..40_000).map(|c| heading(c / 200, c % 200)).collect(),
+        named: [Some(0.25), None, Some(0.75), Some(0.5)],
         draft_latent: uniform(LATENT, 3),
         context: context.collect(),
         mask,

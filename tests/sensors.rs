@@ -1,11 +1,10 @@
 //! The sensors against the reference data, and their orientation.
 
 use std::fs::File;
-use std::io::BufReader;
 use std::path::PathBuf;
 
 use glam::{DMat3, DQuat, DVec3};
-use npyz::npz::NpzArchive;
+use npyz::NpyFile;
 use sceneloom::generation::sensors::{cloud, color, lidar, order, project, raycast, splat};
 use sceneloom::scene::{Camera, CameraMaps, Class, GridSpec, SensorRig, VoxelGrid};
 use serde_json::Value;
@@ -23,11 +22,9 @@ fn json(name: &str) -> Value {
 }
 
 fn array<T: npyz::Deserialize>(file: &str, name: &str) -> Vec<T> {
-    let mut zip: NpzArchive<BufReader<File>> = NpzArchive::open(reference(file)).expect("an npz file");
-    let array = zip
-        .by_name(name)
-        .expect("readable")
-        .expect("an array of that name");
+    let mut zip = zip::ZipArchive::new(File::open(reference(file)).expect("a file")).expect("an npz file");
+    let array = zip.by_name(&format!("{name}.npy")).expect("an array of that name");
+    let array = NpyFile::new(array).expect("an npy file");
     array.into_vec().expect("the type asked for")
 }
 

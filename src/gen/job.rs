@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::schedule::ScheduleError;
 use super::solver::{Guidance, SolverError, SolverKind};
-use crate::scene::{Scene, SceneRev, VoxelGrid};
+use crate::scene::{Density, Scene, SceneRev, VoxelGrid};
 
 /// What part of the scene is regenerated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -34,6 +34,38 @@ pub enum Quality {
     /// The result to keep.
     #[default]
     Final,
+}
+
+/// Numbers of [`Density`] that the user names; what is not named is left to the networks (all of a scene) or
+/// stays as it is (an edit). Each 0 to 1.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Named {
+    /// How much grows.
+    pub vegetation: Option<f32>,
+    /// How much is built.
+    pub building: Option<f32>,
+    /// How much low furniture stands about.
+    pub clutter: Option<f32>,
+    /// 1 for complete worlds, about 0.4 for what real labels hold.
+    pub completeness: Option<f32>,
+}
+
+impl Named {
+    /// In the networks' order.
+    pub fn values(&self) -> [Option<f32>; 4] {
+        [self.vegetation, self.building, self.clutter, self.completeness]
+    }
+
+    /// With those of `density` where none is named.
+    pub fn or(&self, density: &Density) -> Self {
+        Self {
+            vegetation: self.vegetation.or(Some(density.vegetation)),
+            building: self.building.or(Some(density.building)),
+            clutter: self.clutter.or(Some(density.clutter)),
+            completeness: self.completeness.or(Some(density.completeness)),
+        }
+    }
 }
 
 /// Every knob of a generation. Equal parameters are equal bit for bit, so they can name a cache entry.
@@ -64,6 +96,8 @@ pub struct GenParams {
     pub halo_tokens: u32,
     /// How much work the result is worth.
     pub quality: Quality,
+    /// Densities and completeness asked for.
+    pub named: Named,
     /// Puts the draft of an added or changed box in where the networks left out most of it, so that
     /// what the user placed never vanishes.
     pub keep_objects: bool,
@@ -84,6 +118,7 @@ impl Default for GenParams {
             local: true,
             halo_tokens: 1,
             quality: Quality::Final,
+            named: Named::default(),
             keep_objects: true,
         }
     }
@@ -91,7 +126,7 @@ impl Default for GenParams {
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(&self) -> ([u32; 4], [u64; 4], SolverKind, RegionMode, Quality, [bool; 2]) {
+    fn bits(&self) -> ([u32; 4], [u64; 4], [Option<u32>; 4], SolverKind, RegionMode, Quality, [bool; 2]) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (
@@ -107,6 +142,7 @@ impl GenParams {
                 bits(self.guidance_rescale),
                 bits(self.strength),
             ],
+            self.named.values().map(|v| v.map(|v| (v + 0.0).to_bits())),
             self.solver,
             self.region,
             self.quality,
@@ -129,6 +165,9 @@ impl GenParams {
         in_range("guidance", self.guidance, -100.0, 100.0)?;
         in_range("guidance_rescale", self.guidance_rescale, 0.0, 1.0)?;
         in_range("strength", self.strength, 0.0, 1.0)?;
+        for (name, value) in ["vegetation", "building", "clutter", "completeness"].iter().zip(self.named.values()) {
+            in_range(name, f64::from(value.unwrap_or(0.0)), 0.0, 1.0)?;
+        }
         let iterations = f64::from(self.inversion_iterations);
         in_range("inversion_iterations", iterations, 0.0, 100.0)?;
         in_range("halo_columns", f64::from(self.halo_columns), 0.0, 200.0)

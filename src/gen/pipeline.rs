@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
 use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
 use super::job::{
-    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
+    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
 use super::keep_objects::{keep_ground, keep_objects};
 use super::model::{DitCondition, KeysValues, OccModels, Prepared, tokens_of};
@@ -16,7 +16,8 @@ use super::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use super::replay::{RegionNoise, edit_with_replay};
 use super::rng::{Stream, normal_field};
 use super::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
-use crate::scene::{BevLayout, Frame, GridSpec, SceneBox, VoxelGrid, draft, raster};
+use super::world::draw::hash;
+use crate::scene::{BevLayout, Density, Frame, GridSpec, SceneBox, VoxelGrid, draft, raster};
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
@@ -53,16 +54,29 @@ struct Source {
 /// A layout as the networks read it.
 struct Condition {
     bev: Vec<u32>,
+    heading: Vec<u8>,
+    named: Named,
     draft: VoxelGrid,
 }
 
 impl Condition {
-    fn of<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox> + Clone) -> Self {
+    fn of<'a>(
+        layout: &BevLayout,
+        boxes: impl Iterator<Item = &'a SceneBox> + Clone,
+        named: Named,
+    ) -> Self {
         Self {
             bev: raster::bev_channels(layout, boxes.clone()),
+            heading: raster::headings(boxes.clone()),
+            named,
             draft: draft::draft(layout, boxes),
         }
     }
+}
+
+/// What a frame's source is made of: an edit keeps that character unless the user names another.
+fn density_of_source(frame: &Frame) -> Density {
+    Density::of(&frame.source.occupancy, frame.source.layout.cells())
 }
 
 /// The network as a solver sees it, under one condition.
@@ -170,6 +184,8 @@ impl OccPipeline {
         let draft_latent = self.draft_latent(&condition.draft)?;
         let full = DitCondition {
             bev: condition.bev.clone(),
+            heading: condition.heading.clone(),
+            named: condition.named.values(),
             draft_latent,
             mask,
             context,
@@ -199,7 +215,8 @@ impl OccPipeline {
             layout: condition
                 .bev
                 .iter()
-                .fold(0, |h, b| super::world::draw::hash(h ^ u64::from(*b))),
+                .zip(&condition.heading)
+                .fold(0, |h, (b, yaw)| hash(h ^ u64::from(*b) ^ u64::from(*yaw) << 32)),
             draft: label_hash(&condition.draft),
             steps: params.steps,
             iterations: params.inversion_iterations,
@@ -230,7 +247,7 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<Source, GenError> {
         let old = &*frame.source;
-        let condition = Condition::of(&old.layout, old.boxes.values());
+        let condition = Condition::of(&old.layout, old.boxes.values(), Named::default().or(&density_of_source(frame)));
         let key = self.key(&old.occupancy, &condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
             self.remember(known.clone()); // used last, forgotten last
@@ -298,7 +315,8 @@ impl OccPipeline {
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
         let frame = job.scene.frame();
         let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
-        let condition = Condition::of(&frame.source.layout, frame.source.boxes.values());
+        let named = Named::default().or(&density_of_source(frame));
+        let condition = Condition::of(&frame.source.layout, frame.source.boxes.values(), named);
         let mut network = self.network(
             &condition,
             None,
@@ -315,7 +333,7 @@ impl OccPipeline {
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
-        let condition = Condition::of(&frame.layout, frame.boxes.values());
+        let condition = Condition::of(&frame.layout, frame.boxes.values(), params.named);
         let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
         let guided = sampler.guidance.weight != 1.0;
@@ -387,7 +405,8 @@ impl OccPipeline {
                 ));
             }
         }
-        let condition = Condition::of(&frame.layout, frame.boxes.values());
+        let named = params.named.or(&density_of_source(frame));
+        let condition = Condition::of(&frame.layout, frame.boxes.values(), named);
         let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
         let guided = sampler.guidance.weight != 1.0;
         let latent = source.trajectory.latent_f32();

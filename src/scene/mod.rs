@@ -2,6 +2,7 @@
 
 pub mod boxes;
 pub mod classes;
+pub mod density;
 pub mod draft;
 pub mod grid;
 pub mod infer;
@@ -17,6 +18,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
+pub use density::Density;
 pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use pose::Pose;

@@ -11,7 +11,7 @@ use super::{Common, Gen, Outcome, output};
 use crate::app::open;
 use crate::editor::Document;
 use crate::formats::project;
-use crate::generation::job::{GenParams, GenResult, Job, Pipeline, RegionMode};
+use crate::generation::job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
 use crate::generation::metrics::agreement::layout_agreement;
 use crate::generation::model::OccModels;
 use crate::generation::pipeline::OccPipeline;
@@ -38,6 +38,10 @@ pub fn full_params() -> GenParams {
         region: RegionMode::Full,
         steps: 20,
         guidance: 1.5,
+        named: Named {
+            completeness: Some(1.0),
+            ..Named::default()
+        },
         ..GenParams::default()
     }
 }

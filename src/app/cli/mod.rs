@@ -21,7 +21,7 @@ pub(in crate::app) use generate::full_params;
 use clap::{Args, Parser, Subcommand};
 
 use crate::app::open;
-use crate::generation::job::{GenParams, RegionMode};
+use crate::generation::job::{Named, GenParams, RegionMode};
 use crate::generation::solver::SolverKind;
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
@@ -84,6 +84,21 @@ struct Gen {
     /// Classifier-free guidance weight; 1 means none.
     #[arg(long, value_name = "W")]
     guidance: Option<f64>,
+    /// How far guided predictions are scaled back to the spread of the unguided ones, 0 to 1.
+    #[arg(long, value_name = "R")]
+    guidance_rescale: Option<f64>,
+    /// How much grows beside the road, 0 to 1; not named, the networks choose, or an edit keeps it.
+    #[arg(long, value_name = "D")]
+    vegetation: Option<f32>,
+    /// How much is built beside the road, 0 to 1.
+    #[arg(long, value_name = "D")]
+    buildings: Option<f32>,
+    /// How much low furniture stands beside the road, 0 to 1.
+    #[arg(long, value_name = "D")]
+    clutter: Option<f32>,
+    /// Share of columns that hold anything: 1 complete, about 0.4 as real labels are.
+    #[arg(long, value_name = "D")]
+    completeness: Option<f32>,
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -110,6 +125,13 @@ impl Gen {
             steps: self.steps.unwrap_or(default.steps),
             solver: self.solver.unwrap_or(default.solver),
             guidance: self.guidance.unwrap_or(default.guidance),
+            guidance_rescale: self.guidance_rescale.unwrap_or(default.guidance_rescale),
+            named: Named {
+                vegetation: self.vegetation.or(default.named.vegetation),
+                building: self.buildings.or(default.named.building),
+                clutter: self.clutter.or(default.named.clutter),
+                completeness: self.completeness.or(default.named.completeness),
+            },
             seed: self.seed,
             region: match self.region.as_deref() {
                 Some("full") => RegionMode::Full,

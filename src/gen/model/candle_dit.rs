@@ -73,12 +73,18 @@ impl CandleDit {
         let cell = |i: usize, j: usize| -> Vec<f32> {
             let at = i * 50 + j;
             let mut features = vec![c.mask[at]];
+            let mut heading = [0.0; 2];
             features.extend(&c.context[at * CHANNELS..(at + 1) * CHANNELS]);
             features.extend(&c.draft_latent[at * CHANNELS..(at + 1) * CHANNELS]);
             for column in 0..16 {
-                let bits = c.bev[(4 * i + column / 4) * 200 + 4 * j + column % 4];
-                features.extend((0..18).map(|layer| (bits >> layer & 1) as f32));
+                let place = (4 * i + column / 4) * 200 + 4 * j + column % 4;
+                features.extend((0..18).map(|layer| (c.bev[place] >> layer & 1) as f32));
+                if let Some(code) = c.heading[place].checked_sub(1) {
+                    let (sin, cos) = (f32::from(code) * std::f32::consts::TAU / 240.0).sin_cos();
+                    heading = [heading[0] + cos / 16.0, heading[1] + sin / 16.0];
+                }
             }
+            features.extend(heading);
             features
         };
         let tokens = patches(cell);
@@ -96,9 +102,12 @@ impl CandleDit {
         let mut time: Vec<f32> = (0..frequencies).map(|i| angle(i).cos() as f32).collect();
         time.extend((0..frequencies).map(|i| angle(i).sin() as f32));
         let time = Tensor::from_vec(time, (1, 2 * frequencies), &Device::Cpu)?;
-        let c = self
-            .linear("time2", &self.linear("time1", &time)?.silu()?)?
-            .silu()?; // [1, W]
+        let mut named: Vec<f32> = c.named.iter().map(|n| n.unwrap_or(0.0)).collect();
+        named.extend(c.named.iter().map(|n| f32::from(u8::from(n.is_some()))));
+        let named = Tensor::from_vec(named, (1, 8), &Device::Cpu)?;
+        let named = self.linear("named2", &self.linear("named1", &named)?.silu()?)?;
+        let time = self.linear("time2", &self.linear("time1", &time)?.silu()?)?;
+        let c = (time + named)?.silu()?; // [1, W]
         let tokens = patches(|i, j| state[(i * 50 + j) * CHANNELS..][..CHANNELS].to_vec());
         let tokens = Tensor::from_vec(tokens, (TOKENS, 4 * CHANNELS), &Device::Cpu)?;
         let mut x = (self.linear("embed_x", &tokens)? + condition)?; // [625, W]

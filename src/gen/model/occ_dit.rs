@@ -9,6 +9,7 @@ use super::layers::{Head, Linear, NORM_EPS};
 use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::GridSpec;
+use crate::scene::raster::HEADINGS;
 
 const PATCH: usize = 2;
 const TOKENS_PER_SIDE: usize = SIDE / PATCH;
@@ -18,8 +19,12 @@ const COLUMNS: usize = GridSpec::NX / SIDE;
 const LAYERS: usize = 18;
 /// Layout channels of a cell: one per column and layer, `(dx * 4 + dy) * 18 + layer`.
 const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
-/// Mask, context, draft, layout.
-const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT;
+/// Mean cosine and sine of headings in a cell.
+const HEADING: usize = 2;
+/// Mask, context, draft, layout, heading.
+const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT + HEADING;
+/// Numbers given by name.
+const NAMED: usize = 4;
 /// Most tokens that are worked on in one piece.
 const PIECE: usize = 80;
 /// Fewest: small sets are spread over the cores too.
@@ -73,6 +78,10 @@ impl DitConfig {
 pub struct DitCondition {
     /// Bits of the 18 layers, `[x][y]`, 200x200.
     pub bev: Vec<u32>,
+    /// Headings of objects as [`headings`](crate::scene::raster::headings) gives them, `[x][y]`, 200x200.
+    pub heading: Vec<u8>,
+    /// Vegetation, building, clutter, completeness where they are given (`Density`), 0 to 1.
+    pub named: [Option<f32>; NAMED],
     /// Latent of the layout extruded naively, 50x50x8.
     pub draft_latent: Vec<f32>,
     /// 1 where a cell is to be generated, 0 where it is kept, 50x50.
@@ -90,6 +99,8 @@ pub struct Prepared {
     embedded: Vec<f32>,
     /// Draft latent, 50x50x8.
     draft: Vec<f32>,
+    /// What the named numbers add to the embedded time, `[width]`.
+    named: Vec<f32>,
 }
 
 impl Prepared {
@@ -141,6 +152,8 @@ pub struct OccDit {
     embed_condition: Linear,
     time1: Linear,
     time2: Linear,
+    named1: Linear,
+    named2: Linear,
     blocks: Vec<Block>,
     final_ada: Linear,
     last: Linear,
@@ -174,6 +187,8 @@ impl OccDit {
             embed_condition: Linear::without_bias(w, "embed_condition", PATCH_CELLS * CONDITION, width, &[])?,
             time1: Linear::new(w, "time1", config.frequencies, width, &[])?,
             time2: Linear::new(w, "time2", width, width, &[])?,
+            named1: Linear::new(w, "named1", 2 * NAMED, width, &[])?,
+            named2: Linear::new(w, "named2", width, width, &[])?,
             blocks: (0..config.depth)
                 .map(|i| block(w, i))
                 .collect::<Result<_, WeightsError>>()?,
@@ -192,10 +207,12 @@ impl OccDit {
         &self.config
     }
 
-    /// The condition without layout and draft, for guidance: what training shows one time in ten.
+    /// The condition without layout, draft and named numbers, for guidance: what training shows one time in ten.
     pub fn null_condition(&self, condition: &DitCondition) -> DitCondition {
         DitCondition {
             bev: vec![0; condition.bev.len()],
+            heading: vec![0; condition.heading.len()],
+            named: [None; NAMED],
             draft_latent: vec![0.0; condition.draft_latent.len()],
             ..condition.clone()
         }
@@ -209,6 +226,8 @@ impl OccDit {
     /// The same for some tokens, in rising order: only they are computed.
     pub fn prepare_some(&self, condition: &DitCondition, tokens: Vec<usize>) -> Result<Prepared, ModelError> {
         check_length("layout", condition.bev.len(), GridSpec::COLUMNS)?;
+        check_length("headings", condition.heading.len(), GridSpec::COLUMNS)?;
+        check_finite("named numbers", &condition.named.map(|n| n.unwrap_or(0.0)))?;
         check_length("draft latent", condition.draft_latent.len(), LATENT)?;
         check_length("mask", condition.mask.len(), CELLS)?;
         check_length("context", condition.context.len(), LATENT)?;
@@ -231,10 +250,15 @@ impl OccDit {
             let position = &self.positions[token * width..][..width];
             row.iter_mut().zip(position).for_each(|(e, p)| *e += p);
         }
+        let given = condition.named.map(|n| f32::from(u8::from(n.is_some())));
+        let values = condition.named.map(|n| n.unwrap_or(0.0));
+        let mut named = self.named1.vector(&[values, given].concat());
+        named.iter_mut().for_each(|v| *v = kernels::silu(*v));
         Ok(Prepared {
             tokens,
             embedded,
             draft: condition.draft_latent.clone(),
+            named: self.named2.vector(&named),
         })
     }
 
@@ -269,7 +293,9 @@ impl OccDit {
         let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
         time.iter_mut().for_each(|v| *v = kernels::silu(*v));
         let mut time = self.time2.vector(&time);
-        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
+        for (t, named) in time.iter_mut().zip(&condition.named) {
+            *t = kernels::silu(*t + named);
+        }
 
         let cells = || places.iter().flat_map(|token| patch(*token));
         let patches: Vec<f32> = cells()
@@ -307,20 +333,30 @@ impl OccDit {
 }
 
 impl DitCondition {
-    /// Mask, context, draft and layout of one cell.
+    /// Mask, context, draft, layout and headings of one cell.
     fn cell_features(&self, cell: usize, values: &mut [f32]) {
         values[0] = self.mask[cell];
         let of = |latent: &[f32], to: &mut [f32]| to.copy_from_slice(&latent[cell * CHANNELS..][..CHANNELS]);
         of(&self.context, &mut values[1..][..CHANNELS]);
         of(&self.draft_latent, &mut values[1 + CHANNELS..][..CHANNELS]);
-        for (column, layers) in values[1 + 2 * CHANNELS..].chunks_exact_mut(LAYERS).enumerate() {
+        let (layout, heading) = values[1 + 2 * CHANNELS..].split_at_mut(LAYOUT);
+        let [mut cos_sum, mut sin_sum] = [0.0; 2];
+        for (column, layers) in layout.chunks_exact_mut(LAYERS).enumerate() {
             let x = cell / SIDE * COLUMNS + column / COLUMNS;
             let y = cell % SIDE * COLUMNS + column % COLUMNS;
             let bits = self.bev[x * GridSpec::NY + y];
             for (layer, value) in layers.iter_mut().enumerate() {
                 *value = (bits >> layer & 1) as f32;
             }
+            let code = self.heading[x * GridSpec::NY + y];
+            if code > 0 {
+                let angle = f32::from(code - 1) * (std::f32::consts::TAU / f32::from(HEADINGS));
+                cos_sum += angle.cos();
+                sin_sum += angle.sin();
+            }
         }
+        let columns = (COLUMNS * COLUMNS) as f32;
+        heading.copy_from_slice(&[cos_sum / columns, sin_sum / columns]);
     }
 }
 

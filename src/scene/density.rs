@@ -1,0 +1,76 @@
+//! What a frame is made of, in four numbers: a condition of the generation, and what its sliders mean.
+//! Twin of `named` in `training/data.py`.
+
+use super::{BevLayer, Class, GridSpec, VoxelGrid};
+
+/// Man-made things that stay below this bin, 2.2 m above the ground, are clutter; others are buildings.
+const LOW: usize = 8;
+
+/// How much stands beside the road, and how completely it is known; each 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Density {
+    /// Trees and bushes: twice the root of the share of columns off the road that hold any.
+    pub vegetation: f32,
+    /// Man-made things above 2.2 m: 1.6 times that root.
+    pub building: f32,
+    /// Lower man-made things and `others`: 6 times that root.
+    pub clutter: f32,
+    /// Share of all columns that hold anything: 1 for complete worlds, about 0.4 for labels made from LiDAR.
+    pub completeness: f32,
+}
+
+impl Density {
+    /// Of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
+    pub fn of(grid: &VoxelGrid, bev: &[u32]) -> Self {
+        let [mut off_road, mut vegetation, mut building, mut clutter, mut any] = [0u32; 5];
+        for (c, bits) in bev.iter().enumerate().take(GridSpec::COLUMNS) {
+            let column = grid.column(c / GridSpec::NY, c % GridSpec::NY);
+            let holds = |class: Class| column.contains(&class.id());
+            any += u32::from(column.iter().any(|l| *l != Class::FREE));
+            if bits & BevLayer::DrivableArea.bit() != 0 {
+                continue;
+            }
+            let high = column[LOW..].contains(&Class::Manmade.id());
+            off_road += 1;
+            vegetation += u32::from(holds(Class::Vegetation));
+            building += u32::from(high);
+            clutter += u32::from(!high && holds(Class::Manmade) || holds(Class::Others));
+        }
+        let part = |scale: f32, n: u32| (scale * (n as f32 / off_road.max(1) as f32).sqrt()).min(1.0);
+        Self {
+            vegetation: part(2.0, vegetation),
+            building: part(1.6, building),
+            clutter: part(6.0, clutter),
+            completeness: any as f32 / GridSpec::COLUMNS as f32,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_columns_off_the_road() {
+        let road = BevLayer::DrivableArea.bit();
+        let mut grid = VoxelGrid::new();
+        assert_eq!(Density::of(&grid, &vec![road; GridSpec::COLUMNS]), Density::default());
+        let mut bev = vec![road; GridSpec::COLUMNS];
+        bev[..100 * GridSpec::NY].fill(0);
+        for x in 0..100 {
+            for y in 0..50 {
+                grid.set(x, y, 3, Class::Vegetation.id());
+            }
+        }
+        // A quarter of the columns off the road, an eighth of all.
+        let found = Density::of(&grid, &bev);
+        assert_eq!((found.vegetation, found.building, found.clutter), (1.0, 0.0, 0.0));
+        assert_eq!(found.completeness, 0.125);
+        grid.set(150, 3, 9, Class::Manmade.id()); // on the road: not counted
+        grid.set(50, 150, 9, Class::Manmade.id());
+        grid.set(51, 150, 2, Class::Manmade.id());
+        let found = Density::of(&grid, &bev);
+        let one = (1.0f32 / 20_000.0).sqrt();
+        assert!((found.building - 1.6 * one).abs() < 1e-6 && (found.clutter - 6.0 * one).abs() < 1e-6);
+    }
+}
