@@ -363,7 +363,7 @@ fn occ3d_frames_are_scenes_and_training_data() {
     assert!(Path::new(&shards).join("shard_00000.safetensors").exists());
     let report = json(&sceneloom(&["eval", "vae", "--data", &data, "--json"]));
     assert_eq!(report["files"], 2);
-    assert!(report["labels"]["iou"].as_f64() > Some(0.5), "{report}");
+    assert!(report["labels"]["mean"]["iou"].as_f64() > Some(0.5), "{report}");
 
     refused(
         &["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards],

@@ -1,6 +1,7 @@
 //! Figures of merit, each with its definition.
 
 pub mod agreement;
+pub mod extractor;
 pub mod frechet;
 pub mod iou;
 pub mod kernel;

@@ -2,6 +2,7 @@
 //! files have the same names and the same order of blocks.
 
 pub mod candle_dit;
+pub mod encoder;
 #[cfg(test)]
 mod golden;
 pub mod kernels;
@@ -70,6 +71,13 @@ pub enum ModelError {
     /// A time outside the schedule.
     #[error("timestep is {0}, expected 0 to 999")]
     Timestep(f32),
+}
+
+/// The VAE of 100x100x16 latents that ships with the program: it keeps nearly every label, and no network
+/// generates its latents yet.
+pub fn fine_vae() -> Result<OccVae, WeightsError> {
+    let bytes = include_bytes!("../../../assets/weights/occ_vae_fine.safetensors");
+    OccVae::new(WeightFile::parse("occ_vae_fine.safetensors", bytes)?)
 }
 
 fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), ModelError> {
@@ -158,8 +166,18 @@ impl OccModels {
             );
             return Err(dit.config_error("vae", reason));
         }
+        let expected = [SIDE, CHANNELS];
+        let vae_name = vae.name().to_owned();
+        let vae = OccVae::new(vae)?;
+        let found = [vae.config().side(), vae.config().latent];
+        if found != expected {
+            return Err(dit.config_error(
+                "vae",
+                format!("expected latents of {expected:?} (side, numbers), found {found:?} in {vae_name}"),
+            ));
+        }
         Ok(Self {
-            vae: OccVae::new(vae)?,
+            vae,
             dit: OccDit::new(dit)?,
             card,
         })

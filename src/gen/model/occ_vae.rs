@@ -6,22 +6,19 @@
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::layers::{Linear, Norm, ResBlock};
+use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps, through};
+use super::layers::{Linear, Norm};
 use super::map::{Map, Window};
 use super::{ModelError, check_finite, check_length, kernels};
 use crate::generation::rng::{self, Stream};
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
-const HEIGHT: usize = GridSpec::NZ;
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
 const CLASSES: usize = Class::COUNT;
 /// Bounds of the encoder's log variance: beyond them exp leaves f32.
 const LOG_VARIANCE: [f32; 2] = [-30.0, 20.0];
-const OCCUPIED: usize = Class::FREE as usize; // free is the last class
-/// Rows of a map that go through a linear layer in one piece.
-const PIECE: usize = 200;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -64,37 +61,10 @@ impl VaeConfig {
     }
 }
 
-/// Residual blocks of one width.
-struct Level(Vec<ResBlock>);
-
-impl Level {
-    fn new(
-        w: &mut WeightFile<'_>,
-        name: &str,
-        width: usize,
-        kernels: &[usize],
-    ) -> Result<Self, WeightsError> {
-        let all = kernels.iter().enumerate();
-        let blocks = all.map(|(i, k)| ResBlock::new(w, &format!("{name}.blocks.{i}"), width, *k));
-        Ok(Self(blocks.collect::<Result<_, _>>()?))
-    }
-
-    fn apply(&self, map: &mut Map) {
-        self.0.iter().for_each(|block| block.apply(map));
-    }
-
-    fn reach(&self) -> usize {
-        self.0.iter().map(ResBlock::reach).sum()
-    }
-}
-
 /// The network with its weights.
 pub struct OccVae {
     config: VaeConfig,
-    embed: Vec<f32>, // [z][class][width]
-    encoder: Vec<Level>, // finest first
-    down: Vec<Linear>,
-    encoder_norm: Norm,
+    encoder: Encoder,
     encoder_head: Linear,
     decoder_stem: Linear,
     decoder: Vec<Level>, // coarsest first
@@ -116,21 +86,8 @@ impl OccVae {
         let (fine, coarse) = (widths[0], widths[widths.len() - 1]);
         let upwards: Vec<usize> = widths.iter().rev().copied().collect();
         let w = &mut file;
-        let levels = |w: &mut WeightFile<'_>, name: &str, widths: &[usize], kernels: &[Vec<usize>]| {
-            let each = widths.iter().zip(kernels).enumerate();
-            each.map(|(i, (width, kernels))| Level::new(w, &format!("{name}.{i}"), *width, kernels))
-                .collect::<Result<Vec<_>, _>>()
-        };
-        let steps = |w: &mut WeightFile<'_>, name: &str, sizes: Vec<(usize, usize)>| {
-            let each = sizes.into_iter().enumerate();
-            each.map(|(i, (from, to))| Linear::new(w, &format!("{name}.{i}"), from, to, &[1, 1]))
-                .collect::<Result<Vec<_>, _>>()
-        };
         let vae = Self {
-            embed: w.take("embed.weight", &[HEIGHT * OCCUPIED, fine])?,
-            encoder: levels(w, "encoder", &widths, &config.encoder_kernels)?,
-            down: steps(w, "down", widths.windows(2).map(|p| (4 * p[0], p[1])).collect())?,
-            encoder_norm: Norm::new(w, "encoder_norm", coarse)?,
+            encoder: Encoder::new(w, &widths, &config.encoder_kernels)?,
             encoder_head: Linear::new(w, "encoder_head", coarse, 2 * latent, &[1, 1])?,
             decoder_stem: Linear::new(w, "decoder_stem", latent, coarse, &[1, 1])?,
             decoder: levels(w, "decoder", &upwards, &config.decoder_kernels)?,
@@ -169,10 +126,7 @@ impl OccVae {
 
     /// How many cells around an edited one may get another latent.
     pub fn encoder_reach(&self) -> usize {
-        // From the last column of a cell outwards.
-        let (finest, rest) = self.encoder.split_first().expect("two levels or more");
-        let first = self.columns() - 1 + finest.reach();
-        rest.iter().fold(first, |reach, level| reach / 2 + level.reach())
+        self.encoder.reach()
     }
 
     /// How many cells around a changed latent may get other labels.
@@ -228,15 +182,8 @@ impl OccVae {
     /// latent's spread over the training set.
     fn encode_window(&self, grid: &VoxelGrid, window: Window) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
         let channels = self.config.latent;
-        let mut map = self.embed_columns(grid, window)?;
-        self.encoder[0].apply(&mut map);
-        for (down, level) in self.down.iter().zip(&self.encoder[1..]) {
-            map = through(down, &map.fold());
-            level.apply(&mut map);
-        }
-        let mut normed = vec![0.0; map.data.len()];
-        self.encoder_norm.rows(&map.data, &mut normed);
-        let moments = self.encoder_head.parallel(&normed, PIECE);
+        let features = self.encoder.features(grid, window)?;
+        let moments = self.encoder_head.parallel(&features.data, PIECE);
         let mut latent = Vec::with_capacity(window.rows * window.columns * channels);
         let mut spread = Vec::with_capacity(latent.capacity());
         for cell in moments.chunks_exact(2 * channels) {
@@ -248,41 +195,6 @@ impl OccVae {
         }
         check_finite("encoded latent", &latent)?;
         Ok((latent, spread))
-    }
-
-    /// The sum of one embedding per occupied voxel, for every column of a window.
-    fn embed_columns(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
-        let width = self.config.widths[0];
-        let per_cell = self.columns();
-        let (rows, columns) = (window.rows * per_cell, window.columns * per_cell);
-        let (x0, y0) = (window.x * per_cell, window.y * per_cell);
-        let mut data = vec![0.0; rows * columns * width];
-        data.par_chunks_mut(columns * width)
-            .enumerate()
-            .try_for_each(|(row_index, row)| {
-                for (column_index, sum) in row.chunks_exact_mut(width).enumerate() {
-                    let (x, y) = (x0 + row_index, y0 + column_index);
-                    for (z, label) in grid.column(x, y).iter().enumerate() {
-                        if *label == Class::FREE {
-                            continue;
-                        }
-                        if *label > Class::FREE {
-                            let found = *label;
-                            return Err(ModelError::Label { x, y, z, found });
-                        }
-                        let entry = z * OCCUPIED + usize::from(*label);
-                        let embedding = &self.embed[entry * width..][..width];
-                        sum.iter_mut().zip(embedding).for_each(|(s, e)| *s += e);
-                    }
-                }
-                Ok(())
-            })?;
-        Ok(Map {
-            data,
-            rows,
-            columns,
-            width,
-        })
     }
 
     /// The likeliest label of every voxel; the lowest class wins a tie.
@@ -416,14 +328,4 @@ fn head(w: &mut WeightFile<'_>, width: usize) -> Result<Linear, WeightsError> {
         }
     }
     Ok(Linear::from_parts(&folded, folded_bias, width))
-}
-
-/// A linear layer at every place of a map.
-fn through(linear: &Linear, map: &Map) -> Map {
-    let data = linear.parallel(&map.data, PIECE);
-    Map {
-        width: data.len() / (map.rows * map.columns),
-        data,
-        ..*map
-    }
 }

@@ -1,4 +1,4 @@
-//! `eval generation`: scenes from their layout alone.
+//! `eval generation`: scenes from their layout alone, against the layout and against worlds.
 
 use std::sync::Arc;
 
@@ -9,53 +9,213 @@ use crate::app::cli::generate::full_params;
 use crate::app::cli::progress::Progress;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::agreement::AgreementCount;
+use crate::generation::metrics::extractor::Extractor;
+use crate::generation::metrics::frechet::frechet_distance;
+use crate::generation::metrics::iou::Confusion;
+use crate::generation::metrics::kernel::{Kernel, mmd2_with_interval};
 use crate::generation::metrics::stats::median;
-use crate::generation::pipeline::OccPipeline;
+use crate::generation::pipeline::{Ablation, OccPipeline};
+use crate::generation::region::Region;
+use crate::scene::{Class, GridSpec, Scene, VoxelGrid, draft};
+
+/// Parts that the sets are split into for the intervals of MMD and KID.
+const SUBSETS: usize = 8;
+/// Frames that are generated a second time, from another seed.
+const DIVERSITY_FRAMES: usize = 8;
+/// Side of the square that is redrawn with and without its context, columns, and the step of its places.
+const REDRAWN: usize = 28;
+const PLACE_STEP: usize = 12;
+
+/// Agreement with the layout over frames.
+#[derive(Default)]
+struct Agreement {
+    all: AgreementCount,
+    drivable: Vec<f64>,
+    vehicles: Vec<f64>,
+}
+
+impl Agreement {
+    fn add(&mut self, scene: &Scene, occupancy: &VoxelGrid) {
+        self.all.add(scene.frame(), occupancy);
+        let mut one = AgreementCount::default();
+        one.add(scene.frame(), occupancy);
+        self.drivable.extend(one.iou().drivable);
+        self.vehicles.extend(one.iou().vehicles);
+    }
+
+    fn report(&self) -> Value {
+        json!({
+            "columns": self.all.iou(),
+            "drivable_per_frame": with_interval(&self.drivable),
+            "vehicles_per_frame": with_interval(&self.vehicles),
+        })
+    }
+}
 
 impl Eval {
-    /// Occupancy from the layout alone, against the layout.
+    /// Occupancy from the layout alone.
     pub(super) fn generation(
         &self,
         pipeline: &mut OccPipeline,
         progress: &Progress,
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
-        let (mut all, mut world_all) = (AgreementCount::default(), AgreementCount::default());
-        let (mut drivable, mut vehicles, mut wall_s) = (Vec::new(), Vec::new(), Vec::new());
+        let extractor = Extractor::bundled()?;
         let mut params = GenParams {
             keep_objects: false,
             ..self.generation.params(full_params())
         };
+        let [mut found, mut worlds, mut bare, mut boxless] = <[Agreement; 4]>::default();
+        let mut likeness = Confusion::default();
+        // Features of other worlds, of the worlds that lent their layouts, of what was generated, of drafts.
+        let mut features: [Vec<Vec<f64>>; 4] = Default::default();
+        let (mut diversity, mut wall_s) = (Vec::new(), Vec::new());
+        let (mut with_context, mut without_context) = (Vec::new(), Vec::new());
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
-            let scene = scene(i as u64);
-            world_all.add(scene.frame(), &scene.frame().occupancy);
+            let world = scene(i as u64);
+            let truth = world.frame().occupancy.clone();
+            let naive = draft::draft(&world.frame().layout, world.frame().boxes.values());
+            worlds.add(&world, &truth);
             params.seed = self.generation.seed + i as u64;
             let job = Job {
-                scene: Arc::new(scene),
+                scene: Arc::new(world),
                 params,
             };
-            let result = pipeline.run(&job, &JobCtx::detached())?;
+            let mut run = |ablation, job: &Job| {
+                pipeline.ablate(ablation);
+                let result = pipeline.run(job, &JobCtx::detached());
+                pipeline.ablate(None);
+                result
+            };
+            let result = run(None, &job)?;
             wall_s.push(result.report.total_s());
-            all.add(job.scene.frame(), &result.occupancy);
-            let mut one = AgreementCount::default();
-            one.add(job.scene.frame(), &result.occupancy);
-            drivable.extend(one.iou().drivable);
-            vehicles.extend(one.iou().vehicles);
+            found.add(&job.scene, &result.occupancy);
+            bare.add(&job.scene, &run(Some(Ablation::Layout), &job)?.occupancy);
+            boxless.add(&job.scene, &run(Some(Ablation::Boxes), &job)?.occupancy);
+            likeness.add(&truth, &result.occupancy);
+            let other = scene((self.frames + i) as u64);
+            for (set, grid) in features.iter_mut().zip([
+                &other.frame().occupancy,
+                &truth,
+                &result.occupancy,
+                &naive,
+            ]) {
+                set.push(extractor.features(grid)?);
+            }
+            if i < DIVERSITY_FRAMES {
+                let again = Job {
+                    params: GenParams {
+                        seed: params.seed + 1_000_000,
+                        ..params
+                    },
+                    ..job.clone()
+                };
+                let mut same = Confusion::default();
+                same.add(&result.occupancy, &run(None, &again)?.occupancy);
+                diversity.extend(same.occupied_iou().map(|iou| 1.0 - iou));
+            }
+            with_context.extend(redrawn_iou(pipeline, &job, None)?);
+            without_context.extend(redrawn_iou(pipeline, &job, Some(Ablation::Context))?);
         }
-        let found = all.iou();
-        let report = json!({
-            "layout_agreement": found,
-            "drivable_per_frame": with_interval(&drivable),
-            "vehicles_per_frame": with_interval(&vehicles),
-            "layout_agreement_of_the_worlds_themselves": world_all.iou(),
-            "wall_s_median": median(&wall_s),
-            "steps": params.steps,
-            "guidance": params.guidance,
+        let (mut report, bars) = (json!({}), bars(&found));
+        report["layout_agreement"] = found.report();
+        report["layout_agreement_of_the_worlds_themselves"] = worlds.report();
+        report["ablations"] = json!({
+            "without_layout": bare.report(),
+            "without_boxes": boxless.report(),
+            "redrawn_region_iou": with_interval(&with_context),
+            "redrawn_region_iou_without_context": with_interval(&without_context),
         });
-        let bars = vec![
-            ("drivable agreement", found.drivable.unwrap_or(f64::NAN), 0.80),
-            ("vehicle agreement", found.vehicles.unwrap_or(f64::NAN), 0.80),
-        ];
+        report["against_the_worlds"] = json!({ "miou": likeness.mean_iou().0, "iou": likeness.occupied_iou() });
+        report["diversity_across_seeds"] = with_interval(&diversity);
+        report["distribution"] = distribution(&features)?;
+        report["wall_s_median"] = median(&wall_s).into();
+        report["steps"] = params.steps.into();
+        report["guidance"] = params.guidance.into();
         Ok((report, bars))
     }
+}
+
+fn bars(found: &Agreement) -> Vec<Bar> {
+    let iou = found.all.iou();
+    vec![
+        ("drivable agreement", iou.drivable.unwrap_or(f64::NAN), 0.95),
+        ("vehicle agreement", iou.vehicles.unwrap_or(f64::NAN), 0.92),
+    ]
+}
+
+/// F3D, KID and MMD of generated frames, with what equally many other worlds give (the floor) and what the
+/// layouts' drafts give. Empty below two frames.
+fn distribution(features: &[Vec<Vec<f64>>; 4]) -> anyhow::Result<Value> {
+    let [others, worlds, generated, drafts] = features;
+    if others.len() < 2 {
+        return Ok(Value::Null);
+    }
+    let gaussian = Kernel::median_gaussian(others, worlds);
+    let mut report = json!({ "n": others.len(), "extractor": "f3d.safetensors, 192 features" });
+    for (name, set) in [("worlds", worlds), ("generated", generated), ("drafts", drafts)] {
+        let kernel = |kernel| -> anyhow::Result<Value> {
+            let (mean, half) = mmd2_with_interval(kernel, others, set, SUBSETS)?;
+            Ok(json!({ "mean": mean, "ci95": half }))
+        };
+        report[name] = json!({
+            "f3d": frechet_distance(others, set)?,
+            "kid": kernel(Kernel::Cubic)?,
+            "mmd2_gaussian": kernel(gaussian)?,
+        });
+    }
+    Ok(report)
+}
+
+/// True if a voxel above the ground is occupied: the road is the layout's business.
+fn standing(grid: &VoxelGrid, x: usize, y: usize) -> impl Iterator<Item = bool> {
+    grid.column(x, y)[1..].iter().map(|l| *l != Class::FREE)
+}
+
+/// The columns of the square in which most stands.
+fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
+    let square = |x0: usize, y0: usize| {
+        let ys = move |x| (y0..y0 + REDRAWN).map(move |y| [x, y]);
+        (x0..x0 + REDRAWN).flat_map(ys).collect::<Vec<_>>()
+    };
+    let starts = || (PLACE_STEP..GridSpec::NX - REDRAWN - PLACE_STEP).step_by(PLACE_STEP);
+    let squares = starts().flat_map(|x| starts().map(move |y| square(x, y)));
+    let count = |c: &Vec<[usize; 2]>| {
+        let each = c.iter().map(|[x, y]| standing(grid, *x, *y).filter(|s| *s).count());
+        each.sum::<usize>()
+    };
+    squares.max_by_key(count).unwrap_or_default()
+}
+
+/// Redraws the fullest square of a world from fresh noise; IoU with the world of what stands there.
+fn redrawn_iou(
+    pipeline: &mut OccPipeline,
+    job: &Job,
+    ablation: Option<Ablation>,
+) -> anyhow::Result<Option<f64>> {
+    let truth = &job.scene.frame().occupancy;
+    let square = fullest_square(truth);
+    let mut columns = vec![false; GridSpec::COLUMNS];
+    square.iter().for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
+    let job = Job {
+        params: GenParams {
+            strength: 1.0,
+            keep_objects: false,
+            seed: job.params.seed,
+            ..GenParams::default()
+        },
+        ..job.clone()
+    };
+    pipeline.ablate(ablation);
+    let result = pipeline.redraw_region(&job, Region::of_columns(columns), &JobCtx::detached());
+    pipeline.ablate(None);
+    let made = result?.occupancy;
+    let (mut both, mut either) = (0u64, 0u64);
+    for [x, y] in square {
+        for (a, b) in standing(truth, x, y).zip(standing(&made, x, y)) {
+            both += u64::from(a && b);
+            either += u64::from(a || b);
+        }
+    }
+    Ok((either > 0).then(|| both as f64 / either as f64))
 }

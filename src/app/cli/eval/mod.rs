@@ -3,6 +3,7 @@
 
 mod editing;
 mod edits;
+mod fidelity;
 mod generation;
 mod vae;
 mod world;
@@ -36,6 +37,15 @@ pub struct Eval {
     /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE by instead.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
+    /// Random edits, one after another, that must change nothing outside their regions (editing).
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    random_edits: usize,
+    /// Worlds on which every inversion scheme is tried with 5, 10, 20 and 50 steps (editing).
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    scheme_frames: usize,
+    /// Worlds on which a removal is compared with one of 1000 steps (editing); minutes each.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    reference_frames: usize,
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,

@@ -2,32 +2,36 @@
 //! the touched region under the new layout. UniScene (occupancy, C.1 editing) with trajectory replay
 //! outside the region and a composite in label space.
 
-use std::collections::{BTreeMap, VecDeque};
+mod network;
+
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
-use super::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
-use super::job::{
+use crate::generation::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
+use crate::generation::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
+use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
-use super::keep_objects::{keep_ground, keep_objects};
-use super::model::{DitCondition, KeysValues, OccModels, Prepared, tokens_of};
-use super::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
-use super::replay::{RegionNoise, edit_with_replay};
-use super::rng::{Stream, normal_field};
-use super::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
-use super::world::draw::hash;
-use crate::scene::{BevLayout, Density, Frame, GridSpec, SceneBox, VoxelGrid, draft, raster};
+use crate::generation::keep_objects::{keep_ground, keep_objects};
+use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
+use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
+use crate::generation::replay::{RegionNoise, edit_with_replay};
+use crate::generation::rng::{Stream, normal_field};
+use crate::generation::solver::{Guidance, Sampler, SolverKind};
+use crate::generation::world::draw::hash;
+use crate::scene::{Frame, GridSpec, Scene, VoxelGrid};
+use network::{Condition, Network, StepKeysValues, density_of_source};
+
+pub use network::Ablation;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
 /// Trajectories kept; each is about 2 MB at ten steps.
 const KEPT_TRAJECTORIES: usize = 24;
-/// Memory for the keys and values of the latest of them; 7.7 MB a step.
+/// Memory for the keys and values of the latest of them.
 const KEYS_VALUES_BYTES: usize = 256 << 20;
-
-/// Keys and values by training step (its bits).
-type StepKeysValues = BTreeMap<u64, KeysValues>;
+/// About what those of one step take.
+const STEP_BYTES: usize = 7_700_000;
 
 /// What a trajectory was made for. Equal keys, equal trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,59 +55,18 @@ struct Source {
     report: Option<InversionReport>, // none for a trajectory that sampling made
 }
 
-/// A layout as the networks read it.
-struct Condition {
-    bev: Vec<u32>,
-    heading: Vec<u8>,
-    named: Named,
-    draft: VoxelGrid,
+/// Where keys and values go, if those of so many steps find room.
+fn stored(steps: u32) -> Option<StepKeysValues> {
+    (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
 }
 
-impl Condition {
-    fn of<'a>(
-        layout: &BevLayout,
-        boxes: impl Iterator<Item = &'a SceneBox> + Clone,
-        named: Named,
-    ) -> Self {
-        Self {
-            bev: raster::bev_channels(layout, boxes.clone()),
-            heading: raster::headings(boxes.clone()),
-            named,
-            draft: draft::draft(layout, boxes),
-        }
-    }
-}
-
-/// What a frame's source is made of: an edit keeps that character unless the user names another.
-fn density_of_source(frame: &Frame) -> Density {
-    Density::of(&frame.source.occupancy, frame.source.layout.cells())
-}
-
-/// The network as a solver sees it, under one condition.
-struct Network {
-    models: Arc<OccModels>,
-    condition: Prepared,
-    without: Option<Prepared>,
-    /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
-    /// computed; none if nobody wants them.
-    keys_values: Option<StepKeysValues>,
-}
-
-impl Denoiser for Network {
-    type Error = GenError;
-
-    fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
-        let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
-        let (dit, step) = (&self.models.dit, t as f32);
-        let v = match (branch, &self.without, &mut self.keys_values) {
-            (Branch::Unconditional, Some(without), _) => dit.forward(&x, step, without),
-            (_, _, Some(kept)) => {
-                dit.forward_some(&x, step, &self.condition, kept.entry(t.to_bits()).or_default())
-            }
-            _ => dit.forward(&x, step, &self.condition),
-        };
-        Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
-    }
+/// What inverting and sampling again gave.
+#[derive(Clone, Copy, Debug)]
+pub struct RoundTrip {
+    /// Relative RMS error of the latent.
+    pub error: f64,
+    /// Standard deviation of the noise between.
+    pub noise_std: f64,
 }
 
 /// Generates occupancy. Keeps the trajectories of recent sources, its own results among them, so
@@ -113,6 +76,8 @@ pub struct OccPipeline {
     sources: VecDeque<Source>,
     /// The last draft and its latent: the next one differs in a few columns.
     draft: Option<(VoxelGrid, Vec<f32>)>,
+    /// What is hidden from the network, to measure what it is worth.
+    ablation: Option<Ablation>,
 }
 
 impl OccPipeline {
@@ -122,7 +87,13 @@ impl OccPipeline {
             models,
             sources: VecDeque::new(),
             draft: None,
+            ablation: None,
         }
+    }
+
+    /// Hides a part of every condition from the network, to measure what it is worth.
+    pub fn ablate(&mut self, ablation: Option<Ablation>) {
+        self.ablation = ablation;
     }
 
     /// With the weights that ship with the program.
@@ -247,7 +218,8 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<Source, GenError> {
         let old = &*frame.source;
-        let condition = Condition::of(&old.layout, old.boxes.values(), Named::default().or(&density_of_source(frame)));
+        let named = Named::default().or(&density_of_source(frame));
+        let condition = Condition::new(&old.layout, &old.boxes, named, self.ablation);
         let key = self.key(&old.occupancy, &condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
             self.remember(known.clone()); // used last, forgotten last
@@ -258,16 +230,8 @@ impl OccPipeline {
             .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let mut network = report.timed(Stage::Encode, |_| {
-            self.network(
-                &condition,
-                None,
-                vec![1.0; CELLS],
-                vec![0.0; CELLS * CHANNELS],
-                false,
-            )
-        })?;
-        network.keys_values = Some(StepKeysValues::new());
+        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(frame))?;
+        network.keys_values = stored(params.steps);
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let mut solver = params.solver;
         let (trajectory, inversion) = loop {
@@ -288,7 +252,7 @@ impl OccPipeline {
                 inversion.std, inversion.max_abs
             ));
             solver = SolverKind::Ddim;
-            network.keys_values = Some(StepKeysValues::new());
+            network.keys_values = stored(params.steps);
         };
         let keys_values = network.keys_values.take().map(Arc::new);
         drop(network);
@@ -311,29 +275,55 @@ impl OccPipeline {
         Ok(report.network_calls)
     }
 
-    /// Relative RMS error of inverting the source of the job's frame and sampling it again.
+    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
         let frame = job.scene.frame();
-        let source = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
-        let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::of(&frame.source.layout, frame.source.boxes.values(), named);
-        let mut network = self.network(
-            &condition,
-            None,
-            vec![1.0; CELLS],
-            vec![0.0; CELLS * CHANNELS],
-            false,
-        )?;
-        let sampler = Sampler::standard(source.solver, job.params.steps as usize, Guidance::NONE)?;
-        round_trip_error(&sampler, &source.trajectory, &mut network, |k, n| {
+        let known = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
+        let mut network = self.network_of_source(frame)?;
+        let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
+        round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
         })
+    }
+
+    /// The same with exactly the solver asked for, where an edit would fall back to another; keeps nothing.
+    pub fn round_trip_of(
+        &mut self,
+        scene: &Scene,
+        params: &GenParams,
+        ctx: &JobCtx<'_>,
+    ) -> Result<RoundTrip, GenError> {
+        let frame = scene.frame();
+        let latent = self.models.vae.encode(&frame.source.occupancy);
+        let clean: Vec<f64> = latent.map_err(GenError::failed)?.into_iter().map(f64::from).collect();
+        let mut network = self.network_of_source(frame)?;
+        let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
+        let refinement = Refinement::damped(params.inversion_iterations as usize);
+        let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {
+            ctx.progress(Stage::Invert, k, n)
+        })?;
+        let error = round_trip_error(&sampler, &trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })?;
+        Ok(RoundTrip {
+            error,
+            noise_std: inversion.std,
+        })
+    }
+
+    /// The network under the condition of a frame's source, for all tokens.
+    fn network_of_source(&mut self, frame: &Frame) -> Result<Network, GenError> {
+        let source = &*frame.source;
+        let named = Named::default().or(&density_of_source(frame));
+        let condition = Condition::new(&source.layout, &source.boxes, named, self.ablation);
+        let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
+        self.network(&condition, None, mask, context, false)
     }
 
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
-        let condition = Condition::of(&frame.layout, frame.boxes.values(), params.named);
+        let condition = Condition::new(&frame.layout, &frame.boxes, params.named, self.ablation);
         let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
         let guided = sampler.guidance.weight != 1.0;
@@ -346,7 +336,7 @@ impl OccPipeline {
                 guided,
             )
         })?;
-        network.keys_values = Some(StepKeysValues::new());
+        network.keys_values = stored(params.steps);
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
         let states = report.timed(Stage::Denoise, |_| {
             sampler.sample(start, &mut network, |view| {
@@ -384,11 +374,27 @@ impl OccPipeline {
     }
 
     fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
-        let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
         let region = report.timed(Stage::Composite, |_| {
-            Region::of_edit(frame, params.halo_columns as usize)
+            Region::of_edit(job.scene.frame(), job.params.halo_columns as usize)
         });
+        self.redraw(job, region, report, ctx)
+    }
+
+    /// Regenerates a region of the job's frame, whatever was edited in it.
+    pub fn redraw_region(&mut self, job: &Job, region: Region, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        job.params.check()?;
+        self.redraw(job, region, GenReport::default(), ctx)
+    }
+
+    fn redraw(
+        &mut self,
+        job: &Job,
+        region: Region,
+        mut report: GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<GenResult, GenError> {
+        let (frame, params) = (job.scene.frame(), &job.params);
         let before = &frame.source.occupancy;
         if region.is_empty() {
             // Nothing to redraw: no network is asked.
@@ -406,7 +412,7 @@ impl OccPipeline {
             }
         }
         let named = params.named.or(&density_of_source(frame));
-        let condition = Condition::of(&frame.layout, frame.boxes.values(), named);
+        let condition = Condition::new(&frame.layout, &frame.boxes, named, self.ablation);
         let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
         let guided = sampler.guidance.weight != 1.0;
         let latent = source.trajectory.latent_f32();
@@ -414,17 +420,23 @@ impl OccPipeline {
         let context = latent
             .iter()
             .enumerate()
-            .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
+            .map(|(i, v)| match self.ablation {
+                Some(Ablation::Context) => 0.0,
+                _ => v * (1.0 - mask[i / CHANNELS]),
+            })
             .collect();
         let models = self.models.clone();
         let local = self.local_tokens(&source, &sampler, &region, params);
         // Tokens that are not computed show what they held in the source; if all are, nothing is shown.
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
-        let keys_values = kept.cloned().unwrap_or_default();
+        let keys_values = match kept {
+            Some(kept) => Some(kept.clone()),
+            None => stored(params.steps),
+        };
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(&condition, local, mask, context, guided)
         })?;
-        network.keys_values = Some(keys_values);
+        network.keys_values = keys_values;
         report.tokens = network.condition.tokens();
         let noise = RegionNoise {
             strength: params.strength,

@@ -1,0 +1,91 @@
+//! The network as solvers see it, and what it is conditioned on.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::generation::job::{GenError, Named};
+use crate::generation::model::{KeysValues, OccModels, Prepared};
+use crate::generation::solver::{Branch, Denoiser};
+use crate::scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
+
+/// Keys and values by training step (its bits).
+pub type StepKeysValues = BTreeMap<u64, KeysValues>;
+
+/// A part of the condition that is hidden, as in UniScene's table 8 and X-Scene's table 7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ablation {
+    /// No map layers: neither as channels nor in the draft.
+    Layout,
+    /// No boxes.
+    Boxes,
+    /// A region is redrawn without seeing the latents around it.
+    Context,
+}
+
+/// A layout as the networks read it.
+pub struct Condition {
+    /// Bits of the 18 layers.
+    pub bev: Vec<u32>,
+    /// Headings of objects.
+    pub heading: Vec<u8>,
+    /// Densities and completeness asked for.
+    pub named: Named,
+    /// The layout extruded naively.
+    pub draft: VoxelGrid,
+}
+
+impl Condition {
+    /// Of a layout and boxes, less what the ablation hides.
+    pub fn new(
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        named: Named,
+        ablation: Option<Ablation>,
+    ) -> Self {
+        let (bare, none) = (BevLayout::default(), BTreeMap::new());
+        let layout = if ablation == Some(Ablation::Layout) { &bare } else { layout };
+        let boxes = if ablation == Some(Ablation::Boxes) { &none } else { boxes };
+        Self {
+            bev: raster::bev_channels(layout, boxes.values()),
+            heading: raster::headings(boxes.values()),
+            named,
+            draft: draft::draft(layout, boxes.values()),
+        }
+    }
+}
+
+/// What a frame's source is made of: an edit keeps that character unless the user names another.
+pub fn density_of_source(frame: &Frame) -> Density {
+    Density::of(&frame.source.occupancy, frame.source.layout.cells())
+}
+
+/// The network as a solver sees it, under one condition.
+pub struct Network {
+    /// Its weights.
+    pub models: Arc<OccModels>,
+    /// What it is asked for.
+    pub condition: Prepared,
+    /// The same without layout and draft, for guidance.
+    pub without: Option<Prepared>,
+    /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
+    /// computed; none if nobody wants them.
+    pub keys_values: Option<StepKeysValues>,
+}
+
+impl Denoiser for Network {
+    type Error = GenError;
+
+    fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
+        let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
+        let (dit, step) = (&self.models.dit, t as f32);
+        let v = match (branch, &self.without, &mut self.keys_values) {
+            (Branch::Unconditional, Some(without), _) => dit.forward(&x, step, without),
+            (_, _, Some(kept)) => {
+                dit.forward_some(&x, step, &self.condition, kept.entry(t.to_bits()).or_default())
+            }
+            _ => dit.forward(&x, step, &self.condition),
+        };
+        Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
+    }
+}
+
