@@ -11,7 +11,7 @@ use crate::formats::opendrive::{self, RoadNetwork};
 use crate::formats::{occ3d, project};
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
-use crate::scene::{Frame, Scene, SensorRig, draft, infer};
+use crate::scene::{Inferred, Unobserved, Frame, Scene, SensorRig, draft, infer};
 
 /// Largest text file that is read, bytes.
 const LARGEST_TEXT: u64 = 256 << 20;
@@ -82,7 +82,20 @@ pub fn labels(path: &Path) -> anyhow::Result<Scene> {
         (Some(stem), _) => stem,
         (None, _) => &std::borrow::Cow::Borrowed("import"),
     };
-    let frame = Frame::new(layout, boxes, frame.labels);
+    // A voxel was seen if any sensor that the file tells of saw it.
+    let seen = match (frame.lidar_observed, frame.camera_observed) {
+        (Some(lidar), Some(camera)) => Some(lidar.iter().zip(&camera).map(|(a, b)| *a || *b).collect()),
+        (one, other) => one.or(other),
+    };
+    let inferred = Inferred {
+        layout: true,
+        boxes: boxes.keys().copied().collect(),
+        unobserved: seen.and_then(|seen: Vec<bool>| Unobserved::from_observed(&seen)),
+    };
+    let frame = Frame {
+        inferred,
+        ..Frame::new(layout, boxes, frame.labels)
+    };
     Ok(Scene::single(name, frame, Arc::new(SensorRig::default()), 0))
 }
 

@@ -86,6 +86,14 @@ pub enum Edit {
     },
     /// Gives every painted voxel of the frame back to generation.
     ClearPaint {},
+    /// Corrects what was inferred wrongly when the frame was imported: the box or layer changes, in the source
+    /// too, and no voxel does, so that nothing is generated.
+    Correct {
+        /// A change of a box or of a map layer.
+        edit: Box<Edit>,
+    },
+    /// Confirms what was inferred when the frame was imported: it is marked as a guess no more.
+    ConfirmInferred {},
     /// Replaces the text that describes the style.
     SetPrompt {
         /// The text; empty means none.
@@ -123,6 +131,9 @@ pub enum EditError {
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
+    /// Voxels and the prompt are not inferred.
+    #[error("only boxes and map layers can be corrected")]
+    NoCorrection,
     /// A number that cannot be used.
     #[error("{field} is {found}, expected {expected}")]
     Number {
@@ -260,6 +271,11 @@ impl Edit {
                     frame.painted.set(x, y, z, NOT_PAINTED);
                 }
             }
+            Self::Correct { edit } => correct(frame, edit)?,
+            Self::ConfirmInferred {} => {
+                frame.inferred.layout = false;
+                frame.inferred.boxes.clear();
+            }
             Self::ClearPaint {} => frame.painted = VoxelPaint::new(),
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
             Self::SetPrompt { .. } => {} // concerns the scene, see `apply`
@@ -291,7 +307,34 @@ fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
     Ok(frame.next_box_id())
 }
 
+/// Applies a change to what was authored, in the frame and in its source, and to no voxel.
+fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
+    let before = frame.clone();
+    edit.apply_to(frame)?;
+    frame.occupancy = before.occupancy;
+    let source = Arc::make_mut(&mut frame.source);
+    match edit {
+        Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. } | Edit::SetBoxClass { .. } => {
+            let ids = before.boxes.keys().chain(frame.boxes.keys());
+            for id in ids.filter(|id| before.boxes.get(id) != frame.boxes.get(id)) {
+                match frame.boxes.get(id) {
+                    Some(b) => source.boxes.insert(*id, *b),
+                    None => source.boxes.remove(id),
+                };
+            }
+        }
+        Edit::PaintBev { layer, shape, value } => {
+            for [x, y] in shape.cells()? {
+                source.layout.set(*layer, x, y, *value);
+            }
+        }
+        _ => return Err(EditError::NoCorrection),
+    }
+    Ok(())
+}
+
 fn take_box(frame: &mut Frame, id: BoxId) -> Result<SceneBox, EditError> {
+    frame.inferred.boxes.remove(&id);
     frame.boxes.remove(&id).ok_or(EditError::UnknownBox { id })
 }
 
@@ -311,7 +354,8 @@ fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) 
     if new == old {
         return Ok(());
     }
-    frame.boxes.remove(&id);
+    // A box that is not sound leaves this copy of the frame half changed; the scene keeps the old one.
+    take_box(frame, id)?;
     immediate::clear_box(frame, &old);
     put_box(frame, new)
 }

@@ -7,13 +7,14 @@
 //! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
 //! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
 //! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
+//! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
 //! | `frames/00000/source_layout.u32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
 
 mod archive;
 mod check;
 mod error;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::Path;
@@ -23,8 +24,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
-    BevLayout, BoxId, Frame, Polyline, Pose, Scene, SceneBox, SceneRev, SensorRig, SourceFrame, VoxelGrid,
-    VoxelPaint,
+    BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Scene, SceneBox, SceneRev, SensorRig,
+    SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::atomic;
@@ -75,7 +76,25 @@ struct FrameHeader {
     polylines: Arc<Vec<Polyline>>,
     /// Whether `painted.u8` is there.
     painted: bool,
+    #[serde(default, skip_serializing_if = "InferredHeader::is_empty")]
+    inferred: InferredHeader,
     source: SourceHeader,
+}
+
+/// What of an imported frame is a guess.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct InferredHeader {
+    layout: bool,
+    boxes: BTreeSet<BoxId>,
+    /// Whether `unobserved.u16` is there.
+    unobserved: bool,
+}
+
+impl InferredHeader {
+    fn is_empty(&self) -> bool {
+        !self.layout && self.boxes.is_empty() && !self.unobserved
+    }
 }
 
 /// What is left out, or false, is as in the frame.
@@ -131,6 +150,11 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
         if header.painted {
             out.labels(&name("painted.u8"), &frame.painted)?;
         }
+        if let Some(unobserved) = &frame.inferred.unobserved {
+            let words = unobserved.words().iter();
+            let bytes: Vec<u8> = words.flat_map(|w| w.to_le_bytes()).collect();
+            out.put(&name("unobserved.u16"), &bytes)?;
+        }
         if header.source.layout {
             out.put(&name("source_layout.u32"), &layout_bytes(&frame.source.layout))?;
         }
@@ -159,6 +183,11 @@ fn frame_header(frame: &Frame) -> FrameHeader {
         boxes: list(&frame.boxes),
         polylines: frame.layout.polylines.clone(),
         painted: frame.painted.count_set() > 0,
+        inferred: InferredHeader {
+            layout: frame.inferred.layout,
+            boxes: frame.inferred.boxes.clone(),
+            unobserved: frame.inferred.unobserved.is_some(),
+        },
         source: SourceHeader {
             boxes: (source.boxes != frame.boxes).then(|| list(&source.boxes)),
             polylines: (source.layout.polylines != frame.layout.polylines)
@@ -227,7 +256,21 @@ fn read_frame<R: Read + Seek>(
         }
         false => VoxelPaint::new(),
     };
+    let unobserved = match header.inferred.unobserved {
+        true => {
+            let bytes = file.exactly(&name("unobserved.u16"), GridSpec::COLUMNS, 2, "columns")?;
+            let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
+            Unobserved::from_words(words.collect())
+        }
+        false => None,
+    };
     let boxes = unique(index, header.boxes)?;
+    if let Some(id) = header.inferred.boxes.iter().find(|id| !boxes.contains_key(id)) {
+        return Err(ProjectError::Unsound(format!(
+            "scene.json: frame {index}: box {} is marked as inferred, but there is none",
+            id.0
+        )));
+    }
     let source_polylines = source.polylines.unwrap_or_else(|| layout.polylines.clone());
     let source_layout = match source.layout {
         true => file.layout(&name("source_layout.u32"), source_polylines)?,
@@ -256,6 +299,11 @@ fn read_frame<R: Read + Seek>(
         layout,
         occupancy,
         painted,
+        inferred: Inferred {
+            layout: header.inferred.layout,
+            boxes: header.inferred.boxes,
+            unobserved,
+        },
         source: Arc::new(source),
     })
 }

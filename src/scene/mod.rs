@@ -6,6 +6,7 @@ pub mod density;
 pub mod draft;
 pub mod grid;
 pub mod infer;
+pub mod inferred;
 pub mod layout;
 pub mod pose;
 pub mod raster;
@@ -20,6 +21,7 @@ pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
 pub use density::Density;
 pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
+pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use pose::Pose;
 pub use rig::{Camera, LidarPattern, SensorRig};
@@ -65,6 +67,8 @@ pub struct Frame {
     pub occupancy: VoxelGrid,
     /// Voxels the user painted (or removed, painted as free): locked, generation keeps them.
     pub painted: VoxelPaint,
+    /// What of layout and boxes is a guess.
+    pub inferred: Inferred,
     /// See [`SourceFrame`].
     pub source: Arc<SourceFrame>,
 }
@@ -84,6 +88,7 @@ impl Frame {
             layout,
             occupancy,
             painted: VoxelPaint::new(),
+            inferred: Inferred::default(),
             source,
         }
     }

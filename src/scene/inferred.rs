@@ -1,0 +1,80 @@
+//! What a frame from a data set did not carry and was guessed.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::{BoxId, GridSpec};
+
+/// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]`, one bit per bin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unobserved(Arc<[u16]>);
+
+impl Unobserved {
+    /// From what was observed, `[x][y][z]`; `None` unless there is one flag per voxel.
+    pub fn from_observed(observed: &[bool]) -> Option<Self> {
+        let word = |column: &[bool]| {
+            let bits = column.iter().enumerate().filter(|(_, seen)| !**seen);
+            bits.fold(0, |word, (z, _)| word | 1 << z)
+        };
+        (observed.len() == GridSpec::VOXELS)
+            .then(|| Self(observed.chunks_exact(GridSpec::NZ).map(word).collect()))
+    }
+
+    /// From its words; `None` unless there is one per column.
+    pub fn from_words(words: Vec<u16>) -> Option<Self> {
+        (words.len() == GridSpec::COLUMNS).then(|| Self(words.into()))
+    }
+
+    /// One word per column, `[x][y]`.
+    pub fn words(&self) -> &[u16] {
+        &self.0
+    }
+
+    /// Share of a column's bins that nothing observed, 0 to 1.
+    pub fn share(&self, x: usize, y: usize) -> f64 {
+        f64::from(self.0[x * GridSpec::NY + y].count_ones()) / GridSpec::NZ as f64
+    }
+
+    /// Share of all voxels.
+    pub fn total(&self) -> f64 {
+        let bits: u32 = self.0.iter().map(|w| w.count_ones()).sum();
+        f64::from(bits) / GridSpec::VOXELS as f64
+    }
+}
+
+/// Guesses of a frame. The user confirms them, or corrects them (`Edit::Correct`), and they are guesses no more.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inferred {
+    /// The map layers were read off ground voxels.
+    pub layout: bool,
+    /// Boxes that were fitted to voxels and not touched since.
+    pub boxes: BTreeSet<BoxId>,
+    /// What the data set's masks say, if it has any.
+    pub unobserved: Option<Unobserved>,
+}
+
+impl Inferred {
+    /// True if there is a guess left.
+    pub fn any(&self) -> bool {
+        self.layout || !self.boxes.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unobserved_is_what_was_not_observed() {
+        let mut observed = vec![true; GridSpec::VOXELS];
+        observed[(3 * GridSpec::NY + 5) * GridSpec::NZ + 2] = false;
+        observed[(3 * GridSpec::NY + 5) * GridSpec::NZ + 15] = false;
+        let found = Unobserved::from_observed(&observed).expect("one flag per voxel");
+        assert_eq!(found.words()[3 * GridSpec::NY + 5], 1 << 2 | 1 << 15);
+        assert_eq!((found.share(3, 5), found.share(3, 6)), (0.125, 0.0));
+        assert_eq!(found.total(), 2.0 / GridSpec::VOXELS as f64);
+        assert_eq!(Unobserved::from_words(found.words().to_vec()), Some(found));
+        assert_eq!(Unobserved::from_observed(&observed[1..]), None);
+        assert_eq!(Unobserved::from_words(vec![0; 3]), None);
+    }
+}
