@@ -23,7 +23,9 @@ fn json(name: &str) -> Value {
 
 fn array<T: npyz::Deserialize>(file: &str, name: &str) -> Vec<T> {
     let mut zip = zip::ZipArchive::new(File::open(reference(file)).expect("a file")).expect("an npz file");
-    let array = zip.by_name(&format!("{name}.npy")).expect("an array of that name");
+    let array = zip
+        .by_name(&format!("{name}.npy"))
+        .expect("an array of that name");
     let array = NpyFile::new(array).expect("an npy file");
     array.into_vec().expect("the type asked for")
 }

@@ -352,6 +352,7 @@ impl SceneloomApp {
                 self.document = Document::new(scene);
                 self.path = opening.path;
                 self.state.selected = None;
+                self.state.correcting = false;
                 ctx.request_repaint();
             }
             Err(error) => {
@@ -452,17 +453,18 @@ impl SceneloomApp {
     }
 
     fn side_panels(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let layout = &self.document.scene().frame().layout;
+        let frame = self.document.scene().frame();
         egui::Panel::left("tools")
             .default_size(226.0)
             .size_range(200.0..=340.0)
             .frame(theme::panel_frame())
-            .show(ui, |ui| layers_ui(ui, layout, &mut self.state, commands));
+            .show(ui, |ui| layers_ui(ui, frame, &mut self.state, commands));
         egui::Panel::right("objects")
             .default_size(262.0)
             .size_range(230.0..=380.0)
             .frame(theme::panel_frame())
-            .show(ui, |ui| objects_ui(ui, &self.document, &self.state, commands));
+            .show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
+        self.live.named = self.state.named;
     }
 
     fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {

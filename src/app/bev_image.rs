@@ -3,7 +3,7 @@
 
 use egui::{Color32, ColorImage};
 
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Unobserved, VoxelGrid};
 
 /// Map layers from the lowest to the uppermost, as the papers draw them; boxes come after.
 pub const DRAW_ORDER: [BevLayer; 8] = [
@@ -63,6 +63,16 @@ pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
         let light = 0.62 + 0.38 * (z as f32 / 11.0).min(1.0);
         let [r, g, b] = class.color().map(|c| (f32::from(c) * light) as u8);
         Color32::from_rgb(r, g, b)
+    };
+    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+}
+
+/// A violet veil over what nothing observed, denser the more of a column that is.
+pub fn unobserved(mask: &Unobserved) -> ColorImage {
+    let pixel = |i: usize| {
+        let (x, y) = column_of(i);
+        let alpha = (150.0 * mask.share(x, y)) as u8;
+        Color32::from_rgba_unmultiplied(126, 87, 194, alpha)
     };
     ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
 }

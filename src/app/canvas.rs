@@ -60,6 +60,7 @@ pub struct Canvas {
     pub map: Option<ScreenMap>,
     layers: Option<(LayersKey, TextureHandle)>,
     occupancy: Option<(SceneRev, TextureHandle)>,
+    unobserved: Option<(SceneRev, TextureHandle)>,
 }
 
 type LayersKey = (SceneRev, u32, bool);
@@ -92,6 +93,7 @@ impl Default for Canvas {
             map: None,
             layers: None,
             occupancy: None,
+            unobserved: None,
         }
     }
 }
@@ -202,6 +204,11 @@ impl Canvas {
         }
         if state.underlay != Underlay::Occupancy {
             painter.image(self.layers_texture(ui, scene, state), grid, whole, Color32::WHITE);
+        }
+        if let (true, Some(mask)) = (state.show_unobserved, &scene.frame().inferred.unobserved) {
+            let make = || bev_image::unobserved(mask);
+            let veil = texture(ui, &mut self.unobserved, scene.rev, "unobserved", make);
+            painter.image(veil, grid, whole, Color32::WHITE);
         }
         if state.show_grid {
             draw_grid(ui, map, grid);

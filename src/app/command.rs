@@ -64,6 +64,8 @@ pub enum Command {
     CancelGeneration,
     /// Switches generation after each edit on or off.
     ToggleLive,
+    /// What was inferred on import is marked as a guess no more.
+    ConfirmInferred,
     /// Gives all painted voxels back to generation.
     ClearPaint,
     /// Starts a new scene.

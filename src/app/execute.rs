@@ -22,6 +22,7 @@ impl SceneloomApp {
         match command {
             Command::Apply(label, edits) => self.apply(label, &edits),
             Command::Preview(edits) => {
+                let edits = self.state.as_meant(edits);
                 if let Err(error) = self.document.preview_all(&edits) {
                     self.fail(error.to_string());
                 }
@@ -75,6 +76,10 @@ impl SceneloomApp {
                 self.live.on = !self.live.on;
                 self.live.forget_asked();
             }
+            Command::ConfirmInferred => {
+                self.state.correcting = false;
+                self.apply("Confirm what was inferred", &[Edit::ConfirmInferred {}]);
+            }
             Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
             Command::New => self.guarded(Next::New, ctx),
             Command::Open => self.guarded(Next::AskOpen, ctx),
@@ -120,7 +125,8 @@ impl SceneloomApp {
     }
 
     fn apply(&mut self, label: &'static str, edits: &[Edit]) {
-        if let Err(error) = self.document.apply_all(label, edits) {
+        let edits = self.state.as_meant(edits.to_vec());
+        if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
         }
     }
@@ -186,6 +192,7 @@ impl SceneloomApp {
             self.state.tool = Tool::Select;
         } else {
             self.state.selected = None;
+            self.state.correcting = false;
         }
     }
 

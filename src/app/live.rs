@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use crate::generation::job::{GenParams, JobId, JobKey, RegionMode, Stage};
+use crate::generation::job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
 use crate::generation::region::Region;
 use crate::scene::{Scene, SceneRev};
 
@@ -83,6 +83,8 @@ pub struct Live {
     pub params: GenParams,
     /// How to generate everything.
     pub full_params: GenParams,
+    /// Densities asked for; they go before those of the parameters.
+    pub named: Named,
     /// The job on its way.
     pub running: Option<Running>,
     seen: Option<(SceneRev, Touched)>,
@@ -101,6 +103,7 @@ impl Live {
             on: true,
             params,
             full_params,
+            named: Named::default(),
             cold: warm_up,
             warm_up,
             running: None,
@@ -121,6 +124,7 @@ impl Live {
         GenParams {
             seed: scene.seed,
             region,
+            named: self.named.or_else(&params.named),
             ..params
         }
     }

@@ -11,7 +11,7 @@ use crate::formats::opendrive::{self, RoadNetwork};
 use crate::formats::{occ3d, project};
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
-use crate::scene::{Inferred, Unobserved, Frame, Scene, SensorRig, draft, infer};
+use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
 
 /// Largest text file that is read, bytes.
 const LARGEST_TEXT: u64 = 256 << 20;

@@ -3,6 +3,8 @@
 
 use glam::DVec2;
 
+use crate::editor::Edit;
+use crate::generation::job::Named;
 use crate::scene::{BevLayer, BoxId, Class};
 use crate::viewport::LidarColorMode;
 
@@ -115,6 +117,12 @@ pub struct UiState {
     pub show_grid: bool,
     /// Draw the LiDAR returns in the bird's-eye view too.
     pub show_lidar_bev: bool,
+    /// Tint what no sensor of the data set observed, in the bird's-eye view.
+    pub show_unobserved: bool,
+    /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.
+    pub correcting: bool,
+    /// Densities that generation is asked for.
+    pub named: Named,
     /// Colour of LiDAR returns.
     pub lidar_colors: LidarColorMode,
     /// What the camera strip shows.
@@ -144,6 +152,25 @@ impl UiState {
     /// True if a map layer is drawn.
     pub fn shows(&self, layer: BevLayer) -> bool {
         self.layers_shown & layer.bit() != 0
+    }
+
+    /// Edits as they are meant: corrections while the user corrects what was inferred.
+    pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
+        let authored = |edit: &Edit| {
+            matches!(
+                edit,
+                Edit::AddBox { .. }
+                    | Edit::RemoveBox { .. }
+                    | Edit::MoveBox { .. }
+                    | Edit::SetBoxClass { .. }
+                    | Edit::PaintBev { .. }
+            )
+        };
+        let meant = |edit: Edit| match self.correcting && authored(&edit) {
+            true => Edit::Correct { edit: Box::new(edit) },
+            false => edit,
+        };
+        edits.into_iter().map(meant).collect()
     }
 
     /// The brush in hand one step larger or smaller.
@@ -182,6 +209,9 @@ impl Default for UiState {
             show_lines: true,
             show_grid: true,
             show_lidar_bev: false,
+            show_unobserved: false,
+            correcting: false,
+            named: Named::default(),
             lidar_colors: LidarColorMode::Range,
             camera_mode: CameraMode::Semantic,
             inspected: None,

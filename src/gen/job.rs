@@ -57,14 +57,24 @@ impl Named {
         [self.vegetation, self.building, self.clutter, self.completeness]
     }
 
+    /// With those of `other` where none is named.
+    pub fn or_else(&self, other: &Self) -> Self {
+        Self {
+            vegetation: self.vegetation.or(other.vegetation),
+            building: self.building.or(other.building),
+            clutter: self.clutter.or(other.clutter),
+            completeness: self.completeness.or(other.completeness),
+        }
+    }
+
     /// With those of `density` where none is named.
     pub fn or(&self, density: &Density) -> Self {
-        Self {
-            vegetation: self.vegetation.or(Some(density.vegetation)),
-            building: self.building.or(Some(density.building)),
-            clutter: self.clutter.or(Some(density.clutter)),
-            completeness: self.completeness.or(Some(density.completeness)),
-        }
+        self.or_else(&Self {
+            vegetation: Some(density.vegetation),
+            building: Some(density.building),
+            clutter: Some(density.clutter),
+            completeness: Some(density.completeness),
+        })
     }
 }
 
@@ -126,7 +136,17 @@ impl Default for GenParams {
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(&self) -> ([u32; 4], [u64; 4], [Option<u32>; 4], SolverKind, RegionMode, Quality, [bool; 2]) {
+    fn bits(
+        &self,
+    ) -> (
+        [u32; 4],
+        [u64; 4],
+        [Option<u32>; 4],
+        SolverKind,
+        RegionMode,
+        Quality,
+        [bool; 2],
+    ) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (
@@ -165,7 +185,10 @@ impl GenParams {
         in_range("guidance", self.guidance, -100.0, 100.0)?;
         in_range("guidance_rescale", self.guidance_rescale, 0.0, 1.0)?;
         in_range("strength", self.strength, 0.0, 1.0)?;
-        for (name, value) in ["vegetation", "building", "clutter", "completeness"].iter().zip(self.named.values()) {
+        for (name, value) in ["vegetation", "building", "clutter", "completeness"]
+            .iter()
+            .zip(self.named.values())
+        {
             in_range(name, f64::from(value.unwrap_or(0.0)), 0.0, 1.0)?;
         }
         let iterations = f64::from(self.inversion_iterations);

@@ -54,7 +54,10 @@ mod tests {
     fn counts_columns_off_the_road() {
         let road = BevLayer::DrivableArea.bit();
         let mut grid = VoxelGrid::new();
-        assert_eq!(Density::of(&grid, &vec![road; GridSpec::COLUMNS]), Density::default());
+        assert_eq!(
+            Density::of(&grid, &vec![road; GridSpec::COLUMNS]),
+            Density::default()
+        );
         let mut bev = vec![road; GridSpec::COLUMNS];
         bev[..100 * GridSpec::NY].fill(0);
         for x in 0..100 {

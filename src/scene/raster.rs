@@ -191,7 +191,13 @@ mod tests {
     #[test]
     fn headings_are_codes_of_the_yaw() {
         use std::f64::consts::{FRAC_PI_2, TAU};
-        for (yaw, code) in [(0.0, 1), (FRAC_PI_2, 61), (-FRAC_PI_2, 181), (TAU - 1e-9, 1), (3.0 * TAU, 1)] {
+        for (yaw, code) in [
+            (0.0, 1),
+            (FRAC_PI_2, 61),
+            (-FRAC_PI_2, 181),
+            (TAU - 1e-9, 1),
+            (3.0 * TAU, 1),
+        ] {
             let b = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], yaw);
             let found = headings([b.clone()].iter());
             assert_eq!(found.iter().max(), Some(&code), "yaw {yaw}");

@@ -21,7 +21,7 @@ pub(in crate::app) use generate::full_params;
 use clap::{Args, Parser, Subcommand};
 
 use crate::app::open;
-use crate::generation::job::{Named, GenParams, RegionMode};
+use crate::generation::job::{GenParams, Named, RegionMode};
 use crate::generation::solver::SolverKind;
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
@@ -127,11 +127,12 @@ impl Gen {
             guidance: self.guidance.unwrap_or(default.guidance),
             guidance_rescale: self.guidance_rescale.unwrap_or(default.guidance_rescale),
             named: Named {
-                vegetation: self.vegetation.or(default.named.vegetation),
-                building: self.buildings.or(default.named.building),
-                clutter: self.clutter.or(default.named.clutter),
-                completeness: self.completeness.or(default.named.completeness),
-            },
+                vegetation: self.vegetation,
+                building: self.buildings,
+                clutter: self.clutter,
+                completeness: self.completeness,
+            }
+            .or_else(&default.named),
             seed: self.seed,
             region: match self.region.as_deref() {
                 Some("full") => RegionMode::Full,

@@ -7,10 +7,10 @@ use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::state::{Tool, UiState, VoxelVerb};
 use crate::app::theme;
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
+use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
-pub fn layers_ui(ui: &mut Ui, layout: &BevLayout, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         match state.tool {
             Tool::Select => {
@@ -29,7 +29,7 @@ pub fn layers_ui(ui: &mut Ui, layout: &BevLayout, state: &mut UiState, commands:
         ui.add_space(theme::GAP);
         section(ui, "Map layers");
         for layer in BevLayer::MAP {
-            layer_row(ui, layout, layer, state, commands);
+            layer_row(ui, &frame.layout, layer, state, commands);
         }
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
@@ -37,6 +37,43 @@ pub fn layers_ui(ui: &mut Ui, layout: &BevLayout, state: &mut UiState, commands:
         toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
         toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
         toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
+        if frame.inferred.unobserved.is_some() {
+            toggle_row(ui, "Unobserved", &mut state.show_unobserved);
+        }
+        ui.add_space(theme::GAP);
+        section(ui, "Scenery");
+        let named = &mut state.named;
+        density_row(ui, "Vegetation", &mut named.vegetation, 0.5);
+        density_row(ui, "Buildings", &mut named.building, 0.6);
+        density_row(ui, "Clutter", &mut named.clutter, 0.25);
+        density_row(ui, "Completeness", &mut named.completeness, 1.0);
+        caption(ui, "What generation is asked for. Unticked, a new scene is free and an edit keeps what is there.");
+    });
+}
+
+/// A number that generation is asked for, if it is ticked; `typical` is where it begins.
+fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
+    ui.horizontal(|ui| {
+        let mut on = value.is_some();
+        let left = egui::Layout::left_to_right(egui::Align::Center);
+        let tick = ui.allocate_ui_with_layout(vec2(110.0, theme::ROW), left, |ui| {
+            let tick = ui.checkbox(&mut on, name);
+            ui.set_min_width(110.0);
+            tick
+        });
+        let tick = tick.inner;
+        if tick.changed() {
+            *value = on.then_some(typical);
+        }
+        let mut shown = value.unwrap_or(typical);
+        ui.spacing_mut().slider_width = (ui.available_width() - 52.0).max(30.0);
+        let slider = egui::Slider::new(&mut shown, 0.0..=1.0).fixed_decimals(2);
+        let slider = ui
+            .add_enabled(on, slider)
+            .accessible_name(&format!("{name} density"));
+        if slider.changed() {
+            *value = Some(shown);
+        }
     });
 }
 

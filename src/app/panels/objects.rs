@@ -8,14 +8,15 @@ use crate::app::icons::{self, Icon, section};
 use crate::app::state::UiState;
 use crate::app::theme;
 use crate::editor::{Document, Edit};
-use crate::scene::{BoxId, Class, SceneBox};
+use crate::scene::{BoxId, Class, Frame, SceneBox};
 
 /// What the history and its title take at the bottom, points.
 const HISTORY_HEIGHT: f32 = 168.0;
 
 /// Draws the panel.
-pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &mut Vec<Command>) {
+pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
     let frame = document.scene().frame();
+    inferred(ui, frame, state, commands);
     section(ui, "Inspector");
     match state.selected.and_then(|id| frame.boxes.get(&id)) {
         Some(b) => inspector(ui, b, commands),
@@ -40,7 +41,8 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &UiState, commands: &
     let list = reveal(ui, list, &boxes, state.selected, list_height);
     list.show_rows(ui, theme::ROW, boxes.len(), |ui, range| {
         for b in &boxes[range] {
-            box_row(ui, b, state.selected == Some(b.id), commands);
+            let guess = frame.inferred.boxes.contains(&b.id);
+            box_row(ui, b, guess, state.selected == Some(b.id), commands);
         }
     });
     ui.add_space(theme::GAP);
@@ -71,9 +73,41 @@ fn reveal(
     }
 }
 
-fn box_row(ui: &mut Ui, b: &SceneBox, chosen: bool, commands: &mut Vec<Command>) {
+/// What an imported frame did not carry and was guessed: how to correct and to confirm it.
+fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    if !frame.inferred.any() {
+        return;
+    }
+    section(ui, "Inferred from labels");
+    let boxes = match frame.inferred.boxes.len() {
+        0 => "",
+        1 => "1 box",
+        n => &format!("{n} boxes"),
+    };
+    let what = match (frame.inferred.layout, boxes) {
+        (true, "") => "The map layers are guesses.".to_owned(),
+        (true, boxes) => format!("The map layers and {boxes} are guesses."),
+        (false, boxes) => format!("{boxes}: guesses."),
+    };
+    ui.label(egui::RichText::new(what).small().color(theme::TEXT_WEAK));
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut state.correcting, "Correct them").on_hover_text(
+            "While ticked, edits of boxes and map layers change no voxel and generate nothing.",
+        );
+        let confirm = ui
+            .button("Confirm all")
+            .on_hover_text("They are right as they are.");
+        if confirm.clicked() {
+            commands.push(Command::ConfirmInferred);
+        }
+    });
+    ui.add_space(theme::GAP);
+}
+
+fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut Vec<Command>) {
     let name = theme::sentence(&b.class.label());
-    let right = format!("#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
+    let mark = if guess { "guess   " } else { "" };
+    let right = format!("{mark}#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
     let label = format!("Box {} {}", b.id.0, b.class.label());
     let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
     if row.clicked() {

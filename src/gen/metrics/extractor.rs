@@ -67,12 +67,17 @@ mod tests {
         let frames: Vec<_> = (0..24).map(|i| occupancy_frame(2, i, |_| None)).collect();
         let of = |pick: fn(&crate::generation::dataset::OccupancyFrame) -> &VoxelGrid, part: usize| {
             let some = frames[part * 12..][..12].iter();
-            some.map(|f| extractor.features(pick(f)).expect("sound labels")).collect::<Vec<_>>()
+            some.map(|f| extractor.features(pick(f)).expect("sound labels"))
+                .collect::<Vec<_>>()
         };
         let worlds = of(|f| &f.dense, 0);
         let all = [of(|f| &f.dense, 1), of(|f| &f.draft, 1), of(|f| &f.labels, 1)];
-        let f3d = all.each_ref().map(|x| frechet_distance(&worlds, x).expect("sound"));
-        let kid = all.each_ref().map(|x| mmd2(Kernel::Cubic, &worlds, x).expect("sound"));
+        let f3d = all
+            .each_ref()
+            .map(|x| frechet_distance(&worlds, x).expect("sound"));
+        let kid = all
+            .each_ref()
+            .map(|x| mmd2(Kernel::Cubic, &worlds, x).expect("sound"));
         assert!(f3d[0] * 2.0 < f3d[1] && f3d[0] * 2.0 < f3d[2], "{f3d:?}");
         assert!(kid[0] < kid[1] && kid[0] < kid[2], "{kid:?}");
     }

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::ModelError;
 use super::layers::{Linear, Norm, ResBlock};
 use super::map::{Map, Window};
-use super::ModelError;
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
@@ -67,8 +67,8 @@ pub fn steps(
 
 /// Labels to one vector per latent cell.
 pub struct Encoder {
-    width: usize,    // of the finest level
-    embed: Vec<f32>, // [z][class][width]
+    width: usize,       // of the finest level
+    embed: Vec<f32>,    // [z][class][width]
     levels: Vec<Level>, // finest first
     down: Vec<Linear>,
     norm: Norm,
@@ -76,7 +76,11 @@ pub struct Encoder {
 
 impl Encoder {
     /// Takes the encoder's tensors of a file; `widths` and `kernels` are of every level, finest first.
-    pub fn new(w: &mut WeightFile<'_>, widths: &[usize], kernels: &[Vec<usize>]) -> Result<Self, WeightsError> {
+    pub fn new(
+        w: &mut WeightFile<'_>,
+        widths: &[usize],
+        kernels: &[Vec<usize>],
+    ) -> Result<Self, WeightsError> {
         let width = widths[0];
         Ok(Self {
             width,

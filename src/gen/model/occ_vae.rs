@@ -42,7 +42,10 @@ impl VaeConfig {
             Err(format!("latent: expected 1 to 64, found {}", self.latent))
         } else if !(2..=3).contains(&levels) {
             Err(format!("widths: expected 2 or 3 levels, found {levels}"))
-        } else if [&self.encoder_kernels, &self.decoder_kernels].iter().any(|k| k.len() != levels) {
+        } else if [&self.encoder_kernels, &self.decoder_kernels]
+            .iter()
+            .any(|k| k.len() != levels)
+        {
             Err(format!("kernels: expected {levels} levels, as many as widths"))
         } else if self.widths.iter().any(|w| !(1..=4096).contains(w)) {
             Err(format!("widths: expected 1 to 4096, found {:?}", self.widths))

@@ -295,7 +295,11 @@ impl OccPipeline {
     ) -> Result<RoundTrip, GenError> {
         let frame = scene.frame();
         let latent = self.models.vae.encode(&frame.source.occupancy);
-        let clean: Vec<f64> = latent.map_err(GenError::failed)?.into_iter().map(f64::from).collect();
+        let clean: Vec<f64> = latent
+            .map_err(GenError::failed)?
+            .into_iter()
+            .map(f64::from)
+            .collect();
         let mut network = self.network_of_source(frame)?;
         let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
         let refinement = Refinement::damped(params.inversion_iterations as usize);
@@ -382,7 +386,12 @@ impl OccPipeline {
     }
 
     /// Regenerates a region of the job's frame, whatever was edited in it.
-    pub fn redraw_region(&mut self, job: &Job, region: Region, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+    pub fn redraw_region(
+        &mut self,
+        job: &Job,
+        region: Region,
+        ctx: &JobCtx<'_>,
+    ) -> Result<GenResult, GenError> {
         job.params.check()?;
         self.redraw(job, region, GenReport::default(), ctx)
     }

@@ -43,8 +43,16 @@ impl Condition {
         ablation: Option<Ablation>,
     ) -> Self {
         let (bare, none) = (BevLayout::default(), BTreeMap::new());
-        let layout = if ablation == Some(Ablation::Layout) { &bare } else { layout };
-        let boxes = if ablation == Some(Ablation::Boxes) { &none } else { boxes };
+        let layout = if ablation == Some(Ablation::Layout) {
+            &bare
+        } else {
+            layout
+        };
+        let boxes = if ablation == Some(Ablation::Boxes) {
+            &none
+        } else {
+            boxes
+        };
         Self {
             bev: raster::bev_channels(layout, boxes.values()),
             heading: raster::headings(boxes.values()),
@@ -88,4 +96,3 @@ impl Denoiser for Network {
         Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
     }
 }
-

@@ -244,7 +244,10 @@ fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
             .filter_map(|i| at((x + i / 3).wrapping_sub(1), (y + i % 3).wrapping_sub(1)))
             .collect();
         let votes = |g: &(usize, u8)| near.iter().filter(|n| *n == g).count();
-        near.iter().max_by_key(|g| votes(g)).copied().filter(|_| near.len() >= 4)
+        near.iter()
+            .max_by_key(|g| votes(g))
+            .copied()
+            .filter(|_| near.len() >= 4)
     };
     (0..ground.len()).map(|c| ground[c].or_else(|| fill(c))).collect()
 }

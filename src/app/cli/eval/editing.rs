@@ -108,7 +108,9 @@ impl Eval {
                 let (shown, report) = edited(pipeline, &scene, &trial, kept)?;
                 untouched += report.untouched_voxels_changed;
                 let reached = trial.judge(&scene.frame().occupancy, &shown);
-                entry.success_in_editor.push(f64::from(u8::from(reached.success())));
+                entry
+                    .success_in_editor
+                    .push(f64::from(u8::from(reached.success())));
                 if params.local && report.region_columns > 0 {
                     // What the other tokens' stored keys and values cost in accuracy, and save in time.
                     let dense = GenParams {
@@ -155,7 +157,11 @@ impl Eval {
             report["against_1000_steps"] = self.reference(pipeline, params, progress)?;
         }
         report["untouched_voxels_changed"] = untouched.into();
-        bars.push(("untouched voxels kept", if untouched == 0 { 1.0 } else { 0.0 }, 1.0));
+        bars.push((
+            "untouched voxels kept",
+            if untouched == 0 { 1.0 } else { 0.0 },
+            1.0,
+        ));
         Ok((report, bars))
     }
 }

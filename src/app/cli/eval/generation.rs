@@ -94,12 +94,11 @@ impl Eval {
             boxless.add(&job.scene, &run(Some(Ablation::Boxes), &job)?.occupancy);
             likeness.add(&truth, &result.occupancy);
             let other = scene((self.frames + i) as u64);
-            for (set, grid) in features.iter_mut().zip([
-                &other.frame().occupancy,
-                &truth,
-                &result.occupancy,
-                &naive,
-            ]) {
+            for (set, grid) in
+                features
+                    .iter_mut()
+                    .zip([&other.frame().occupancy, &truth, &result.occupancy, &naive])
+            {
                 set.push(extractor.features(grid)?);
             }
             if i < DIVERSITY_FRAMES {
@@ -126,7 +125,8 @@ impl Eval {
             "redrawn_region_iou": with_interval(&with_context),
             "redrawn_region_iou_without_context": with_interval(&without_context),
         });
-        report["against_the_worlds"] = json!({ "miou": likeness.mean_iou().0, "iou": likeness.occupied_iou() });
+        report["against_the_worlds"] =
+            json!({ "miou": likeness.mean_iou().0, "iou": likeness.occupied_iou() });
         report["diversity_across_seeds"] = with_interval(&diversity);
         report["distribution"] = distribution(&features)?;
         report["wall_s_median"] = median(&wall_s).into();
@@ -181,7 +181,9 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     let starts = || (PLACE_STEP..GridSpec::NX - REDRAWN - PLACE_STEP).step_by(PLACE_STEP);
     let squares = starts().flat_map(|x| starts().map(move |y| square(x, y)));
     let count = |c: &Vec<[usize; 2]>| {
-        let each = c.iter().map(|[x, y]| standing(grid, *x, *y).filter(|s| *s).count());
+        let each = c
+            .iter()
+            .map(|[x, y]| standing(grid, *x, *y).filter(|s| *s).count());
         each.sum::<usize>()
     };
     squares.max_by_key(count).unwrap_or_default()
@@ -196,7 +198,9 @@ fn redrawn_iou(
     let truth = &job.scene.frame().occupancy;
     let square = fullest_square(truth);
     let mut columns = vec![false; GridSpec::COLUMNS];
-    square.iter().for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
+    square
+        .iter()
+        .for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
     let job = Job {
         params: GenParams {
             strength: 1.0,

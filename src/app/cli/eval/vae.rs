@@ -65,7 +65,8 @@ impl Kept {
 
 fn report(kept: &[Kept; 3]) -> Value {
     let each = MODES.iter().zip(kept);
-    each.map(|(mode, kept)| ((*mode).to_owned(), kept.report())).collect()
+    each.map(|(mode, kept)| ((*mode).to_owned(), kept.report()))
+        .collect()
 }
 
 /// Encodes and decodes in every mode; returns the reconstruction of the mean.
