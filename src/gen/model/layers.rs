@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::kernels;
 use super::map::Map;
+use super::panels::{Panels, Start, product};
 use crate::generation::weights::{WeightFile, WeightsError};
 
 /// Epsilon of every norm in these networks.
@@ -36,6 +37,11 @@ impl<'a> View<'a> {
             row_stride: 1,
             column_stride,
         }
+    }
+
+    /// Value (row, column).
+    pub fn at(&self, row: usize, column: usize) -> f32 {
+        self.data[row * self.row_stride + column * self.column_stride]
     }
 
     fn holds(&self, rows: usize, columns: usize) -> bool {
@@ -85,12 +91,10 @@ pub fn matmul(
     }
 }
 
-/// y = x W + b; the weight is kept as `[inputs][outputs]`, which the product reads fastest.
+/// y = x W + b.
 pub struct Linear {
-    weight: Vec<f32>,
+    weight: Panels, // [inputs][outputs]
     bias: Vec<f32>,
-    inputs: usize,
-    outputs: usize,
 }
 
 impl Linear {
@@ -125,67 +129,40 @@ impl Linear {
 
     /// From a weight `[outputs][inputs]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, inputs: usize) -> Self {
-        Self {
-            weight: transposed(weight, bias.len(), inputs),
-            outputs: bias.len(),
-            inputs,
-            bias,
-        }
-    }
-
-    /// Puts the outputs into another order: output `o` becomes output `to(o)`.
-    pub fn reorder_outputs(&mut self, to: impl Fn(usize) -> usize) {
-        let (weight, bias) = (self.weight.clone(), self.bias.clone());
-        for o in 0..self.outputs {
-            self.bias[to(o)] = bias[o];
-            for i in 0..self.inputs {
-                self.weight[i * self.outputs + to(o)] = weight[i * self.outputs + o];
-            }
-        }
+        let weight = Panels::new(View::columns(weight, inputs), inputs, bias.len());
+        Self { weight, bias }
     }
 
     /// Rows of `x` to rows of `out`, on the calling thread.
     pub fn rows(&self, x: &[f32], out: &mut [f32]) {
-        let rows = x.len() / self.inputs;
-        for row in out.chunks_exact_mut(self.outputs) {
-            row.copy_from_slice(&self.bias);
-        }
-        let weight = View::rows(&self.weight, self.outputs);
-        matmul(
+        let (inputs, outputs) = (self.weight.inputs(), self.weight.outputs());
+        let rows = x.len() / inputs;
+        self.weight.multiply(
+            x,
+            inputs,
+            [rows, 0, inputs],
+            Start::Bias(&self.bias),
             out,
-            self.outputs,
-            true,
-            View::rows(x, self.inputs),
-            weight,
-            [rows, self.outputs, self.inputs],
+            outputs,
         );
     }
 
     /// One vector to one vector.
     pub fn vector(&self, x: &[f32]) -> Vec<f32> {
-        let mut out = vec![0.0; self.outputs];
+        let mut out = vec![0.0; self.weight.outputs()];
         self.rows(x, &mut out);
         out
     }
 
     /// All rows of `x`, in pieces of `piece` rows on all cores.
     pub fn parallel(&self, x: &[f32], piece: usize) -> Vec<f32> {
-        let mut out = vec![0.0; x.len() / self.inputs * self.outputs];
-        out.par_chunks_mut(piece * self.outputs)
-            .zip(x.par_chunks(piece * self.inputs))
+        let (inputs, outputs) = (self.weight.inputs(), self.weight.outputs());
+        let mut out = vec![0.0; x.len() / inputs * outputs];
+        out.par_chunks_mut(piece * outputs)
+            .zip(x.par_chunks(piece * inputs))
             .for_each(|(out, x)| self.rows(x, out));
         out
     }
-}
-
-fn transposed(matrix: &[f32], rows: usize, columns: usize) -> Vec<f32> {
-    let mut out = vec![0.0; matrix.len()];
-    for r in 0..rows {
-        for c in 0..columns {
-            out[c * rows + r] = matrix[r * columns + c];
-        }
-    }
-    out
 }
 
 /// Scale and shift of a norm.
@@ -292,14 +269,17 @@ impl ResBlock {
                 // Two cells between rows of the map belong to the border; they are computed and ignored.
                 let cells = rows * (columns + 2) - 2;
                 let mut hidden = vec![0.0; cells * width];
-                for row in hidden.chunks_exact_mut(width) {
-                    row.copy_from_slice(&self.first.bias);
-                }
                 for dx in 0..3 {
                     let from = (piece * PIECE_ROWS + dx) * stride;
-                    let a = View::rows(&padded[from..], width);
-                    let b = View::rows(&self.first.weight[dx * 3 * width * width..], width);
-                    matmul(&mut hidden, width, true, a, b, [cells, width, 3 * width]);
+                    let start = if dx == 0 {
+                        Start::Bias(&self.first.bias)
+                    } else {
+                        Start::Add
+                    };
+                    let sizes = [cells, dx * 3 * width, 3 * width];
+                    self.first
+                        .weight
+                        .multiply(&padded[from..], width, sizes, start, &mut hidden, width);
                 }
                 kernels::gelu_all(&mut hidden);
                 let mut out = vec![0.0; cells * width];
@@ -311,49 +291,74 @@ impl ResBlock {
     }
 }
 
-/// Softmax(q k^T) v of one head for a piece of queries.
+/// Queries that are worked on together: their scores stay in the nearest cache.
+const QUERIES: usize = 8;
+
+/// Softmax(q k^T) v of one head.
 pub struct Head<'a> {
+    /// The head's keys, `[channel][token]`.
+    keys: Panels,
     /// Keys and values of all tokens, one row each.
-    pub keys_values: &'a [f32],
+    keys_values: &'a [f32],
     /// Length of such a row.
-    pub stride: usize,
-    /// Rows.
-    pub tokens: usize,
-    /// Channels of the head.
-    pub width: usize,
-    /// Where the head's keys start in a row.
-    pub key_at: usize,
+    stride: usize,
     /// Where the head's values start in a row.
-    pub value_at: usize,
+    value_at: usize,
 }
 
-impl Head<'_> {
+impl<'a> Head<'a> {
+    /// The head whose `width` keys start at `key_at` of every row of `stride` values, and whose values at `value_at`.
+    pub fn new(keys_values: &'a [f32], stride: usize, width: usize, key_at: usize, value_at: usize) -> Self {
+        let tokens = keys_values.len() / stride;
+        Self {
+            keys: Panels::new(View::columns(&keys_values[key_at..], stride), width, tokens),
+            keys_values,
+            stride,
+            value_at,
+        }
+    }
+
     /// `queries`: rows x width, scaled by 1 / sqrt(width) already. Writes rows x width into `out`,
-    /// rows `out_stride` apart. `scores` is scratch of rows x tokens.
-    pub fn attend(&self, queries: &[f32], scores: &mut [f32], out: &mut [f32], out_stride: usize) {
-        let rows = queries.len() / self.width;
-        let keys = View::columns(&self.keys_values[self.key_at..], self.stride);
-        matmul(
-            scores,
-            self.tokens,
-            false,
-            View::rows(queries, self.width),
-            keys,
-            [rows, self.tokens, self.width],
-        );
-        let mut sums = vec![0.0; rows];
-        kernels::softmax_rows(&mut scores[..rows * self.tokens], self.tokens, &mut sums);
-        let values = View::rows(&self.keys_values[self.value_at..], self.stride);
-        matmul(
-            out,
-            out_stride,
-            false,
-            View::rows(scores, self.tokens),
-            values,
-            [rows, self.width, self.tokens],
-        );
-        for (row, sum) in out.chunks_mut(out_stride).zip(&sums) {
-            row[..self.width].iter_mut().for_each(|v| *v /= sum);
+    /// rows `out_stride` apart.
+    pub fn attend(&self, queries: &[f32], out: &mut [f32], out_stride: usize) {
+        let (width, tokens) = (self.keys.inputs(), self.keys.outputs());
+        let mut scores = vec![0.0; QUERIES * tokens];
+        let mut sums = [0.0; QUERIES];
+        for (queries, out) in queries
+            .chunks(QUERIES * width)
+            .zip(out.chunks_mut(QUERIES * out_stride))
+        {
+            let rows = queries.len() / width;
+            let scores = &mut scores[..rows * tokens];
+            self.keys
+                .multiply(queries, width, [rows, 0, width], Start::Zero, scores, tokens);
+            kernels::softmax_rows(scores, tokens, &mut sums[..rows]);
+            self.mix(scores, [rows, width, tokens], out, out_stride);
+            for (row, sum) in out.chunks_mut(out_stride).zip(&sums) {
+                row[..width].iter_mut().for_each(|v| *v /= sum);
+            }
+        }
+    }
+
+    /// out = scores times values.
+    fn mix(&self, scores: &[f32], [rows, width, tokens]: [usize; 3], out: &mut [f32], out_stride: usize) {
+        let values = &self.keys_values[self.value_at..];
+        if width % 16 == 0 && width <= 48 {
+            // Read where they lie.
+            let sizes = [rows, width, tokens];
+            product(
+                scores,
+                tokens,
+                values,
+                self.stride,
+                sizes,
+                Start::Zero,
+                out,
+                out_stride,
+            );
+        } else {
+            let (a, b) = (View::rows(scores, tokens), View::rows(values, self.stride));
+            matmul(out, out_stride, false, a, b, [rows, width, tokens]);
         }
     }
 }

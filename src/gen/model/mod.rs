@@ -10,6 +10,7 @@ pub mod layers;
 pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
+pub mod panels;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

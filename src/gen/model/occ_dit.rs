@@ -395,31 +395,33 @@ impl Block {
             keys_values[place * 2 * width..][..2 * width].copy_from_slice(&row[width..]);
         }
         let keys_values = &*keys_values;
-        let count = keys_values.len() / (2 * width);
         let head_width = width / heads;
+        let heads: Vec<Head<'_>> = (0..heads)
+            .into_par_iter()
+            .map(|h| {
+                Head::new(
+                    keys_values,
+                    2 * width,
+                    head_width,
+                    h * head_width,
+                    width + h * head_width,
+                )
+            })
+            .collect();
         let shrink = 1.0 / (head_width as f32).sqrt();
         tokens
             .par_chunks_mut(piece_tokens * width)
             .zip(qkv.par_chunks(piece_tokens * 3 * width))
             .for_each(|(x, qkv)| {
                 let mut attended = vec![0.0; x.len()];
-                let mut scores = vec![0.0; x.len() / width * count];
-                let mut queries = Vec::with_capacity(x.len() / heads);
-                for head in 0..heads {
+                let mut queries = Vec::with_capacity(x.len() / heads.len());
+                for (h, head) in heads.iter().enumerate() {
+                    let at = h * head_width;
                     queries.clear();
                     for row in qkv.chunks_exact(3 * width) {
-                        queries.extend(row[head * head_width..][..head_width].iter().map(|q| q * shrink));
+                        queries.extend(row[at..][..head_width].iter().map(|q| q * shrink));
                     }
-                    let at = head * head_width;
-                    let head = Head {
-                        keys_values,
-                        stride: 2 * width,
-                        tokens: count,
-                        width: head_width,
-                        key_at: at,
-                        value_at: width + at,
-                    };
-                    head.attend(&queries, &mut scores, &mut attended[at..], width);
+                    head.attend(&queries, &mut attended[at..], width);
                 }
                 let mut out = vec![0.0; x.len()];
                 self.proj.rows(&attended, &mut out);
