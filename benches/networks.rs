@@ -6,6 +6,8 @@ use std::time::Instant;
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::metrics::stats::median;
 use sceneloom::generation::model::candle_dit::CandleDit;
+use sceneloom::generation::model::layers::{View, matmul};
+use sceneloom::generation::model::panels::{Panels, Start};
 use sceneloom::generation::model::{DitCondition, OccModels};
 
 const RUNS: usize = 15;
@@ -15,6 +17,38 @@ fn timed<T>(out: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
     let result = work();
     out.push(start.elapsed().as_secs_f64() * 1e3);
     result
+}
+
+/// A layer's product, 80 x 192 times 192 x 768, against panels and through gemm, on one core.
+fn products() {
+    let [m, n, k] = [80, 768, 192];
+    let number = |i: usize| (i % 97) as f32 / 97.0 - 0.5;
+    let a: Vec<f32> = (0..m * k).map(number).collect();
+    let b: Vec<f32> = (0..k * n).map(number).collect();
+    let mut out = vec![0.0; m * n];
+    let panels = Panels::new(View::rows(&b, n), k, n);
+    let [mut ours, mut theirs] = [const { Vec::new() }; 2];
+    for _ in 0..20 * RUNS {
+        timed(&mut ours, || {
+            panels.multiply(&a, k, [m, 0, k], Start::Zero, &mut out, n)
+        });
+        timed(&mut theirs, || {
+            matmul(
+                &mut out,
+                n,
+                false,
+                View::rows(&a, k),
+                View::rows(&b, n),
+                [m, n, k],
+            );
+        });
+    }
+    let rate = |ms: &[f64]| 2e-6 * (m * n * k) as f64 / median(ms);
+    println!(
+        "product of a layer, one core: panels {:.0}, gemm {:.0} GFLOP/s",
+        rate(&ours),
+        rate(&theirs)
+    );
 }
 
 fn main() {
@@ -49,6 +83,7 @@ fn main() {
         })
         .expect("finite");
     }
+    products();
     println!("median of {RUNS}, ms");
     for (name, values) in [
         ("encode", encode),

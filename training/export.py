@@ -95,6 +95,7 @@ def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--vae", type=Path, required=True)
     p.add_argument("--dit", type=Path, required=True)
+    p.add_argument("--fine", type=Path, help="weights of the fine VAE; those that are there stay without it")
     p.add_argument("--data", type=Path, required=True, help="the data set; the VAE's golden is a held-out frame")
     p.add_argument("--data-command", required=True, help="how the data were made, for the card")
     p.add_argument("--weights", type=Path, default=ROOT / "assets/weights")
@@ -105,9 +106,10 @@ def main():
 
     name = latent_space(args.vae)
     card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
-    for kind, path in (("occ_vae", args.vae), ("occ_dit", args.dit)):
+    networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else [])
+    for kind, path in networks:
         tensors, meta = read(path)
-        if meta.get("kind") != kind:
+        if meta.get("kind") != kind.removesuffix("_fine"):
             raise SystemExit(f"{path}: expected weights of {kind}, found {meta.get('kind')}")
         if kind == "occ_dit" and meta["vae"] != name:
             raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
@@ -121,6 +123,9 @@ def main():
         card[kind] = meta | {"config": json.loads(meta["config"]), "bytes": out.stat().st_size,
                              "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
                              "parameters": sum(v.numel() for v in tensors.values()), "held_out": last_row(path)}
+        if kind == "occ_vae_fine":
+            print(f"{out}: {card[kind]['bytes'] / 1e6:.1f} MB, {card[kind]['parameters']} parameters")
+            continue
         shipped = {k: v.float() for k, v in load_file(out).items()}
         if kind == "occ_vae":
             net = OccVae(VaeConfig(**json.loads(meta["config"])))
@@ -134,9 +139,12 @@ def main():
         print(f"{out}: {card[kind]['bytes'] / 1e6:.1f} MB, {card[kind]['parameters']} parameters")
 
     (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
-    lines = ["# Weights", "", "Trained from scratch on this project's own procedural worlds; no real data went in.", "",
-             f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`; logs: the CSV files beside this card.", ""]
-    for kind in ("occ_vae", "occ_dit"):
+    lines = ["# Weights", "", "Trained on this project's own procedural worlds; no frame of a data set went in. With `--roads` a third of the",
+             "layouts are places on public OpenDRIVE files (MIT, MPL-2.0), which are not part of this repository.", "",
+             f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`; logs: the CSV files beside this card.",
+             "- `f3d.safetensors`: the encoder of `occ_vae` of commit 5750f81, fixed for good: the features of F3D, KID and MMD",
+             "  (`src/gen/metrics/extractor.rs`).", ""]
+    for kind, _ in networks:
         c = card[kind]
         lines += [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.1f} MB; config `{json.dumps(c['config'])}`",
                   f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {float(c['minutes']) / 60:.2f} h",

@@ -3,17 +3,19 @@
 
 use egui::accesskit::Role;
 use egui::{
-    Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextureHandle,
-    TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions,
+    Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 
 use crate::editor::pick;
-use crate::scene::{
-    BevLayer, Class, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SceneRev, SensorRig,
-};
+use crate::scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev};
 
 use super::bev_image;
+use super::canvas_draw::{
+    BoxLook, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
+    draw_unsettled,
+};
 use super::canvas_tools::Gesture;
 use super::command::Command;
 use super::pointer::{self, Held, Step};
@@ -44,7 +46,7 @@ impl ScreenMap {
         self.center_m + DVec2::new(-f64::from(d.y), -f64::from(d.x)) / self.scale
     }
 
-    fn rect_of(&self, min_m: DVec2, max_m: DVec2) -> Rect {
+    pub(super) fn rect_of(&self, min_m: DVec2, max_m: DVec2) -> Rect {
         Rect::from_two_pos(self.to_screen(min_m), self.to_screen(max_m))
     }
 }
@@ -325,248 +327,6 @@ fn texture<K: PartialEq>(
         .map_or(egui::TextureId::default(), |(_, handle)| handle.id())
 }
 
-/// What of `outer` is not covered by `inner`.
-fn around(inner: Rect, outer: Rect) -> [Rect; 4] {
-    let inner = inner.intersect(outer);
-    if !inner.is_positive() {
-        return [outer, Rect::NOTHING, Rect::NOTHING, Rect::NOTHING];
-    }
-    let middle =
-        |left: f32, right: f32| Rect::from_min_max(pos2(left, inner.top()), pos2(right, inner.bottom()));
-    [
-        Rect::from_min_max(outer.min, pos2(outer.right(), inner.top())),
-        Rect::from_min_max(pos2(outer.left(), inner.bottom()), outer.max),
-        middle(outer.left(), inner.left()),
-        middle(inner.right(), outer.right()),
-    ]
-}
-
-fn draw_grid(ui: &Ui, map: &ScreenMap, grid: Rect) {
-    let painter = ui.painter();
-    for i in -4..=4 {
-        let at = map.to_screen(DVec2::splat(f64::from(i) * 10.0));
-        let alpha = if i == 0 { 44 } else { 18 };
-        let stroke = Stroke::new(1.0, Color32::from_white_alpha(alpha));
-        painter.vline(painter.round_to_pixel_center(at.x), grid.y_range(), stroke);
-        painter.hline(grid.x_range(), painter.round_to_pixel_center(at.y), stroke);
-    }
-}
-
-fn draw_lines(painter: &egui::Painter, map: &ScreenMap, scene: &Scene) {
-    for line in scene.frame().layout.polylines.iter() {
-        let mut points: Vec<Pos2> = line.points_m.iter().map(|p| map.to_screen(*p)).collect();
-        match line.kind {
-            PolylineKind::LaneCenter => {
-                let stroke = Stroke::new(1.0, Color32::from_rgba_unmultiplied(120, 190, 255, 90));
-                painter.extend(Shape::dashed_line(&points, stroke, 5.0, 5.0));
-                draw_direction(painter, &points, stroke.color);
-            }
-            PolylineKind::RoadDivider => {
-                painter.line(
-                    points,
-                    Stroke::new(1.5, theme::rgb(BevLayer::RoadDivider.color())),
-                );
-            }
-            PolylineKind::LaneDivider => {
-                painter.line(
-                    points,
-                    Stroke::new(1.2, theme::rgba(BevLayer::LaneDivider.color(), 0.9)),
-                );
-            }
-            PolylineKind::StopLine => {
-                painter.line(points, Stroke::new(2.0, theme::rgb(BevLayer::StopLine.color())));
-            }
-            PolylineKind::PedCrossing => {
-                points.extend(points.first().copied());
-                painter.line(
-                    points,
-                    Stroke::new(1.0, theme::rgba(BevLayer::PedCrossing.color(), 0.8)),
-                );
-            }
-        }
-    }
-}
-
-/// A small arrow head half way along a lane.
-fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
-    let Some(pair) = points.get(points.len() / 2..).and_then(|p| p.first_chunk::<2>()) else {
-        return;
-    };
-    let along = (pair[1] - pair[0]).normalized();
-    if !along.is_finite() || along == egui::Vec2::ZERO {
-        return;
-    }
-    let side = along.rot90();
-    let tip = pair[0] + along * 4.0;
-    let wings = [tip - along * 6.0 + side * 3.0, tip - along * 6.0 - side * 3.0];
-    let head = vec![tip, wings[0], wings[1]];
-    painter.add(Shape::convex_polygon(
-        head,
-        color.gamma_multiply(1.6),
-        Stroke::NONE,
-    ));
-}
-
-fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, state: &UiState) {
-    let colors = crate::viewport::lidar_colors(sweep, state.lidar_colors);
-    let mut mesh = egui::Mesh::default();
-    for (point, [r, g, b, _]) in sweep.points.iter().zip(colors) {
-        let [x, y, _] = point.position_in_ego;
-        let at = map.to_screen(DVec2::new(f64::from(x), f64::from(y)));
-        if map.rect.contains(at) {
-            let dot = Rect::from_center_size(at, egui::Vec2::splat(1.5));
-            mesh.add_colored_rect(dot, Color32::from_rgb(r, g, b));
-        }
-    }
-    ui.painter().add(Shape::mesh(mesh));
-}
-
-fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig) {
-    let (c, half) = (
-        rig.ego_center_m,
-        [rig.ego_size_m[0] / 2.0, rig.ego_size_m[1] / 2.0],
-    );
-    let at = |x: f64, y: f64| map.to_screen(DVec2::new(c[0] + x * half[0], c[1] + y * half[1]));
-    let body = vec![
-        at(1.0, 0.55),
-        at(0.8, 1.0),
-        at(-1.0, 1.0),
-        at(-1.0, -1.0),
-        at(0.8, -1.0),
-        at(1.0, -0.55),
-    ];
-    let fill = Color32::from_rgb(228, 232, 238);
-    let edge = Stroke::new(1.0, Color32::from_rgb(20, 22, 26));
-    ui.painter().add(Shape::convex_polygon(body, fill, edge));
-    let glass = vec![at(0.45, 0.72), at(0.45, -0.72), at(0.12, -0.62), at(0.12, 0.62)];
-    ui.painter().add(Shape::convex_polygon(
-        glass,
-        Color32::from_rgb(70, 80, 95),
-        Stroke::NONE,
-    ));
-}
-
-/// How a box is drawn.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum BoxLook {
-    Plain,
-    Hovered,
-    Selected,
-    Ghost,
-}
-
-fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &Scene, state: &UiState) {
-    let frame = scene.frame();
-    let hovered = response
-        .hover_pos()
-        .filter(|_| state.tool == Tool::Select)
-        .and_then(|p| pick::box_at(frame, map.to_ego(p)));
-    for b in frame.boxes.values() {
-        if Some(b.id) != state.selected {
-            let look = if Some(b.id) == hovered {
-                BoxLook::Hovered
-            } else {
-                BoxLook::Plain
-            };
-            draw_box(ui, map, b, look);
-        }
-    }
-    if let Some(b) = state.selected.and_then(|id| frame.boxes.get(&id)) {
-        draw_box(ui, map, b, BoxLook::Selected);
-        if state.tool == Tool::Select {
-            draw_handles(ui, map, b);
-        }
-    }
-}
-
-fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, look: BoxLook) {
-    let painter = ui.painter();
-    let color = b.class.color();
-    let corners: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
-    let (opacity, edge) = match look {
-        BoxLook::Plain => (0.42, Stroke::new(1.3, theme::rgb(color))),
-        BoxLook::Hovered => (
-            0.62,
-            Stroke::new(1.8, theme::rgb(color.map(|c| c.saturating_add(40)))),
-        ),
-        BoxLook::Selected => (0.62, Stroke::new(2.0, Color32::WHITE)),
-        BoxLook::Ghost => (0.28, Stroke::new(1.3, theme::rgba(color, 0.8))),
-    };
-    painter.add(Shape::convex_polygon(corners, theme::rgba(color, opacity), edge));
-    // The heading: from the middle to the front.
-    let middle = map.to_screen(b.center_m.truncate());
-    let front = map.to_screen(b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0));
-    painter.line_segment([middle, front], edge);
-}
-
-fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
-    let painter = ui.painter();
-    let front = map.to_screen(b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0));
-    let knob = map.to_screen(pick::rotate_knob(b));
-    painter.line_segment([front, knob], Stroke::new(1.0, Color32::from_white_alpha(150)));
-    painter.circle(knob, 5.0, theme::ACCENT, Stroke::new(1.5, Color32::WHITE));
-    for corner in b.footprint() {
-        let square = Rect::from_center_size(map.to_screen(corner), egui::Vec2::splat(6.0));
-        painter.rect(
-            square,
-            1.0,
-            Color32::WHITE,
-            Stroke::new(1.0, theme::BACKGROUND),
-            StrokeKind::Outside,
-        );
-    }
-}
-
-/// A dashed frame around what is still to be generated.
-fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
-    let Some((low, high)) = input.unsettled else {
-        return;
-    };
-    let color = if input.generating {
-        theme::ACCENT
-    } else {
-        theme::WARN
-    };
-    let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
-    let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
-    let rect = map.rect_of(corner(low) - half, corner(high) + half).expand(2.0);
-    ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
-    let [a, b, c, d] = [
-        rect.left_top(),
-        rect.right_top(),
-        rect.right_bottom(),
-        rect.left_bottom(),
-    ];
-    let stroke = Stroke::new(1.3, color);
-    ui.painter()
-        .extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
-}
-
-fn draw_scale_bar(ui: &Ui, map: &ScreenMap) {
-    let painter = ui.painter();
-    let length_m = [1.0, 2.0, 5.0, 10.0, 20.0]
-        .into_iter()
-        .rfind(|m| m * map.scale <= 110.0)
-        .unwrap_or(1.0);
-    let length = (length_m * map.scale) as f32;
-    let left = pos2(map.rect.left() + 14.0, map.rect.bottom() - 14.0);
-    let right = left + vec2(length, 0.0);
-    let stroke = Stroke::new(1.5, Color32::from_white_alpha(200));
-    painter.line_segment([left, right], stroke);
-    for end in [left, right] {
-        painter.line_segment([end - vec2(0.0, 4.0), end], stroke);
-    }
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    let text_at = left + vec2(length / 2.0, -5.0);
-    painter.text(
-        text_at,
-        Align2::CENTER_BOTTOM,
-        format!("{length_m} m"),
-        font,
-        theme::TEXT,
-    );
-}
-
 /// What is under a point of the view, for the status bar.
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![super::state::position_text(p_m)];
@@ -599,17 +359,6 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn strips_cover_what_is_around() {
-        let outer = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 60.0));
-        let area = |strips: [Rect; 4]| strips.iter().map(|r| r.area()).sum::<f32>();
-        let inner = Rect::from_min_max(pos2(20.0, 10.0), pos2(70.0, 80.0));
-        assert_eq!(area(around(inner, outer)), 6000.0 - 50.0 * 50.0);
-        assert_eq!(area(around(outer, outer)), 0.0);
-        let apart = Rect::from_min_max(pos2(200.0, 0.0), pos2(300.0, 60.0));
-        assert_eq!(around(apart, outer)[0], outer);
-    }
 
     #[test]
     fn the_map_goes_both_ways() {

@@ -3,6 +3,7 @@
 pub mod application;
 mod bev_image;
 pub mod canvas;
+mod canvas_draw;
 pub mod canvas_tools;
 pub mod cli;
 pub mod command;

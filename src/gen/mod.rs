@@ -7,6 +7,7 @@ pub mod job;
 pub mod keep_objects;
 pub mod metrics;
 pub mod model;
+pub mod params;
 pub mod pipeline;
 pub mod region;
 pub mod replay;

@@ -145,6 +145,10 @@ impl Eval {
             ("road widened", success("road"), 0.90),
             ("crossing painted", success("crossing"), 0.90),
         ];
+        let order = self.order(pipeline, params, progress)?;
+        report["two_edits_in_either_order_differ"] = with_interval(&order);
+        let most = order.iter().fold(0.0, |m: f64, v| m.max(*v));
+        report["two_edits_in_either_order_differ_at_most"] = most.into();
         if self.random_edits > 0 {
             let (random, changed) = self.random_edits(pipeline, params, progress)?;
             untouched += changed;

@@ -11,11 +11,12 @@ use crate::app::cli::progress::Progress;
 use crate::editor::Document;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::iou::Confusion;
+use crate::generation::model::tokens_of;
 use crate::generation::pipeline::OccPipeline;
 use crate::generation::region::Region;
 use crate::generation::solver::SolverKind;
 use crate::generation::world::draw::Draw;
-use crate::scene::{GridSpec, VoxelGrid};
+use crate::scene::{GridSpec, Scene, VoxelGrid};
 
 /// Edits of one world before the next is taken.
 const EDITS_PER_WORLD: usize = 25;
@@ -109,6 +110,35 @@ impl Eval {
         Ok(rows.into())
     }
 
+    /// Two edits in regions apart, in either order: share of the voxels of both regions that differ, per world.
+    pub(super) fn order(
+        &self,
+        pipeline: &mut OccPipeline,
+        params: GenParams,
+        progress: &Progress,
+    ) -> anyhow::Result<Vec<f64>> {
+        let mut differ = Vec::new();
+        for i in 0..self.frames {
+            progress.at("edit order", i, self.frames);
+            let scene = scene(i as u64);
+            let trials = ["remove", "add"].map(|kind| Trial::propose(kind, scene.frame(), i as u64));
+            let [Some(one), Some(other)] = &trials else {
+                continue;
+            };
+            let (one_region, other_region) = (region(&scene, one, &params)?, region(&scene, other, &params)?);
+            let tokens =
+                [&one_region, &other_region].map(|r| tokens_of(&r.cells, params.halo_tokens as usize));
+            if tokens[0].iter().any(|t| tokens[1].contains(t)) {
+                continue;
+            }
+            let first = after_both(pipeline, &scene, [one, other], &params)?;
+            let second = after_both(pipeline, &scene, [other, one], &params)?;
+            let voxels = (one_region.column_count() + other_region.column_count()) * GridSpec::NZ;
+            differ.push(first.count_different(&second) as f64 / voxels.max(1) as f64);
+        }
+        Ok(differ)
+    }
+
     /// Removals with the usual steps against the same with many.
     pub(super) fn reference(
         &self,
@@ -140,6 +170,36 @@ impl Eval {
             "region_voxels_that_differ": with_interval(&differ),
         }))
     }
+}
+
+/// What a trial redraws.
+fn region(scene: &Scene, trial: &Trial, params: &GenParams) -> anyhow::Result<Region> {
+    let mut document = Document::new(scene.clone());
+    document.apply("Edit", &trial.edit)?;
+    Ok(Region::of_edit(
+        document.scene().frame(),
+        params.halo_columns as usize,
+    ))
+}
+
+/// Occupancy after two edits, each generated and adopted.
+fn after_both(
+    pipeline: &mut OccPipeline,
+    scene: &Scene,
+    trials: [&Trial; 2],
+    params: &GenParams,
+) -> anyhow::Result<VoxelGrid> {
+    let mut document = Document::new(scene.clone());
+    for trial in trials {
+        document.apply("Edit", &trial.edit)?;
+        let job = Job {
+            scene: document.scene().clone(),
+            params: *params,
+        };
+        let result = pipeline.run(&job, &JobCtx::detached())?;
+        document.adopt(result.rev(), result.occupancy.clone())?;
+    }
+    Ok(document.scene().frame().occupancy.clone())
 }
 
 /// Voxels outside the region that differ.
