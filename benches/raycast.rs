@@ -15,9 +15,13 @@ fn main() {
         env!("CARGO_MANIFEST_DIR"),
         "/tests/reference/raycast/occupancy.npz"
     );
-    let mut zip = npyz::npz::NpzArchive::open(path).expect("the reference grid");
-    let array = zip.by_name("occupancy").expect("readable").expect("occupancy");
-    let occupied: Vec<u8> = array.into_vec().expect("bytes");
+    let file = std::fs::File::open(path).expect("the reference grid");
+    let mut zip = zip::ZipArchive::new(file).expect("an npz file");
+    let array = zip.by_name("occupancy.npy").expect("an occupancy array");
+    let occupied: Vec<u8> = npyz::NpyFile::new(array)
+        .expect("an npy file")
+        .into_vec()
+        .expect("u8");
     let label = |o: &u8| if *o == 1 { Class::Manmade.id() } else { Class::FREE };
     let grid =
         VoxelGrid::from_dense(&occupied.iter().map(label).collect::<Vec<_>>()).expect("640,000 labels");

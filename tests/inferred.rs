@@ -7,7 +7,7 @@ use sceneloom::editor::{Document, Edit, Shape};
 use sceneloom::formats::{occ3d, project};
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::region::Region;
-use sceneloom::scene::{BevLayer, Class, Scene};
+use sceneloom::scene::{BevLayer, BoxId, Class, GridSpec, Scene, Unobserved};
 
 /// Simulated labels, imported from a file as a user would.
 fn imported() -> Scene {
@@ -20,7 +20,10 @@ fn imported() -> Scene {
 
 #[test]
 fn an_imported_frame_is_marked_and_survives_saving() {
-    let scene = imported();
+    let mut scene = imported();
+    let mut words = vec![0u16; GridSpec::COLUMNS];
+    words[..700].fill(0xa001);
+    scene.frame_mut().inferred.unobserved = Unobserved::from_words(words);
     let frame = scene.frame();
     assert!(frame.inferred.layout && frame.inferred.any());
     assert_eq!(
@@ -31,6 +34,50 @@ fn an_imported_frame_is_marked_and_survives_saving() {
     let bytes = project::to_bytes(&scene).expect("sound");
     let again = project::from_bytes(&bytes).expect("readable");
     assert_eq!(again.frame(), frame);
+
+    // A guess about no box is refused.
+    scene.frame_mut().inferred.boxes.insert(BoxId(9_999));
+    let bytes = project::to_bytes(&scene).expect("written as it is");
+    let error = project::from_bytes(&bytes).expect_err("no such box").to_string();
+    assert!(error.contains("box 9999 is marked as inferred"), "{error}");
+}
+
+#[test]
+fn a_pending_edit_is_not_swallowed_by_a_correction() {
+    let mut document = Document::new(imported());
+    let id = *document.scene().frame().boxes.keys().next().expect("a box");
+    let shift = Edit::MoveBox {
+        id,
+        center_m: Some(document.scene().frame().boxes[&id].center_m + glam::DVec3::X),
+        yaw_deg: None,
+        size_m: None,
+    };
+    document.apply("Move", &shift).expect("sound");
+    let before = document.scene().frame().clone();
+    let text = format!(
+        r#"{{"correct": {{"edit": {{"set_box_class": {{"id": {}, "class": "bus"}}}}}}}}"#,
+        id.0
+    );
+    let correct: Edit = serde_json::from_str(&text).expect("the form of the command line");
+    let error = document
+        .apply("Correct", &correct)
+        .expect_err("unsettled")
+        .to_string();
+    assert!(
+        error.contains("not generated yet") && error.lines().count() == 1,
+        "{error}"
+    );
+    assert_eq!(**document.scene().frame(), *before);
+    let confirm: Edit =
+        serde_json::from_str(r#"{"confirm_inferred": {}}"#).expect("the form of the command line");
+    document.apply("Confirm", &confirm).expect("sound");
+    // Undo brings back frame and source alike.
+    while document.undo().is_some() {}
+    let frame = document.scene().frame();
+    assert_eq!(
+        (&frame.boxes, &frame.layout),
+        (&frame.source.boxes, &frame.source.layout)
+    );
 }
 
 #[test]

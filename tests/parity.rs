@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use safetensors::{Dtype, SafeTensors};
 use sceneloom::generation::model::{
-    CELLS, CHANNELS, DitCondition, KeysValues, LATENT, ModelError, OccModels, tokens_of,
+    CELLS, CHANNELS, DitCondition, KeysValues, LATENT, ModelError, OccModels, OccVae, fine_vae, tokens_of,
 };
 use sceneloom::scene::VoxelGrid;
 
@@ -118,19 +118,23 @@ fn condition() -> DitCondition {
 
 #[test]
 fn vae_agrees_with_python() {
-    let (models, golden) = (models(), Golden::open("parity_vae.safetensors"));
+    agrees(&models().vae, &Golden::open("parity_vae.safetensors"));
+}
+
+#[test]
+fn fine_vae_agrees_with_python() {
+    let fine = fine_vae().expect("the shipped weights load");
+    agrees(&fine, &Golden::open("parity_vae_fine.safetensors"));
+}
+
+fn agrees(vae: &OccVae, golden: &Golden) {
     let latent = golden.f32("latent");
-    assert_close(
-        "latent",
-        models.vae.encode(&scene(&golden)).expect("labels"),
-        &latent,
-    );
-    let logits = golden.f32("logits");
-    for (cell, truth) in golden.i32("cells").into_iter().zip(logits.chunks_exact(256 * 18)) {
-        let found = models
-            .vae
-            .logits(&latent, cell as usize)
-            .expect("a finite latent");
+    assert_close("latent", vae.encode(&scene(golden)).expect("labels"), &latent);
+    let (logits, cells) = (golden.f32("logits"), golden.i32("cells"));
+    let of_cell = logits.len() / cells.len();
+    assert_eq!(of_cell, (200 / vae.config().side()).pow(2) * 16 * 18);
+    for (cell, truth) in cells.into_iter().zip(logits.chunks_exact(of_cell)) {
+        let found = vae.logits(&latent, cell as usize).expect("a finite latent");
         assert_close(&format!("logits of cell {cell}"), found, truth);
     }
 }

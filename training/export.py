@@ -43,19 +43,22 @@ def uniform(count, stream):
 
 
 @torch.no_grad()
-def vae_golden(vae, frames):
-    """The front right quarter of a frame: occupied voxels, its latent, logits of a few cells."""
+def vae_golden(vae, frames, side):
+    """The front right quarter of a frame: occupied voxels, its latent of `side` cells each way, logits of a few cells."""
     grid = np.full((200, 200, 16), 17, np.uint8)
     grid[100:160, 70:130] = frames.read(0, "labels")[100:160, 70:130]
     where = np.flatnonzero(grid.reshape(-1) != 17)
     latent = vae.encode(as_tensor([grid]))
     features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2))[0]
-    cells = torch.stack([features[c // 50 * 4 :, c % 50 * 4 :][:4, :4].reshape(256, -1) for c in GOLDEN_CELLS])
+    wide = 200 // side
+    picked = [c // 50 * side // 50 * side + c % 50 * side // 50 for c in GOLDEN_CELLS]
+    at = [(c // side * wide, c % side * wide) for c in picked]
+    cells = torch.stack([features[x:, y:][:wide, :wide].reshape(wide * wide * 16, -1) for x, y in at])
     return {
         "voxels": torch.from_numpy(where.astype(np.int32)),
         "labels": torch.from_numpy(grid.reshape(-1)[where]),
         "latent": latent.reshape(-1),
-        "cells": torch.tensor(GOLDEN_CELLS, dtype=torch.int32),
+        "cells": torch.tensor(picked, dtype=torch.int32),
         "logits": vae.logits(cells),
     }
 
@@ -105,6 +108,8 @@ def main():
     args.goldens.mkdir(parents=True, exist_ok=True)
 
     name = latent_space(args.vae)
+    old = args.weights / "card.json"
+    kept = json.loads(old.read_text()) if old.exists() else {}
     card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
     networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else [])
     for kind, path in networks:
@@ -123,13 +128,10 @@ def main():
         card[kind] = meta | {"config": json.loads(meta["config"]), "bytes": out.stat().st_size,
                              "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
                              "parameters": sum(v.numel() for v in tensors.values()), "held_out": last_row(path)}
-        if kind == "occ_vae_fine":
-            print(f"{out}: {card[kind]['bytes'] / 1e6:.1f} MB, {card[kind]['parameters']} parameters")
-            continue
         shipped = {k: v.float() for k, v in load_file(out).items()}
-        if kind == "occ_vae":
+        if kind.startswith("occ_vae"):
             net = OccVae(VaeConfig(**json.loads(meta["config"])))
-            golden = (lambda: vae_golden(net, Frames(args.data / "val")))
+            golden = (lambda: vae_golden(net, Frames(args.data / "val"), 200 >> (len(net.config.widths) - 1)))
         else:
             net = OccDit(DitConfig(**json.loads(meta["config"])))
             golden = (lambda: dit_golden(net))
@@ -138,13 +140,17 @@ def main():
         save_file(golden(), args.goldens / f"parity_{kind.removeprefix('occ_')}.safetensors")
         print(f"{out}: {card[kind]['bytes'] / 1e6:.1f} MB, {card[kind]['parameters']} parameters")
 
+    kinds = [kind for kind, _ in networks]
+    if not args.fine and "occ_vae_fine" in kept:
+        card["occ_vae_fine"] = kept["occ_vae_fine"]
+        kinds.append("occ_vae_fine")
     (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
     lines = ["# Weights", "", "Trained on this project's own procedural worlds; no frame of a data set went in. With `--roads` a third of the",
              "layouts are places on public OpenDRIVE files (MIT, MPL-2.0), which are not part of this repository.", "",
              f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`; logs: the CSV files beside this card.",
              "- `f3d.safetensors`: the encoder of `occ_vae` of commit 5750f81, fixed for good: the features of F3D, KID and MMD",
              "  (`src/gen/metrics/extractor.rs`).", ""]
-    for kind, _ in networks:
+    for kind in kinds:
         c = card[kind]
         lines += [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.1f} MB; config `{json.dumps(c['config'])}`",
                   f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {float(c['minutes']) / 60:.2f} h",

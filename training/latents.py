@@ -31,8 +31,9 @@ class LatentCache:
     def _map(self, shard):
         if shard.path not in self.maps:
             made, count = [], (shard.frames, 8, len(KINDS))
+            stamp = f"{shard.path.stem}-{shard.path.stat().st_mtime_ns:x}-{'-'.join(KINDS)}"  # of these very frames
             for suffix, dtype, shape in ((".f16", np.float16, (*count, 20000)), (".done", np.uint8, count)):
-                path = self.folder / (shard.path.stem + suffix)
+                path = self.folder / (stamp + suffix)
                 made.append(np.memmap(path, dtype, "r+" if path.exists() else "w+", shape=shape))
             self.maps[shard.path] = made
         return self.maps[shard.path]

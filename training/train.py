@@ -42,6 +42,8 @@ def begin_with(model, path):
                 tensor.zero_()
         elif old.shape == tensor.shape:
             tensor.copy_(old)
+        elif name != "embed_condition.weight" or len(old) != len(tensor):
+            raise SystemExit(f"{path}: {name} is {tuple(old.shape)}, expected {tuple(tensor.shape)}")
         else:
             a, b = tensor.view(len(tensor), PATCH * PATCH, -1), old.view(len(old), PATCH * PATCH, -1)
             a.zero_()

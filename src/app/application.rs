@@ -10,7 +10,7 @@ use egui::{Rect, Ui};
 
 use crate::editor::Document;
 use crate::generation::job::{
-    GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Pipeline, UpdateGate,
+    GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Named, Pipeline, UpdateGate,
 };
 use crate::generation::worker::GenWorker;
 use crate::scene::{Scene, SceneRev};
@@ -353,6 +353,7 @@ impl SceneloomApp {
                 self.path = opening.path;
                 self.state.selected = None;
                 self.state.correcting = false;
+                self.state.named = Named::default();
                 ctx.request_repaint();
             }
             Err(error) => {

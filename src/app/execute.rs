@@ -27,7 +27,10 @@ impl SceneloomApp {
                     self.fail(error.to_string());
                 }
             }
-            Command::Commit(label) => self.document.commit_drag(label),
+            Command::Commit(label) => {
+                self.document.commit_drag(label);
+                self.note_correction();
+            }
             Command::CancelDrag => self.document.cancel_drag(),
             Command::Undo => drop(self.document.undo()),
             Command::Redo => drop(self.document.redo()),
@@ -114,6 +117,8 @@ impl SceneloomApp {
             Command::ToggleLog => self.state.log_open = !self.state.log_open,
             Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
         }
+        // Without a guess there is nothing to correct, and no switch to see it by.
+        self.state.correcting &= self.document.scene().frame().inferred.any();
         // A box that an edit or undo took away is not selected any more.
         let boxes = &self.document.scene().frame().boxes;
         self.state.selected = self.state.selected.filter(|id| boxes.contains_key(id));
@@ -128,6 +133,14 @@ impl SceneloomApp {
         let edits = self.state.as_meant(edits.to_vec());
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
+        }
+        self.note_correction();
+    }
+
+    /// A correction changes what the source was inverted under.
+    fn note_correction(&mut self) {
+        if self.state.correcting {
+            self.live.source_changed();
         }
     }
 
@@ -190,8 +203,9 @@ impl SceneloomApp {
             self.state.inspected = None;
         } else if self.state.tool != Tool::Select {
             self.state.tool = Tool::Select;
-        } else {
+        } else if self.state.selected.is_some() {
             self.state.selected = None;
+        } else {
             self.state.correcting = false;
         }
     }

@@ -220,6 +220,11 @@ impl Live {
         }
     }
 
+    /// Notes that the source is not the one that the worker got ready for.
+    pub fn source_changed(&mut self) {
+        self.cold = self.warm_up;
+    }
+
     /// Lets the state be asked for again, after the user switched live on or undid a cancel.
     pub fn forget_asked(&mut self) {
         self.asked = None;

@@ -236,6 +236,23 @@ mod tests {
     use super::*;
 
     #[test]
+    fn while_correcting_boxes_and_layers_change_no_voxel() {
+        let remove = Edit::RemoveBox { id: BoxId(3) };
+        let voxels = Edit::PaintVoxels {
+            cells: vec![[1, 2, 3]],
+            class: Class::Car,
+        };
+        let mut ui = UiState::default();
+        let edits = vec![remove.clone(), voxels.clone()];
+        assert_eq!(ui.as_meant(edits.clone()), edits);
+        ui.correcting = true;
+        let corrected = Edit::Correct {
+            edit: Box::new(remove),
+        };
+        assert_eq!(ui.as_meant(edits), [corrected, voxels]);
+    }
+
+    #[test]
     fn the_brush_steps_through_its_sizes_and_stays_in_range() {
         let mut ui = UiState {
             tool: Tool::Brush,

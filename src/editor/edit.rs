@@ -131,6 +131,9 @@ pub enum EditError {
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
+    /// What is corrected was edited before, and that edit is not generated yet.
+    #[error("{0} has an edit that is not generated yet, expected none under a correction")]
+    Unsettled(String),
     /// Voxels and the prompt are not inferred.
     #[error("only boxes and map layers can be corrected")]
     NoCorrection,
@@ -175,9 +178,9 @@ pub enum EditError {
 
 impl Edit {
     /// Applies the change to the scene's current frame: the authored data and, at once, a rough
-    /// version in the voxels. All or nothing: on error the scene is as before. A change that
+    /// version in the voxels (a correction leaves them). All or nothing: on error the scene is as before. A change that
     /// changes nothing leaves the revision as it is. The frame's `source` is touched by
-    /// [`Edit::AdoptResult`] only.
+    /// [`Edit::AdoptResult`] and [`Edit::Correct`] only.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), EditError> {
         match self {
             Self::SetPrompt { prompt } => {
@@ -317,6 +320,10 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
         Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. } | Edit::SetBoxClass { .. } => {
             let ids = before.boxes.keys().chain(frame.boxes.keys());
             for id in ids.filter(|id| before.boxes.get(id) != frame.boxes.get(id)) {
+                // The source would take over the pending edit with the correction, and it would never be generated.
+                if before.boxes.get(id) != source.boxes.get(id) {
+                    return Err(EditError::Unsettled(format!("box {}", id.0)));
+                }
                 match frame.boxes.get(id) {
                     Some(b) => source.boxes.insert(*id, *b),
                     None => source.boxes.remove(id),
@@ -324,7 +331,12 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
             }
         }
         Edit::PaintBev { layer, shape, value } => {
-            for [x, y] in shape.cells()? {
+            let mut cells = shape.cells()?;
+            cells.retain(|[x, y]| before.layout.has(*layer, *x, *y) != *value);
+            for [x, y] in cells {
+                if source.layout.has(*layer, x, y) == *value {
+                    return Err(EditError::Unsettled(format!("column ({x}, {y})")));
+                }
                 source.layout.set(*layer, x, y, *value);
             }
         }

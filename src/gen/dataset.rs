@@ -1,5 +1,6 @@
 //! Training and evaluation data from procedural worlds, as safetensors shards.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,6 +12,8 @@ use super::world::voxelize::{Drive, Vertical, complete, labels};
 use super::world::{World, template, traffic};
 use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
+/// Arrays of a shard.
+const ARRAYS: [&str; 5] = ["dense", "labels", "draft", "bev", "heading"];
 /// Frames per shard.
 pub const SHARD_FRAMES: usize = 32;
 
@@ -77,7 +80,7 @@ pub struct DatasetReport {
 }
 
 /// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
-/// `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`. Shards that exist are kept, so an interrupted run resumes.
+/// `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`. Shards that hold all of these are kept, so an interrupted run resumes.
 /// `make` makes frame i ([`occupancy_frame`], or a file's); its first error ends the run. `progress` gets
 /// the number of finished frames and may end the run by returning false.
 pub fn write_occupancy<E: From<std::io::Error> + Send>(
@@ -95,7 +98,7 @@ pub fn write_occupancy<E: From<std::io::Error> + Send>(
     for (shard, first) in (0..frames).step_by(SHARD_FRAMES).enumerate() {
         let path = dir.join(format!("shard_{shard:05}.safetensors"));
         let n = SHARD_FRAMES.min(frames - first);
-        if path.exists() {
+        if is_complete(&path) {
             report.resumed_shards += 1;
             done.fetch_add(n, Ordering::Relaxed);
             continue;
@@ -115,6 +118,20 @@ pub fn write_occupancy<E: From<std::io::Error> + Send>(
         }
     }
     Ok(report)
+}
+
+/// True for a shard that holds every array; older ones lack some.
+fn is_complete(path: &Path) -> bool {
+    let header = || -> Option<serde_json::Value> {
+        let mut file = std::fs::File::open(path).ok()?;
+        let mut length = [0; 8];
+        file.read_exact(&mut length).ok()?;
+        let length = u64::from_le_bytes(length).min(1 << 20);
+        let mut header = Vec::new();
+        file.take(length).read_to_end(&mut header).ok()?;
+        serde_json::from_slice(&header).ok()
+    };
+    header().is_some_and(|h| ARRAYS.iter().all(|name| h.get(name).is_some()))
 }
 
 fn write_shard(path: &PathBuf, frames: &[OccupancyFrame]) -> std::io::Result<u64> {

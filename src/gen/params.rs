@@ -30,8 +30,8 @@ pub enum Quality {
     Final,
 }
 
-/// Numbers of [`Density`] that the user names; what is not named is left to the networks (all of a scene) or
-/// stays as it is (an edit). Each 0 to 1.
+/// Numbers of [`Density`] that the user names, each 0 to 1. What is not named stays as it is in an edit, and is left
+/// to the networks in a new scene (but completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Named {
@@ -136,10 +136,7 @@ impl GenParams {
         [u32; 4],
         [u64; 4],
         [Option<u32>; 4],
-        SolverKind,
-        RegionMode,
-        Quality,
-        [bool; 2],
+        (SolverKind, RegionMode, Quality, [bool; 2]),
     ) {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
@@ -157,10 +154,12 @@ impl GenParams {
                 bits(self.strength),
             ],
             self.named.values().map(|v| v.map(|v| (v + 0.0).to_bits())),
-            self.solver,
-            self.region,
-            self.quality,
-            [self.keep_objects, self.local],
+            (
+                self.solver,
+                self.region,
+                self.quality,
+                [self.keep_objects, self.local],
+            ),
         )
     }
 

@@ -42,7 +42,8 @@ impl Unobserved {
     }
 }
 
-/// Guesses of a frame. The user confirms them, or corrects them (`Edit::Correct`), and they are guesses no more.
+/// Guesses of a frame. A box that the user edits or corrects (`Edit::Correct`) is a guess no more; the map layers are
+/// until the user confirms them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inferred {
     /// The map layers were read off ground voxels.

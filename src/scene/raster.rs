@@ -199,7 +199,7 @@ mod tests {
             (3.0 * TAU, 1),
         ] {
             let b = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], yaw);
-            let found = headings([b.clone()].iter());
+            let found = headings([b].iter());
             assert_eq!(found.iter().max(), Some(&code), "yaw {yaw}");
             let set = found.iter().filter(|c| **c != 0).count();
             assert_eq!(set, cells(&b).len());

@@ -96,7 +96,7 @@ struct Gen {
     /// How much low furniture stands beside the road, 0 to 1.
     #[arg(long, value_name = "D")]
     clutter: Option<f32>,
-    /// Share of columns that hold anything: 1 complete, about 0.4 as real labels are.
+    /// Share of columns that hold anything: 1 complete (the default for all of a scene), about 0.4 as real labels are.
     #[arg(long, value_name = "D")]
     completeness: Option<f32>,
     /// Fixes every random draw.

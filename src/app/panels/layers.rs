@@ -47,7 +47,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         density_row(ui, "Buildings", &mut named.building, 0.6);
         density_row(ui, "Clutter", &mut named.clutter, 0.25);
         density_row(ui, "Completeness", &mut named.completeness, 1.0);
-        caption(ui, "What generation is asked for. Unticked, a new scene is free and an edit keeps what is there.");
+        caption(ui, "What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there.");
     });
 }
 

@@ -28,12 +28,15 @@ pub use network::Ablation;
 const CHANNELS: usize = 8;
 /// Trajectories kept; each is about 2 MB at ten steps.
 const KEPT_TRAJECTORIES: usize = 24;
+/// Memory for them, but for the latest.
+const TRAJECTORY_BYTES: usize = 256 << 20;
 /// Memory for the keys and values of the latest of them.
 const KEYS_VALUES_BYTES: usize = 256 << 20;
 /// About what those of one step take.
 const STEP_BYTES: usize = 7_700_000;
 
-/// What a trajectory was made for. Equal keys, equal trajectories.
+/// What a trajectory belongs to: labels under a layout. Which of the trajectories that lead there it is, such as
+/// what densities it was sampled with, does not matter to an edit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct SourceKey {
     occupancy: u64,
@@ -200,6 +203,14 @@ impl OccPipeline {
         self.sources.push_front(source);
         self.sources.truncate(KEPT_TRAJECTORIES);
         let mut bytes = 0;
+        let held = |s: &Source| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
+        let mut trajectory_bytes = 0;
+        let fit = self.sources.iter().take_while(|s| {
+            trajectory_bytes += held(s);
+            trajectory_bytes <= TRAJECTORY_BYTES
+        });
+        let fit = fit.count().max(1);
+        self.sources.truncate(fit);
         for source in &mut self.sources {
             let own = source.keys_values.iter().flat_map(|k| k.values());
             bytes += own.map(KeysValues::bytes).sum::<usize>();
@@ -429,10 +440,7 @@ impl OccPipeline {
         let context = latent
             .iter()
             .enumerate()
-            .map(|(i, v)| match self.ablation {
-                Some(Ablation::Context) => 0.0,
-                _ => v * (1.0 - mask[i / CHANNELS]),
-            })
+            .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
             .collect();
         let models = self.models.clone();
         let local = self.local_tokens(&source, &sampler, &region, params);

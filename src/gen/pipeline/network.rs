@@ -18,8 +18,6 @@ pub enum Ablation {
     Layout,
     /// No boxes.
     Boxes,
-    /// A region is redrawn without seeing the latents around it.
-    Context,
 }
 
 /// A layout as the networks read it.

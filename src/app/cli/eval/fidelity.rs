@@ -39,18 +39,20 @@ impl Eval {
             ..params
         };
         let mut draw = Draw::new(self.generation.seed, "random edits");
-        let (mut done, mut untouched, mut changed) = (0, 0, 0);
+        let (mut done, mut tried, mut untouched, mut changed) = (0, 0, 0, 0);
         let mut world = 0;
         while done < self.random_edits {
             let mut document = Document::new(scene(world));
             world += 1;
-            for _ in 0..EDITS_PER_WORLD.min(self.random_edits - done) {
+            let fresh = tried + 2 * EDITS_PER_WORLD; // some kinds find no place
+            let last = (done + EDITS_PER_WORLD).min(self.random_edits);
+            while done < last && tried < fresh {
+                tried += 1;
                 progress.at("random edits", done, self.random_edits);
                 let kind = KINDS[draw.below(KINDS.len())];
                 let frame = document.scene().frame().clone();
                 let Some(trial) = Trial::propose(kind, &frame, draw.bits()) else {
-                    done += 1; // nothing of that kind can be done here
-                    continue;
+                    continue; // nothing of that kind can be done here
                 };
                 document.apply("Edit", &trial.edit)?;
                 let job = Job {

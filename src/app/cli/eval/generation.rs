@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::{Bar, Eval, scene, with_interval};
 use crate::app::cli::generate::full_params;
 use crate::app::cli::progress::Progress;
-use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
+use crate::generation::job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
 use crate::generation::metrics::agreement::AgreementCount;
 use crate::generation::metrics::extractor::Extractor;
 use crate::generation::metrics::frechet::frechet_distance;
@@ -16,7 +16,7 @@ use crate::generation::metrics::kernel::{Kernel, mmd2_with_interval};
 use crate::generation::metrics::stats::median;
 use crate::generation::pipeline::{Ablation, OccPipeline};
 use crate::generation::region::Region;
-use crate::scene::{Class, GridSpec, Scene, VoxelGrid, draft};
+use crate::scene::{Class, Density, GridSpec, Scene, VoxelGrid, draft};
 
 /// Parts that the sets are split into for the intervals of MMD and KID.
 const SUBSETS: usize = 8;
@@ -76,7 +76,7 @@ impl Eval {
             let truth = world.frame().occupancy.clone();
             let naive = draft::draft(&world.frame().layout, world.frame().boxes.values());
             worlds.add(&world, &truth);
-            params.seed = self.generation.seed + i as u64;
+            params.seed = self.generation.seed.wrapping_add(i as u64);
             let job = Job {
                 scene: Arc::new(world),
                 params,
@@ -104,7 +104,7 @@ impl Eval {
             if i < DIVERSITY_FRAMES {
                 let again = Job {
                     params: GenParams {
-                        seed: params.seed + 1_000_000,
+                        seed: params.seed.wrapping_add(1_000_000),
                         ..params
                     },
                     ..job.clone()
@@ -113,8 +113,9 @@ impl Eval {
                 same.add(&result.occupancy, &run(None, &again)?.occupancy);
                 diversity.extend(same.occupied_iou().map(|iou| 1.0 - iou));
             }
-            with_context.extend(redrawn_iou(pipeline, &job, None)?);
-            without_context.extend(redrawn_iou(pipeline, &job, Some(Ablation::Context))?);
+            let [seen, blind] = redrawn_iou(pipeline, &job)?;
+            with_context.extend(seen);
+            without_context.extend(blind);
         }
         let (mut report, bars) = (json!({}), bars(&found));
         report["layout_agreement"] = found.report();
@@ -189,37 +190,39 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     squares.max_by_key(count).unwrap_or_default()
 }
 
-/// Redraws the fullest square of a world from fresh noise; IoU with the world of what stands there.
-fn redrawn_iou(
-    pipeline: &mut OccPipeline,
-    job: &Job,
-    ablation: Option<Ablation>,
-) -> anyhow::Result<Option<f64>> {
-    let truth = &job.scene.frame().occupancy;
+/// Redraws the fullest square of a world from fresh noise, and draws a whole scene of the same layout, character and
+/// steps that sees nothing of the world: IoU with the world of what stands in the square, of the two.
+fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[Option<f64>; 2]> {
+    let frame = job.scene.frame();
+    let truth = &frame.occupancy;
     let square = fullest_square(truth);
     let mut columns = vec![false; GridSpec::COLUMNS];
     square
         .iter()
         .for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
-    let job = Job {
+    let density = Density::of(truth, frame.layout.cells());
+    let mut job = Job {
         params: GenParams {
             strength: 1.0,
             keep_objects: false,
             seed: job.params.seed,
+            named: Named::default().or(&density),
             ..GenParams::default()
         },
         ..job.clone()
     };
-    pipeline.ablate(ablation);
-    let result = pipeline.redraw_region(&job, Region::of_columns(columns), &JobCtx::detached());
-    pipeline.ablate(None);
-    let made = result?.occupancy;
-    let (mut both, mut either) = (0u64, 0u64);
-    for [x, y] in square {
-        for (a, b) in standing(truth, x, y).zip(standing(&made, x, y)) {
-            both += u64::from(a && b);
-            either += u64::from(a || b);
+    let ctx = JobCtx::detached();
+    let seen = pipeline.redraw_region(&job, Region::of_columns(columns), &ctx)?;
+    job.params.region = RegionMode::Full;
+    let blind = pipeline.run(&job, &ctx)?;
+    Ok([seen, blind].map(|result| {
+        let (mut both, mut either) = (0u64, 0u64);
+        for [x, y] in &square {
+            for (a, b) in standing(truth, *x, *y).zip(standing(&result.occupancy, *x, *y)) {
+                both += u64::from(a && b);
+                either += u64::from(a || b);
+            }
         }
-    }
-    Ok((either > 0).then(|| both as f64 / either as f64))
+        (either > 0).then(|| both as f64 / either as f64)
+    }))
 }
