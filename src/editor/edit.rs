@@ -1,6 +1,6 @@
 //! Every change a user can make to a scene, as a value: what the window, the command line and tests apply.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -318,8 +318,11 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
     let source = Arc::make_mut(&mut frame.source);
     match edit {
         Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. } | Edit::SetBoxClass { .. } => {
-            let ids = before.boxes.keys().chain(frame.boxes.keys());
-            for id in ids.filter(|id| before.boxes.get(id) != frame.boxes.get(id)) {
+            let ids: BTreeSet<_> = before.boxes.keys().chain(frame.boxes.keys()).collect();
+            for id in ids {
+                if before.boxes.get(id) == frame.boxes.get(id) {
+                    continue;
+                }
                 // The source would take over the pending edit with the correction, and it would never be generated.
                 if before.boxes.get(id) != source.boxes.get(id) {
                     return Err(EditError::Unsettled(format!("box {}", id.0)));

@@ -128,16 +128,13 @@ impl Default for GenParams {
     }
 }
 
+/// Counts, numbers, named numbers, choices.
+type Bits = ([u32; 4], [u64; 4], [Option<u32>; 4], Choices);
+type Choices = (SolverKind, RegionMode, Quality, [bool; 2]);
+
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
-    fn bits(
-        &self,
-    ) -> (
-        [u32; 4],
-        [u64; 4],
-        [Option<u32>; 4],
-        (SolverKind, RegionMode, Quality, [bool; 2]),
-    ) {
+    fn bits(&self) -> Bits {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
         (

@@ -70,7 +70,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
         let slider = egui::Slider::new(&mut shown, 0.0..=1.0).fixed_decimals(2);
         let slider = ui
             .add_enabled(on, slider)
-            .accessible_name(&format!("{name} density"));
+            .accessible_name(format!("{name} density"));
         if slider.changed() {
             *value = Some(shown);
         }
