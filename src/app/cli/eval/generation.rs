@@ -69,7 +69,8 @@ impl Eval {
         // Features of other worlds, of the worlds that lent their layouts, of what was generated, of drafts.
         let mut features: [Vec<Vec<f64>>; 4] = Default::default();
         let (mut diversity, mut wall_s) = (Vec::new(), Vec::new());
-        let (mut with_context, mut without_context) = (Vec::new(), Vec::new());
+        // With context and without: of the square, of its seam.
+        let mut redrawn: [[Vec<f64>; 2]; 2] = Default::default();
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
             let world = scene(i as u64);
@@ -113,9 +114,9 @@ impl Eval {
                 same.add(&result.occupancy, &run(None, &again)?.occupancy);
                 diversity.extend(same.occupied_iou().map(|iou| 1.0 - iou));
             }
-            let [seen, blind] = redrawn_iou(pipeline, &job)?;
-            with_context.extend(seen);
-            without_context.extend(blind);
+            for (shares, of) in redrawn.iter_mut().zip(redrawn_iou(pipeline, &job)?) {
+                shares.iter_mut().zip(of).for_each(|(all, one)| all.extend(one));
+            }
         }
         let (mut report, bars) = (json!({}), bars(&found));
         report["layout_agreement"] = found.report();
@@ -123,8 +124,10 @@ impl Eval {
         report["ablations"] = json!({
             "without_layout": bare.report(),
             "without_boxes": boxless.report(),
-            "redrawn_region_iou": with_interval(&with_context),
-            "redrawn_region_iou_without_context": with_interval(&without_context),
+            "redrawn_square_iou": with_interval(&redrawn[0][0]),
+            "redrawn_square_iou_without_context": with_interval(&redrawn[1][0]),
+            "seam_iou": with_interval(&redrawn[0][1]),
+            "seam_iou_without_context": with_interval(&redrawn[1][1]),
         });
         report["against_the_worlds"] =
             json!({ "miou": likeness.mean_iou().0, "iou": likeness.occupied_iou() });
@@ -191,8 +194,9 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
 }
 
 /// Redraws the fullest square of a world from fresh noise, and draws a whole scene of the same layout, character and
-/// steps that sees nothing of the world: IoU with the world of what stands in the square, of the two.
-fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[Option<f64>; 2]> {
+/// steps that sees nothing of the world. Of each, IoU of what stands in the square with the world there, and of what
+/// stands along its border with the world's columns right outside: walls and hedges should go on.
+fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[Option<f64>; 2]; 2]> {
     let frame = job.scene.frame();
     let truth = &frame.occupancy;
     let square = fullest_square(truth);
@@ -212,17 +216,26 @@ fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[Option<
         ..job.clone()
     };
     let ctx = JobCtx::detached();
-    let seen = pipeline.redraw_region(&job, Region::of_columns(columns), &ctx)?;
+    let seen = pipeline.redraw_region(&job, Region::of_columns(columns.clone()), &ctx)?;
     job.params.region = RegionMode::Full;
     let blind = pipeline.run(&job, &ctx)?;
     Ok([seen, blind].map(|result| {
-        let (mut both, mut either) = (0u64, 0u64);
+        let (mut inside, mut seam) = ([0u64; 2], [0u64; 2]);
+        let count = |sums: &mut [u64; 2], a: [usize; 2], b: [usize; 2]| {
+            for (a, b) in standing(truth, a[0], a[1]).zip(standing(&result.occupancy, b[0], b[1])) {
+                sums[0] += u64::from(a && b);
+                sums[1] += u64::from(a || b);
+            }
+        };
         for [x, y] in &square {
-            for (a, b) in standing(truth, *x, *y).zip(standing(&result.occupancy, *x, *y)) {
-                both += u64::from(a && b);
-                either += u64::from(a || b);
+            count(&mut inside, [*x, *y], [*x, *y]);
+            // What stands right beside the square, against what was drawn along its border.
+            for outside in [[x - 1, *y], [x + 1, *y], [*x, y - 1], [*x, y + 1]] {
+                if !columns[outside[0] * GridSpec::NY + outside[1]] {
+                    count(&mut seam, outside, [*x, *y]);
+                }
             }
         }
-        (either > 0).then(|| both as f64 / either as f64)
+        [inside, seam].map(|[both, either]| (either > 0).then(|| both as f64 / either as f64))
     }))
 }
