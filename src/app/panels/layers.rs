@@ -55,18 +55,16 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
 fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     ui.horizontal(|ui| {
         let mut on = value.is_some();
+        // A column of its own width: what a row asks for beyond the panel's would make the panel grow.
+        let (rect, _) = ui.allocate_exact_size(vec2(104.0, theme::ROW), Sense::hover());
         let left = egui::Layout::left_to_right(egui::Align::Center);
-        let tick = ui.allocate_ui_with_layout(vec2(110.0, theme::ROW), left, |ui| {
-            let tick = ui.checkbox(&mut on, name);
-            ui.set_min_width(110.0);
-            tick
-        });
-        let tick = tick.inner;
+        let mut column = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(left));
+        let tick = column.checkbox(&mut on, name);
         if tick.changed() {
             *value = on.then_some(typical);
         }
         let mut shown = value.unwrap_or(typical);
-        ui.spacing_mut().slider_width = (ui.available_width() - 52.0).max(30.0);
+        ui.spacing_mut().slider_width = 38.0;
         let slider = egui::Slider::new(&mut shown, 0.0..=1.0).fixed_decimals(2);
         let slider = ui
             .add_enabled(on, slider)
