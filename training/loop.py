@@ -3,11 +3,14 @@ import copy
 import csv
 import math
 import os
+import re
 import time
 from pathlib import Path
 
 import torch
 from safetensors.torch import save_file
+
+from muon import Muon
 
 
 def pick_device(threads):
@@ -22,16 +25,25 @@ def pick_device(threads):
     return torch.device("cpu"), torch.bfloat16 if amx else None
 
 
+def optimizers(model, kind, lr, betas, weight_decay):
+    """Muon for the weights of inner layers and AdamW for tables, first and last layers and vectors, or AdamW for all."""
+    inner = {m.weight for name, m in model.named_modules()
+             if kind == "muon" and isinstance(m, (torch.nn.Conv2d, torch.nn.Linear)) and re.match(model.INNER, name)}
+    rest = [p for p in model.parameters() if p not in inner]
+    groups = [{"params": [p for p in rest if p.ndim >= 2], "weight_decay": weight_decay},
+              {"params": [p for p in rest if p.ndim < 2], "weight_decay": 0.0}]
+    adamw = torch.optim.AdamW(groups, lr=lr, betas=betas, fused=True)
+    ordered = [p for p in model.parameters() if p in inner]
+    return [adamw, Muon(ordered, lr, weight_decay=weight_decay)] if inner else [adamw]
+
+
 class Run:
     """A training run measured by the wall clock: learning rate, EMA, checkpoints, log."""
 
     def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup):
         self.out, self.minutes, self.lr, self.warmup, self.ema_decay = Path(args.output), args.minutes, lr, warmup, ema
         self.model, self.ema = model, copy.deepcopy(model).requires_grad_(False).eval()
-        decay = [p for p in model.parameters() if p.ndim >= 2]
-        rest = [p for p in model.parameters() if p.ndim < 2]
-        groups = [{"params": decay, "weight_decay": weight_decay}, {"params": rest, "weight_decay": 0.0}]
-        self.optimizer = torch.optim.AdamW(groups, lr=lr, betas=betas, fused=True)
+        self.optimizers = optimizers(model, args.optimizer, lr, betas, weight_decay)
         self.step, self.samples, self.spent, self.started = 0, 0, 0.0, time.monotonic()
         self.checkpoint = self.out.with_suffix(".checkpoint.pt")
         self.log = self.out.with_suffix(".csv")
@@ -56,15 +68,17 @@ class Run:
     def update(self, loss, samples):
         """One optimiser step; a loss that is not finite is skipped and reported."""
         self.step, self.samples = self.step + 1, self.samples + samples
-        for group in self.optimizer.param_groups:
-            group["lr"] = self.rate()
-        self.optimizer.zero_grad(set_to_none=True)
+        for optimizer in self.optimizers:
+            for group in optimizer.param_groups:
+                group["lr"] = self.rate()
+            optimizer.zero_grad(set_to_none=True)
         loss.backward()
         norm = torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
         if not math.isfinite(norm.item()):
             print(f"step {self.step}: gradient not finite, skipped", flush=True)
             return
-        self.optimizer.step()
+        for optimizer in self.optimizers:
+            optimizer.step()
         decay = min(self.ema_decay, (1 + self.step) / (10 + self.step))
         with torch.no_grad():
             torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
@@ -73,15 +87,15 @@ class Run:
         state = torch.load(self.checkpoint, weights_only=True)
         self.model.load_state_dict(state["model"])
         self.ema.load_state_dict(state["ema"])
-        self.optimizer.load_state_dict(state["optimizer"])
+        for optimizer, kept in zip(self.optimizers, state["optimizers"], strict=True):
+            optimizer.load_state_dict(kept)
         self.step, self.samples, self.spent = state["step"], state["samples"], state["minutes"]
         torch.set_rng_state(state["rng"])
         print(f"resumed at step {self.step}, {self.spent:.1f} min", flush=True)
 
     def save(self, metadata):
         """Checkpoint and f32 weights (EMA), each replaced in one go."""
-        state = {"model": self.model.state_dict(), "ema": self.ema.state_dict(), "optimizer": self.optimizer.state_dict(),
-                 "step": self.step, "samples": self.samples, "minutes": self.elapsed(), "rng": torch.get_rng_state()}
+        state = {"model": self.model.state_dict(), "ema": self.ema.state_dict(), "optimizers": [o.state_dict() for o in self.optimizers], "step": self.step, "samples": self.samples, "minutes": self.elapsed(), "rng": torch.get_rng_state()}
         part = self.checkpoint.with_suffix(".part")
         torch.save(state, part)
         os.replace(part, self.checkpoint)

@@ -268,6 +268,7 @@ def main():
     p.add_argument("--crop", type=int, default=64, help="voxels along a side of a crop (vae only)")
     p.add_argument("--anywhere", type=float, default=0.35, help="share of crops that are not drawn around objects (vae only)")
     p.add_argument("--lr", type=float)
+    p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
     p.add_argument("--width", type=int, help="channels of a token (dit only)")
     p.add_argument("--depth", type=int, default=8)
     p.add_argument("--held-out", type=int, help="frames of the held-out figures")

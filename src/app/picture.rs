@@ -4,7 +4,9 @@ use anyhow::bail;
 
 use crate::generation::sensors::{color, lidar};
 use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, VoxelGrid};
+use crate::scene::{
+    BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid,
+};
 use crate::viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
@@ -127,6 +129,28 @@ pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
     })
 }
 
+/// Nine planes of a multi-plane image, near to far, at a third of its size each.
+pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
+    const SIDE: usize = 3;
+    let (w, h) = (image.width / SIDE, image.height / SIDE);
+    let (width, height) = (w * SIDE, h * SIDE);
+    let mut rgba = vec![255; width * height * 4];
+    for tile in 0..SIDE * SIDE {
+        // Evenly in log depth from 3 m: near planes hold little but road.
+        let depth_m = 3.0 * (image.planes.far_m / 3.0).powf(tile as f64 / (SIDE * SIDE) as f64);
+        let step_m = image.planes.depth_m(1) - image.planes.depth_m(0);
+        let plane = ((depth_m - image.planes.near_m) / step_m).max(0.0) as u16;
+        let slice = color::plane_rgba(image, plane);
+        let (x0, y0) = (tile % SIDE * w, tile / SIDE * h);
+        for (y, x) in (0..h).flat_map(|y| (0..w).map(move |x| (y, x))) {
+            let from = (y * SIDE * image.width + x * SIDE) * 4;
+            let to = ((y0 + y) * width + x0 + x) * 4;
+            rgba[to..to + 4].copy_from_slice(&slice[from..from + 4]);
+        }
+    }
+    Picture { width, height, rgba }
+}
+
 /// LiDAR returns from above, coloured by range.
 pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
     let mut out = Picture::filled(GridSpec::NY * scale, GridSpec::NX * scale, [16, 18, 22]);
@@ -200,11 +224,10 @@ impl View3d {
     /// A picture of the scene.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
         let frame = scene.frame();
-        let pattern = scene.rig.lidars.first().filter(|_| options.lidar);
-        let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
-        let sweep = pattern
-            .map(|p| lidar::sweep(&frame.occupancy, p, ego))
-            .unwrap_or_default();
+        let sweep = match options.lidar {
+            true => lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default(),
+            false => LidarSweep::default(),
+        };
         let colors = lidar_colors(&sweep, LidarColorMode::Range);
         let mut view = ViewOptions {
             boxes: options.boxes,

@@ -6,9 +6,10 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use crate::generation::sensors::lidar::{self, EgoBox};
+use crate::generation::sensors::caster::Caster;
+use crate::generation::sensors::lidar::EgoBox;
 use crate::generation::sensors::splat::{self, GaussianCloud, PREVIEW_SIZE, SplatOptions, VIEW_SIZE};
-use crate::scene::{CameraMaps, LidarSweep, Scene, SceneRev};
+use crate::scene::{CameraMaps, LidarSweep, Scene, SceneRev, SensorRig};
 
 /// Voxels below the surface that still count for a picture; see [`GaussianCloud::from_grid_shell`].
 const SHELL_LAYERS: usize = 2;
@@ -120,9 +121,10 @@ impl Drop for Sensing {
 }
 
 fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn()) {
+    let mut lidar = None;
     while let Ok(first) = requests.recv() {
         let newest = requests.try_iter().last().unwrap_or(first);
-        sense(&newest, requests, |piece| {
+        sense(&newest, requests, &mut lidar, |piece| {
             // The receiver lives as long as the thread, except at the very end.
             let _ = news.send(piece);
             wake();
@@ -130,13 +132,24 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
     }
 }
 
-fn sense(request: &Request, requests: &Receiver<Request>, tell: impl Fn(News)) {
+/// The sweep that is kept between requests, and the rig that it belongs to.
+type KeptLidar = Option<(Arc<SensorRig>, Caster)>;
+
+fn sense(request: &Request, requests: &Receiver<Request>, lidar: &mut KeptLidar, tell: impl Fn(News)) {
     let Request { scene, preview } = request;
     let (frame, rig) = (scene.frame(), &scene.rig);
-    if let Some(pattern) = rig.lidars.first() {
-        let sweep = lidar::sweep(&frame.occupancy, pattern, Some(EgoBox::of_rig(rig)));
-        tell(News::Lidar(scene.rev, sweep));
+    match lidar {
+        Some((of, caster)) if of == rig => caster.update(&frame.occupancy),
+        _ => {
+            let caster = |pattern| {
+                let ego = Some(EgoBox::of_rig(rig));
+                Caster::new(&frame.occupancy, pattern, rig.ego_speed_mps, ego)
+            };
+            *lidar = rig.lidars.first().map(|pattern| (rig.clone(), caster(pattern)));
+        }
     }
+    let sweep = lidar.as_ref().map(|(_, caster)| caster.sweep());
+    tell(News::Lidar(scene.rev, sweep.unwrap_or_default()));
     let [width, height] = if *preview { PREVIEW_SIZE } else { VIEW_SIZE };
     let cloud = GaussianCloud::from_grid_shell(&frame.occupancy, frame.layout.cells(), SHELL_LAYERS);
     let options = SplatOptions::default();

@@ -9,6 +9,7 @@ use npyz::{NpyFile, Order};
 use thiserror::Error;
 use zip::ZipArchive;
 
+use super::npz;
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Names that the labels may have, in order of preference.
@@ -111,25 +112,12 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
 
 /// Labels as an npz file with the array `semantics`, compressed; equal labels give equal bytes.
 pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
-    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let header = format!(
-        "{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}), }}",
-        GridSpec::NX,
-        GridSpec::NY,
-        GridSpec::NZ
-    );
-    // Magic, version and length take ten bytes; data starts at a multiple of 64.
-    let padded = format!("{header:<117}\n");
-    let mut npy = b"\x93NUMPY\x01\x00".to_vec();
-    npy.extend((padded.len() as u16).to_le_bytes());
-    npy.extend(padded.bytes());
-    npy.extend(labels.to_dense());
-    let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
-    zip.start_file("semantics.npy", options)
-        .and_then(|()| Ok(std::io::Write::write_all(&mut zip, &npy)?))
-        .and_then(|()| zip.finish())
-        .expect("writing to memory")
-        .into_inner()
+    npz::to_bytes(&[npz::Array {
+        name: "semantics",
+        descr: "|u1",
+        shape: &[GridSpec::NX, GridSpec::NY, GridSpec::NZ],
+        bytes: labels.to_dense(),
+    }])
 }
 
 /// One array of the grid's shape, whatever its integer type.

@@ -46,7 +46,7 @@ impl Camera {
     }
 }
 
-/// How a spinning LiDAR samples directions.
+/// How a spinning LiDAR samples directions and time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LidarPattern {
@@ -54,8 +54,21 @@ pub struct LidarPattern {
     pub name: String,
     /// Elevation of each beam in degrees, lowest first; ring i is entry i.
     pub elevations_deg: Vec<f64>,
-    /// Columns per revolution; column i looks at azimuth 2 pi i / n in the sensor frame.
+    /// Columns per revolution; column i looks at azimuth first + 2 pi i / n in the sensor frame.
     pub columns: u32,
+    /// Azimuth of column 0 in the sensor frame, degrees.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub first_azimuth_deg: f64,
+    /// Sector that returns anything, degrees from the first azimuth; 360 is all round.
+    #[serde(default = "full_turn", skip_serializing_if = "is_full_turn")]
+    pub sector_deg: f64,
+    /// Columns follow each other clockwise, seen from above.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub clockwise: bool,
+    /// Revolutions per second; 0 = the whole sweep at one instant. Otherwise column i is fired when the vehicle
+    /// was (1 - i / n) of a revolution short of where it stands (see [`SensorRig::ego_speed_mps`]).
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub spin_hz: f64,
     /// Farthest return, m.
     pub max_range_m: f64,
     /// Nearest return, m.
@@ -71,6 +84,37 @@ impl LidarPattern {
     pub fn ego_from_sensor(&self) -> Pose {
         Pose::from_wxyz(self.rotation_wxyz, self.translation_m)
     }
+
+    /// Columns that return anything: those in the sector.
+    pub fn columns_in_sector(&self) -> u32 {
+        let share = (self.sector_deg / 360.0).clamp(0.0, 1.0);
+        // A hair less than the product, so that a third of 1080 columns is 360 and not 361.
+        (f64::from(self.columns) * share - 1e-6).ceil().max(0.0) as u32
+    }
+
+    /// Azimuth of a column in the sensor frame, rad. Formed in f64 from the index, so the last column of a full turn
+    /// and the first are one step apart like any other two.
+    pub fn azimuth_rad(&self, column: u32) -> f64 {
+        let turn = std::f64::consts::TAU * f64::from(column) / f64::from(self.columns.max(1));
+        self.first_azimuth_deg.to_radians() + if self.clockwise { -turn } else { turn }
+    }
+
+    /// Rays per revolution.
+    pub fn rays(&self) -> usize {
+        self.elevations_deg.len() * self.columns_in_sector() as usize
+    }
+}
+
+fn is_zero(v: &f64) -> bool {
+    *v == 0.0
+}
+
+fn full_turn() -> f64 {
+    360.0
+}
+
+fn is_full_turn(v: &f64) -> bool {
+    *v == 360.0
 }
 
 /// All sensors of a vehicle.
@@ -87,6 +131,9 @@ pub struct SensorRig {
     pub ego_size_m: [f64; 3],
     /// From the rear axle to the middle of the ego vehicle, m.
     pub ego_center_m: [f64; 3],
+    /// Forward speed while a LiDAR spins, m/s; it matters only where `spin_hz` is set.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub ego_speed_mps: f64,
 }
 
 impl SensorRig {
@@ -115,7 +162,13 @@ impl SensorRig {
         }
         for l in &self.lidars {
             let mut numbers = [&l.rotation_wxyz[..], &l.translation_m, &l.elevations_deg].concat();
-            numbers.extend([l.max_range_m, l.min_range_m]);
+            numbers.extend([
+                l.max_range_m,
+                l.min_range_m,
+                l.first_azimuth_deg,
+                l.sector_deg,
+                l.spin_hz,
+            ]);
             if numbers.iter().any(|v| !v.is_finite()) {
                 return Some(format!("lidar {}: a number is not finite", l.name));
             }
@@ -130,9 +183,21 @@ impl SensorRig {
             if l.elevations_deg.iter().any(|e| e.abs() > 90.0) {
                 return Some(format!("lidar {}: an elevation is beyond 90 degrees", l.name));
             }
+            if !(0.0..=360.0).contains(&l.sector_deg) || !(0.0..=1000.0).contains(&l.spin_hz) {
+                return Some(format!(
+                    "lidar {}: sector_deg is {}, spin_hz {}, expected 0 to 360 and 0 to 1000",
+                    l.name, l.sector_deg, l.spin_hz
+                ));
+            }
             if norm(&l.rotation_wxyz) < 1e-6 {
                 return Some(format!("lidar {}: rotation_wxyz is zero", l.name));
             }
+        }
+        let ego = [&self.ego_size_m[..], &self.ego_center_m, &[self.ego_speed_mps]].concat();
+        if ego.iter().any(|v| !v.is_finite()) || self.ego_speed_mps.abs() > 200.0 {
+            return Some(
+                "the ego vehicle's size, place and speed are not finite, or it is faster than 200 m/s".into(),
+            );
         }
         None
     }

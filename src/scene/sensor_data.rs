@@ -24,6 +24,105 @@ pub struct CameraMaps {
     pub coverage: Vec<f32>,
 }
 
+/// Where the planes of a multi-plane image lie: plane l at near + (far - near) l / count (SyntheOcc, equation 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planes {
+    /// Number of planes.
+    pub count: u16,
+    /// Depth of the first plane along the optical axis, m.
+    pub near_m: f64,
+    /// Depth that one more plane would have, m.
+    pub far_m: f64,
+}
+
+impl Default for Planes {
+    fn default() -> Self {
+        Self {
+            count: 256,
+            near_m: 0.2,
+            far_m: 51.2,
+        }
+    }
+}
+
+impl Planes {
+    /// Depth of a plane along the optical axis, m.
+    pub fn depth_m(&self, plane: u16) -> f64 {
+        self.near_m + (self.far_m - self.near_m) * f64::from(plane) / f64::from(self.count.max(1))
+    }
+}
+
+/// Planes that show one class at one pixel: `first` up to, without, `end`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlaneRun {
+    /// Nearest plane.
+    pub first: u16,
+    /// One past the farthest.
+    pub end: u16,
+    /// What they show.
+    pub id: RenderId,
+}
+
+/// A semantic multi-plane image of one camera, stored as runs per pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MultiPlaneImage {
+    /// Name of the camera in the rig.
+    pub camera: String,
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Depths.
+    pub planes: Planes,
+    /// Where each pixel's runs begin, row-major; one more than there are pixels.
+    pub starts: Vec<u32>,
+    /// Runs, near to far in each pixel.
+    pub runs: Vec<PlaneRun>,
+}
+
+impl MultiPlaneImage {
+    /// Runs of a pixel, near to far. Panics beyond the last pixel.
+    pub fn pixel(&self, pixel: usize) -> &[PlaneRun] {
+        &self.runs[self.starts[pixel] as usize..self.starts[pixel + 1] as usize]
+    }
+
+    /// What a pixel shows on a plane; `None` where it is free.
+    pub fn at(&self, pixel: usize, plane: u16) -> Option<RenderId> {
+        let runs = self.pixel(pixel);
+        runs.iter()
+            .find(|r| (r.first..r.end).contains(&plane))
+            .map(|r| r.id)
+    }
+
+    /// One plane, row-major.
+    pub fn slice(&self, plane: u16) -> Vec<Option<RenderId>> {
+        (0..self.width * self.height).map(|i| self.at(i, plane)).collect()
+    }
+
+    /// The nearest class of each pixel (SyntheOcc's channel 257).
+    pub fn first_visible(&self) -> Vec<Option<RenderId>> {
+        (0..self.width * self.height)
+            .map(|i| self.pixel(i).first().map(|r| r.id))
+            .collect()
+    }
+}
+
+/// What stands where in a camera's picture, whatever hides it: one bit per channel and pixel, row-major. X-Scene
+/// section 6.6: three lines, the road, ten classes of boxes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerspectiveMap {
+    /// Name of the camera in the rig.
+    pub camera: String,
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Bits: 0 road divider, 1 lane divider, 2 crossing, 3 drivable area, 4 to 13 the object classes in their order.
+    pub channels: Vec<u16>,
+    /// Edges of boxes: 1 + the channel minus 4 of the nearest box whose edge runs here, 0 elsewhere.
+    pub edges: Vec<u8>,
+}
+
 /// One LiDAR return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LidarPoint {

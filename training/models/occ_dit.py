@@ -110,6 +110,8 @@ class Block(nn.Module):
 
 
 class OccDit(nn.Module):
+    INNER = r"blocks\.\d+\.(qkv|proj|fc1|fc2)"  # layers whose weights Muon trains
+
     def __init__(self, config=None):
         super().__init__()
         c = self.config = config or DitConfig()

@@ -90,6 +90,8 @@ def unfold(x):
 class OccVae(nn.Module):
     """Works on maps of any size that four divides: training crops, frames."""
 
+    INNER = r"(encoder|decoder|down|up)\."  # layers whose weights Muon trains
+
     def __init__(self, config=None):
         super().__init__()
         c = self.config = config or VaeConfig()

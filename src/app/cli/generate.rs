@@ -74,9 +74,7 @@ pub fn run_and_adopt(
 pub fn sense(scene: &Scene) -> (f64, f64) {
     let frame = scene.frame();
     let start = Instant::now();
-    if let Some(pattern) = scene.rig.lidars.first() {
-        lidar::sweep(&frame.occupancy, pattern, Some(lidar::EgoBox::of_rig(&scene.rig)));
-    }
+    lidar::rig_sweep(&frame.occupancy, &scene.rig);
     let lidar_s = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());

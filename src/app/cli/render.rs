@@ -9,18 +9,20 @@ use serde_json::json;
 
 use super::{Common, Outcome, output};
 use crate::app::{open, picture};
-use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, splat};
+use crate::formats::multi_plane;
+use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, mpi, perspective, splat};
+use crate::scene::sensor_data::Planes;
 use crate::scene::{CameraMaps, LidarSweep, Scene, SensorRig};
 
 /// What can be rendered.
-const KINDS: [&str; 5] = ["semantic", "depth", "lidar", "bev", "view"];
+const KINDS: [&str; 7] = ["semantic", "depth", "perspective", "mpi", "lidar", "bev", "view"];
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Render {
     /// Scene to read.
     scene: PathBuf,
-    /// Comma-separated: semantic, depth, lidar, bev, view.
+    /// Comma-separated: semantic, depth, perspective, mpi, lidar, bev, view.
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     what: Vec<String>,
     /// JSON file with another sensor rig (as in assets/rigs).
@@ -61,13 +63,7 @@ pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, Lida
     let frame = scene.frame();
     let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
     let maps = splat::render_rig(&cloud, &scene.rig, width, height, &splat::SplatOptions::default());
-    let ego = Some(lidar::EgoBox::of_rig(&scene.rig));
-    let sweep = scene
-        .rig
-        .lidars
-        .first()
-        .map(|p| lidar::sweep(&frame.occupancy, p, ego))
-        .unwrap_or_default();
+    let sweep = lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default();
     (maps, sweep)
 }
 
@@ -135,12 +131,41 @@ impl Render {
                 }
             }
         }
+        if wants("perspective") {
+            let start = Instant::now();
+            let [width, height] = self.size;
+            for camera in &scene.rig.cameras {
+                let map = perspective::render(&frame.layout, frame.boxes.values(), camera, width, height);
+                let path = dir.join(format!("{}_perspective.png", map.camera));
+                output::write_png(&path, map.width, map.height, &color::perspective_rgba(&map))?;
+                files.push(path);
+                let path = dir.join(format!("{}_perspective_bits.png", map.camera));
+                output::write_png16(&path, map.width, map.height, &map.channels)?;
+                files.push(path);
+            }
+            wall_s.insert("perspective", start.elapsed().as_secs_f64());
+        }
+        if wants("mpi") {
+            let start = Instant::now();
+            let ids = mpi::RenderIds::new(&frame.occupancy, &frame.bev_channels());
+            let [width, height] = self.size;
+            for camera in &scene.rig.cameras {
+                let image = mpi::render(&ids, camera, width, height, Planes::default());
+                let path = dir.join(format!("{}_mpi.npz", image.camera));
+                output::write_file(&path, &multi_plane::sparse(&image))?;
+                files.push(path);
+                let path = dir.join(format!("{}_mpi.png", image.camera));
+                let sheet = picture::plane_sheet(&image);
+                output::write_png(&path, sheet.width, sheet.height, &sheet.rgba)?;
+                files.push(path);
+            }
+            wall_s.insert("mpi", start.elapsed().as_secs_f64());
+        }
         if wants("lidar") {
-            let Some(pattern) = scene.rig.lidars.first() else {
+            let start = Instant::now();
+            let Some(sweep) = lidar::rig_sweep(&frame.occupancy, &scene.rig) else {
                 return Err(anyhow::anyhow!("the rig {:?} has no lidar", scene.rig.name).into());
             };
-            let start = Instant::now();
-            let sweep = lidar::sweep(&frame.occupancy, pattern, Some(lidar::EgoBox::of_rig(&scene.rig)));
             wall_s.insert("lidar", start.elapsed().as_secs_f64());
             let returns = sweep.points.len();
             lidar_report = json!({ "rays": sweep.rays, "returns": returns, "dropped": sweep.rays - returns });

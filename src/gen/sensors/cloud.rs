@@ -85,12 +85,7 @@ impl GaussianCloud {
                         position_m: GridSpec::center(x, y, z).as_vec3().to_array(),
                         std_m: VOXEL_STD_M,
                         opacity: 1.0,
-                        id: match label {
-                            v if v == Class::DriveableSurface.id() => road,
-                            // A label outside the table means a damaged grid: shown as others.
-                            v if v > Class::FREE => Class::Others.id(),
-                            v => v,
-                        },
+                        id: render_id(label, road),
                     });
                 }
             }
@@ -114,8 +109,18 @@ impl GaussianCloud {
     }
 }
 
+/// The render id of a voxel that is not free, in a cell where driveable voxels have the id `road`.
+pub(super) fn render_id(label: u8, road: RenderId) -> RenderId {
+    match label {
+        v if v == Class::DriveableSurface.id() => road,
+        // A label outside the table means a damaged grid: shown as others.
+        v if v > Class::FREE => Class::Others.id(),
+        v => v,
+    }
+}
+
 /// The render id of a driveable voxel in a cell with these layers.
-fn road_id(layers: u32) -> RenderId {
+pub(super) fn road_id(layers: u32) -> RenderId {
     let lines = LINES.iter().rev();
     lines
         .filter(|(layer, _)| layers & layer.bit() != 0)

@@ -1,7 +1,7 @@
 //! Pictures of the maps: render ids and depths as RGBA, depths as 16-bit millimetres.
 
 use crate::scene::sensor_data::{RENDER_IDS, RenderId};
-use crate::scene::{BevLayer, CameraMaps, Class};
+use crate::scene::{BevLayer, CameraMaps, Class, MultiPlaneImage, PerspectiveMap};
 
 /// sRGB colour of pixels on which nothing was drawn.
 pub const SKY: [u8; 3] = [46, 58, 78];
@@ -114,6 +114,63 @@ pub fn ramp(t: f32) -> [u8; 3] {
     let i = (t as usize).min(STOPS.len() - 2);
     let f = t - i as f32;
     std::array::from_fn(|c| (STOPS[i][c] + (STOPS[i + 1][c] - STOPS[i][c]) * f).round() as u8)
+}
+
+/// One plane of a multi-plane image as RGBA, 4 bytes per pixel, opaque: what the plane cuts in the classes' colours,
+/// over a dark image of what is seen first.
+pub fn plane_rgba(image: &MultiPlaneImage, plane: u16) -> Vec<u8> {
+    let first = image.first_visible();
+    let mut out = Vec::with_capacity(first.len() * 4);
+    for (pixel, seen) in first.into_iter().enumerate() {
+        let ghost = seen.map_or(NO_DEPTH, |id| render_id_color(id).map(|c| 16 + c / 6));
+        out.extend(image.at(pixel, plane).map_or(ghost, opaque_color));
+        out.push(255);
+    }
+    out
+}
+
+/// The colour of an id where it is known that something is there: 0 is the class "others", no sky.
+fn opaque_color(id: RenderId) -> [u8; 3] {
+    match id {
+        0 => Class::Others.color(),
+        id => render_id_color(id),
+    }
+}
+
+/// A perspective map as RGBA, 4 bytes per pixel, opaque: road and lines below, boxes see-through over them, the rarer
+/// class over the more frequent one, edges in full colour.
+pub fn perspective_rgba(map: &PerspectiveMap) -> Vec<u8> {
+    const LINES: [BevLayer; 3] = [
+        BevLayer::RoadDivider,
+        BevLayer::LaneDivider,
+        BevLayer::PedCrossing,
+    ];
+    let object = |i: usize| Class::OBJECTS.get(i).map_or([255; 3], |c| c.color());
+    let mut out = Vec::with_capacity(map.channels.len() * 4);
+    for (&bits, &edge) in map.channels.iter().zip(&map.edges) {
+        let mut rgb = if bits >> 3 & 1 == 1 {
+            BevLayer::DrivableArea.color().map(|c| c / 2)
+        } else {
+            NO_DEPTH
+        };
+        for (i, layer) in LINES.into_iter().enumerate().rev() {
+            if bits >> i & 1 == 1 {
+                rgb = layer.color();
+            }
+        }
+        for i in 0..Class::OBJECTS.len() {
+            if bits >> (4 + i) & 1 == 1 {
+                let over = object(i);
+                rgb = std::array::from_fn(|c| ((u16::from(rgb[c]) + u16::from(over[c])) / 2) as u8);
+            }
+        }
+        if edge > 0 {
+            rgb = object(usize::from(edge) - 1).map(|c| c.saturating_add(40));
+        }
+        out.extend(rgb);
+        out.push(255);
+    }
+    out
 }
 
 /// Depth in whole millimetres for a 16-bit picture, as in common RGB-D data: 0 where there is none

@@ -1,10 +1,10 @@
 //! One revolution of a spinning LiDAR over the voxels: exact ranges, no noise, no dropped rays.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
+use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use crate::scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// The ego vehicle as an upright box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,70 +29,68 @@ impl EgoBox {
     }
 }
 
-/// Unit direction in the sensor frame of a beam at `elevation_deg`, column `column` of `columns`.
-/// The azimuth 2 pi i / n is formed in f64 from the index, so the last column and the first are one
-/// step apart like any other two.
-pub fn direction_in_sensor(elevation_deg: f64, column: u32, columns: u32) -> DVec3 {
-    let azimuth_rad = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
+/// Unit direction in the sensor frame of a beam at an elevation and an azimuth.
+pub fn direction_in_sensor(elevation_deg: f64, azimuth_rad: f64) -> DVec3 {
     let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
     let (sin_a, cos_a) = azimuth_rad.sin_cos();
     DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
 }
 
-/// Casts one ray per beam and column, beam-major, and returns those that meet a voxel within the
-/// pattern's range limits. Voxels whose centre lies in `exclude` (the ego vehicle) are looked through.
-pub fn sweep(grid: &VoxelGrid, pattern: &LidarPattern, exclude: Option<EgoBox>) -> LidarSweep {
-    sweep_with(&ColumnMasks::from_grid(grid), grid, pattern, exclude)
+/// The rays of one revolution, beam-major.
+#[derive(Clone, Debug)]
+pub struct Rays {
+    /// Origin of each column in the ego frame of the sweep's end, m.
+    pub origins: Vec<DVec3>,
+    /// Unit direction of each ray in the ego frame: beam * columns + column.
+    pub directions: Vec<DVec3>,
 }
 
-/// As [`sweep`], with masks of the same grid that the caller keeps up to date. The result does not
-/// depend on the number of threads.
-pub fn sweep_with(
-    masks: &ColumnMasks,
-    grid: &VoxelGrid,
-    pattern: &LidarPattern,
-    exclude: Option<EgoBox>,
-) -> LidarSweep {
-    let without_ego = exclude.map(|ego| looked_through(masks, ego));
-    let masks = without_ego.as_ref().unwrap_or(masks);
-    let ego_from_sensor = pattern.ego_from_sensor();
-    let origin = ego_from_sensor.translation_m;
-    let azimuths: Vec<(f64, f64)> = (0..pattern.columns)
-        .map(|i| (std::f64::consts::TAU * f64::from(i) / f64::from(pattern.columns)).sin_cos())
-        .collect();
-    let beam = |(ring, elevation_deg): (usize, &f64)| -> Vec<LidarPoint> {
-        let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
-        let mut points = Vec::with_capacity(azimuths.len());
-        for (column, &(sin_a, cos_a)) in azimuths.iter().enumerate() {
-            let direction = ego_from_sensor.rotation * DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e);
-            let Some(hit) = masks.cast(origin, direction, pattern.max_range_m) else {
-                continue;
-            };
-            if hit.range_m < pattern.min_range_m {
-                continue;
-            }
-            let [x, y, z] = hit.voxel;
-            points.push(LidarPoint {
-                position_in_ego: (origin + direction * hit.range_m).as_vec3().to_array(),
-                range_m: hit.range_m as f32,
-                ring: ring as u16,
-                azimuth: column as u16,
-                // A label outside the table can only come from a damaged grid; it still reflects.
-                class: Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others),
-            });
+impl Rays {
+    /// Those of a pattern; the vehicle drives straight ahead at `ego_speed_mps` while the sensor spins.
+    pub fn new(pattern: &LidarPattern, ego_speed_mps: f64) -> Self {
+        let ego_from_sensor = pattern.ego_from_sensor();
+        let columns = pattern.columns_in_sector();
+        let short_s = |column: u32| match pattern.spin_hz > 0.0 {
+            true => (1.0 - f64::from(column) / f64::from(pattern.columns.max(1))) / pattern.spin_hz,
+            false => 0.0,
+        };
+        let origin = |column| ego_from_sensor.translation_m - DVec3::X * (ego_speed_mps * short_s(column));
+        let azimuths: Vec<(f64, f64)> = (0..columns).map(|i| pattern.azimuth_rad(i).sin_cos()).collect();
+        let mut directions = Vec::with_capacity(pattern.rays());
+        for elevation_deg in &pattern.elevations_deg {
+            let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
+            directions.extend(azimuths.iter().map(|&(sin_a, cos_a)| {
+                ego_from_sensor.rotation * DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
+            }));
         }
-        points
-    };
-    let beams: Vec<Vec<LidarPoint>> = pattern.elevations_deg.par_iter().enumerate().map(beam).collect();
-    LidarSweep {
-        points: beams.concat(),
-        rays: pattern.elevations_deg.len() * pattern.columns as usize,
+        Self {
+            origins: (0..columns).map(origin).collect(),
+            directions,
+        }
+    }
+
+    /// Origin and direction of a ray in the ego frame.
+    #[inline]
+    pub fn get(&self, ray: usize) -> (DVec3, DVec3) {
+        (self.origins[ray % self.origins.len()], self.directions[ray])
     }
 }
 
-/// The masks without the voxels whose centre lies in the box.
-fn looked_through(masks: &ColumnMasks, ego: EgoBox) -> ColumnMasks {
-    let mut masks = masks.clone();
+/// Casts one ray per beam and column, beam-major, and returns those that meet a voxel within the
+/// pattern's range limits. Voxels whose centre lies in `exclude` (the ego vehicle) are looked through.
+/// The result does not depend on the number of threads.
+pub fn sweep(grid: &VoxelGrid, pattern: &LidarPattern, exclude: Option<EgoBox>) -> LidarSweep {
+    Caster::new(grid, pattern, 0.0, exclude).sweep()
+}
+
+/// The first LiDAR of a rig, if it has any, on its moving vehicle.
+pub fn rig_sweep(grid: &VoxelGrid, rig: &SensorRig) -> Option<LidarSweep> {
+    let pattern = rig.lidars.first()?;
+    Some(Caster::new(grid, pattern, rig.ego_speed_mps, Some(EgoBox::of_rig(rig))).sweep())
+}
+
+/// Takes the voxels whose centre lies in the box out of the masks.
+pub(super) fn look_through(masks: &mut ColumnMasks, ego: EgoBox) {
     let cell = |p: DVec3| GridSpec::to_voxel_units(p).floor();
     let (low, high) = (
         cell(ego.center_m - ego.size_m / 2.0),
@@ -111,7 +109,6 @@ fn looked_through(masks: &ColumnMasks, ego: EgoBox) -> ColumnMasks {
             }
         }
     }
-    masks
 }
 
 #[cfg(test)]
@@ -119,6 +116,7 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
+    use crate::scene::Class;
 
     fn pattern(beams: usize, columns: u32) -> LidarPattern {
         let elevations = (0..beams).map(|i| match beams {
@@ -129,6 +127,10 @@ mod tests {
             name: "TEST".into(),
             elevations_deg: elevations.collect(),
             columns,
+            first_azimuth_deg: 0.0,
+            sector_deg: 360.0,
+            clockwise: false,
+            spin_hz: 0.0,
             max_range_m: 100.0,
             min_range_m: 0.0,
             rotation_wxyz: [1.0, 0.0, 0.0, 0.0],
@@ -144,7 +146,7 @@ mod tests {
                 let mut seen = HashSet::new();
                 for (ring, &e) in p.elevations_deg.iter().enumerate() {
                     for i in 0..columns {
-                        let d = direction_in_sensor(e, i, columns);
+                        let d = direction_in_sensor(e, p.azimuth_rad(i));
                         assert!((d.length() - 1.0).abs() < 1e-15, "{d}");
                         // At the poles all azimuths share one direction; elsewhere each is its own.
                         let bits = d.to_array().map(f64::to_bits);
@@ -156,15 +158,16 @@ mod tests {
             }
             // The wrap is a step like any other: no gap, no double.
             let step = std::f64::consts::TAU / f64::from(columns);
-            let of = |i| direction_in_sensor(0.0, i, columns);
+            let p = pattern(1, columns);
+            let of = |i| direction_in_sensor(0.0, p.azimuth_rad(i));
             if columns > 2 {
                 let seam = of(columns - 1).angle_between(of(0));
                 let first = of(0).angle_between(of(1));
                 assert!((seam - first).abs() < 1e-12 && (first - step).abs() < 1e-12);
             }
         }
-        assert_eq!(direction_in_sensor(90.0, 7, 1084).z, 1.0);
-        assert_eq!(direction_in_sensor(-90.0, 7, 1084).z, -1.0);
+        assert_eq!(direction_in_sensor(90.0, 0.04).z, 1.0);
+        assert_eq!(direction_in_sensor(-90.0, 0.04).z, -1.0);
     }
 
     #[test]

@@ -1,0 +1,294 @@
+//! A LiDAR sweep that is kept: after an edit only the rays whose free path or hit touches a changed voxel are cast
+//! again. The result is that of a fresh sweep, ray by ray.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::lidar::{EgoBox, Rays, look_through};
+use super::raycast::ColumnMasks;
+use crate::scene::grid::{BRICK, BRICKS};
+use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+
+/// With more changed boxes than this, all rays are cast: testing them would cost as much.
+const MAX_BOXES: usize = 16;
+/// Widens changed boxes by far more than rounding, voxels.
+const MARGIN: f64 = 1e-6;
+/// Rays per task.
+const CHUNK: usize = 512;
+
+/// One LiDAR, the voxels that it saw last and what each ray found.
+#[derive(Clone, Debug)]
+pub struct Caster {
+    pattern: LidarPattern,
+    exclude: Option<EgoBox>,
+    rays: Rays,
+    columns: usize,
+    grid: VoxelGrid,
+    masks: ColumnMasks,
+    /// Per ray: how far it is free, m, and what it returns.
+    found: Vec<(f32, Option<LidarPoint>)>,
+    cast: usize,
+}
+
+/// Changed voxels, half-open, in voxel units.
+#[derive(Clone, Copy, Debug)]
+struct Changed {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Caster {
+    /// Casts every ray of a pattern on a vehicle that drives straight ahead at `ego_speed_mps`. Voxels whose centre
+    /// lies in `exclude` are looked through.
+    pub fn new(
+        grid: &VoxelGrid,
+        pattern: &LidarPattern,
+        ego_speed_mps: f64,
+        exclude: Option<EgoBox>,
+    ) -> Self {
+        let rays = Rays::new(pattern, ego_speed_mps);
+        let mut caster = Self {
+            pattern: pattern.clone(),
+            exclude,
+            columns: rays.origins.len(),
+            found: vec![(0.0, None); rays.directions.len()],
+            rays,
+            grid: grid.clone(),
+            masks: ColumnMasks::from_grid(grid),
+            cast: 0,
+        };
+        caster.leave_out();
+        caster.cast_all();
+        caster
+    }
+
+    /// Brings the sweep up to date with `grid`.
+    pub fn update(&mut self, grid: &VoxelGrid) {
+        let bricks = self.grid.changed_bricks(grid);
+        let changed: Vec<Changed> = bricks
+            .iter()
+            .filter_map(|&b| changed_in(&self.grid, grid, b))
+            .collect();
+        self.grid = grid.clone();
+        if changed.is_empty() {
+            self.cast = 0;
+            return;
+        }
+        self.masks.update(grid, &bricks);
+        self.leave_out();
+        if changed.len() > MAX_BOXES {
+            self.cast_all();
+            return;
+        }
+        let (rays, found) = (&self.rays, &self.found);
+        let again: Vec<usize> = (0..found.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .filter(|&ray| {
+                let (origin, direction) = rays.get(ray);
+                let origin = GridSpec::to_voxel_units(origin);
+                let reach = f64::from(found[ray].0) / GridSpec::VOXEL_M;
+                changed.iter().any(|c| c.is_met(origin, direction, reach))
+            })
+            .collect();
+        let new: Vec<_> = again
+            .par_iter()
+            .with_min_len(CHUNK / 4)
+            .map(|&ray| self.cast_one(ray))
+            .collect();
+        for (&ray, new) in again.iter().zip(new) {
+            self.found[ray] = new;
+        }
+        self.cast = again.len();
+    }
+
+    /// Returns in beam-major order.
+    pub fn sweep(&self) -> LidarSweep {
+        LidarSweep {
+            points: self.found.iter().filter_map(|(_, point)| *point).collect(),
+            rays: self.found.len(),
+        }
+    }
+
+    /// Rays that the last update cast.
+    pub fn cast_last(&self) -> usize {
+        self.cast
+    }
+
+    fn leave_out(&mut self) {
+        if let Some(ego) = self.exclude {
+            look_through(&mut self.masks, ego);
+        }
+    }
+
+    fn cast_all(&mut self) {
+        let mut found = std::mem::take(&mut self.found);
+        found
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, found)| {
+                for (i, found) in found.iter_mut().enumerate() {
+                    *found = self.cast_one(chunk * CHUNK + i);
+                }
+            });
+        self.cast = found.len();
+        self.found = found;
+    }
+
+    #[inline]
+    fn cast_one(&self, ray: usize) -> (f32, Option<LidarPoint>) {
+        let (origin, direction) = self.rays.get(ray);
+        let Some(hit) = self.masks.cast(origin, direction, self.pattern.max_range_m) else {
+            return (f32::INFINITY, None);
+        };
+        let [x, y, z] = hit.voxel;
+        let point = || LidarPoint {
+            position_in_ego: (origin + direction * hit.range_m).as_vec3().to_array(),
+            range_m: hit.range_m as f32,
+            ring: (ray / self.columns) as u16,
+            azimuth: (ray % self.columns) as u16,
+            // A label outside the table can only come from a damaged grid; it still reflects.
+            class: Class::from_id(self.grid.get(x, y, z)).unwrap_or(Class::Others),
+        };
+        // Rounded up, so that the voxel that was hit is within reach.
+        let reach = (hit.range_m as f32).next_up();
+        (reach, (hit.range_m >= self.pattern.min_range_m).then(point))
+    }
+}
+
+/// The box around the voxels of a brick that differ. `None` if none does.
+fn changed_in(before: &VoxelGrid, after: &VoxelGrid, brick: usize) -> Option<Changed> {
+    let (x0, y0) = ((brick / BRICKS) * BRICK, (brick % BRICKS) * BRICK);
+    let mut found: Option<([usize; 3], [usize; 3])> = None;
+    for x in x0..(x0 + BRICK).min(GridSpec::NX) {
+        for y in y0..(y0 + BRICK).min(GridSpec::NY) {
+            let (a, b) = (before.column(x, y), after.column(x, y));
+            if a == b {
+                continue;
+            }
+            for z in (0..GridSpec::NZ).filter(|&z| a[z] != b[z]) {
+                let (low, high) = found.get_or_insert(([x, y, z], [x, y, z]));
+                for (axis, v) in [x, y, z].into_iter().enumerate() {
+                    low[axis] = low[axis].min(v);
+                    high[axis] = high[axis].max(v);
+                }
+            }
+        }
+    }
+    let (low, high) = found?;
+    let point = |p: [usize; 3], by: f64| DVec3::from_array(p.map(|v| v as f64 + by));
+    Some(Changed {
+        low: point(low, -MARGIN),
+        high: point(high, 1.0 + MARGIN),
+    })
+}
+
+impl Changed {
+    /// True if a ray meets the box at most `reach` from its origin (slab test).
+    #[inline]
+    fn is_met(&self, origin: DVec3, direction: DVec3, reach: f64) -> bool {
+        let (mut enter, mut leave) = (0.0f64, reach + 2.0 * MARGIN);
+        for axis in 0..3 {
+            let (o, d) = (origin[axis], direction[axis]);
+            if d == 0.0 {
+                if o < self.low[axis] || o > self.high[axis] {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((self.low[axis] - o) / d, (self.high[axis] - o) / d);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        enter <= leave
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::world::draw::Draw;
+    use crate::scene::SensorRig;
+
+    fn world() -> VoxelGrid {
+        let mut grid = VoxelGrid::new();
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                if (x / 7 + y / 5) % 3 != 0 {
+                    grid.set(x, y, 0, Class::DriveableSurface.id());
+                }
+                if (x * 31 + y * 17) % 97 == 0 {
+                    for z in 1..(x + y) % 13 {
+                        grid.set(x, y, z, Class::Vegetation.id());
+                    }
+                }
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn an_updated_sweep_is_a_fresh_one() {
+        let rig = SensorRig::default();
+        let ego = Some(EgoBox::of_rig(&rig));
+        let mut moving = rig.lidars[0].clone();
+        (moving.spin_hz, moving.clockwise, moving.sector_deg) = (10.0, true, 200.0);
+        for (pattern, speed) in [(&rig.lidars[0], 0.0), (&moving, 14.0)] {
+            let mut grid = world();
+            let mut caster = Caster::new(&grid, pattern, speed, ego);
+            let mut least = caster.cast_last();
+            assert_eq!(least, pattern.rays());
+            let mut draw = Draw::new(5, "edits");
+            for edit in 0..60 {
+                // Blocks of one to nine columns, added, taken away or repainted; some in the ego vehicle.
+                let mut below = |n: usize| draw.below(n);
+                let (size, class) = (
+                    [1 + below(9), 1 + below(9), 1 + below(8)],
+                    [4, 17, 15, 11][below(4)],
+                );
+                let near = edit % 3 == 0;
+                let at = if near {
+                    [94 + below(12), 94 + below(12)]
+                } else {
+                    [below(190), below(190)]
+                };
+                for i in 0..size[0] * size[1] * size[2] {
+                    let [dx, dy, dz] = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]];
+                    grid.set((at[0] + dx).min(199), (at[1] + dy).min(199), dz, class);
+                }
+                caster.update(&grid);
+                least = least.min(caster.cast_last());
+                let fresh = Caster::new(&grid, pattern, speed, ego);
+                assert_eq!(caster.sweep(), fresh.sweep(), "edit {edit}");
+            }
+            assert!(least < pattern.rays() / 20, "{least} rays at least");
+            caster.update(&grid.clone());
+            assert_eq!(caster.cast_last(), 0, "nothing changed");
+        }
+    }
+
+    #[test]
+    fn a_rolling_sweep_sees_from_where_the_vehicle_was() {
+        let mut grid = VoxelGrid::new();
+        for y in 0..GridSpec::NY {
+            for z in 0..GridSpec::NZ {
+                grid.set(150, y, z, Class::Manmade.id()); // a wall, its face at x = 20 m
+            }
+        }
+        let mut pattern = SensorRig::default().lidars[0].clone();
+        pattern.rotation_wxyz = [1.0, 0.0, 0.0, 0.0];
+        pattern.translation_m = [0.0, 0.0, 2.0];
+        (pattern.elevations_deg, pattern.columns, pattern.spin_hz) = (vec![0.0], 8, 10.0);
+        let sweep = Caster::new(&grid, &pattern, 20.0, None).sweep();
+        // Column 0 looks ahead, a whole turn before the end: the vehicle was 2 m back.
+        let first = sweep.points[0];
+        assert_eq!(first.azimuth, 0);
+        assert!((first.range_m - 22.0).abs() < 1e-5 && (first.position_in_ego[0] - 20.0).abs() < 1e-5);
+        pattern.spin_hz = 0.0;
+        assert!((Caster::new(&grid, &pattern, 20.0, None).sweep().points[0].range_m - 20.0).abs() < 1e-5);
+        pattern.sector_deg = 90.0;
+        assert_eq!(pattern.rays(), 2);
+        (pattern.columns, pattern.sector_deg) = (1080, 120.0);
+        assert_eq!(pattern.columns_in_sector(), 360);
+    }
+}
