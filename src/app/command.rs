@@ -82,6 +82,12 @@ pub enum Command {
     ExportScreenshot,
     /// Saves the 3D view beside the scene.
     QuickShot,
+    /// Asks for a file of sensors and takes them.
+    ImportRig,
+    /// Asks for a file and saves the sensors there.
+    ExportRig,
+    /// Shows or hides the sensors' window.
+    ToggleSensors,
     /// Leaves the program.
     Quit,
     /// Brings the chosen box into the middle of the view under the pointer.

@@ -12,6 +12,7 @@ use super::application::{Next, Opening, SceneloomApp, one_line};
 use super::canvas_tools::new_box;
 use super::command::Command;
 use super::file_dialogs::Purpose;
+use super::open;
 use super::panels::objects::neighbour;
 use super::panels::toasts::Level;
 use super::state::{Pane, Tool};
@@ -114,6 +115,15 @@ impl SceneloomApp {
             Command::Inspect(camera) => self.state.inspected = camera,
             Command::SwapPanes => self.state.swapped = !self.state.swapped,
             Command::ToggleGrid => self.state.show_grid = !self.state.show_grid,
+            Command::ToggleSensors => self.state.sensors_open = !self.state.sensors_open,
+            Command::ImportRig => {
+                let suggestion = self.suggested("json");
+                self.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
+            }
+            Command::ExportRig => {
+                let suggestion = self.suggested("json");
+                self.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
+            }
             Command::ToggleLog => self.state.log_open = !self.state.log_open,
             Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
         }
@@ -313,6 +323,29 @@ impl SceneloomApp {
             Purpose::Open => self.go_on(Next::Open(path), ctx),
             Purpose::SaveAs => self.save_to(path, ctx),
             Purpose::Screenshot => self.screenshot(&path),
+            Purpose::ImportRig => self.import_rig(&path),
+            Purpose::ExportRig => self.export_rig(&path),
+        }
+    }
+
+    fn import_rig(&mut self, path: &Path) {
+        match open::rig(path) {
+            Ok(rig) => {
+                let rig = Box::new(rig);
+                self.apply("Import sensors", &[Edit::SetRig { rig }]);
+            }
+            Err(error) => self.fail(format!("Not imported: {}", one_line(&error))),
+        }
+    }
+
+    fn export_rig(&mut self, path: &Path) {
+        let saved = open::save_rig(&self.document.scene().rig, path);
+        let now_s = self.now_s();
+        match saved {
+            Ok(()) => self
+                .toasts
+                .push(Level::Info, format!("Saved {}", path.display()), now_s),
+            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
         }
     }
 

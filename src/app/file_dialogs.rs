@@ -18,6 +18,10 @@ pub enum Purpose {
     SaveAs,
     /// Where to save a picture.
     Screenshot,
+    /// Sensors to take.
+    ImportRig,
+    /// Where to save the sensors.
+    ExportRig,
 }
 
 impl Purpose {
@@ -26,6 +30,8 @@ impl Purpose {
             Purpose::Open => "Open scene or road",
             Purpose::SaveAs => "Save scene as",
             Purpose::Screenshot => "Export screenshot",
+            Purpose::ImportRig => "Import sensors",
+            Purpose::ExportRig => "Export sensors",
         }
     }
 
@@ -34,11 +40,13 @@ impl Purpose {
             Purpose::Open => "Open file",
             Purpose::SaveAs => "Save file",
             Purpose::Screenshot => "Export picture",
+            Purpose::ImportRig => "Import file",
+            Purpose::ExportRig => "Export file",
         }
     }
 
     fn is_save(self) -> bool {
-        self != Purpose::Open
+        !matches!(self, Purpose::Open | Purpose::ImportRig)
     }
 }
 
@@ -98,6 +106,7 @@ impl FileDialogs {
                 .add_filter("All files", &["*"]),
             Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
             Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
+            Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
         };
         if let Some(folder) = suggestion.parent().filter(|p| p.is_dir()) {
             dialog = dialog.set_directory(folder);

@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use glam::DVec2;
 
 use crate::formats::opendrive::{self, RoadNetwork};
-use crate::formats::{occ3d, project};
+use crate::formats::{atomic, occ3d, project};
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
 use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
@@ -20,6 +20,23 @@ const LARGEST_TEXT: u64 = 256 << 20;
 pub fn bundled() -> anyhow::Result<Scene> {
     let bytes = include_bytes!("../../assets/scenes/first_light.loom");
     project::from_bytes(bytes).context("the bundled scene")
+}
+
+/// A sensor rig from a JSON file.
+pub fn rig(path: &Path) -> anyhow::Result<SensorRig> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
+    let rig: SensorRig = serde_json::from_str(&text).with_context(|| name.to_string())?;
+    match rig.problem() {
+        Some(problem) => bail!("{name}: {problem}"),
+        None => Ok(rig),
+    }
+}
+
+/// Writes a sensor rig as JSON.
+pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(rig).context("the sensors")?;
+    atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }
 
 /// What a file is, found by content.

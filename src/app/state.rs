@@ -70,6 +70,43 @@ pub enum CameraMode {
     Semantic,
     /// Distance along the optical axis.
     Depth,
+    /// What a camera would see, by day or night and in any weather.
+    Picture,
+    /// One plane of a multi-plane image.
+    Planes,
+    /// Boxes and lanes in perspective, hidden or not.
+    Layout,
+}
+
+/// What classes and depths are rendered from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CameraSource {
+    /// Gaussians at voxel centres, as the papers do.
+    Splats,
+    /// The voxels themselves.
+    Voxels,
+    /// The voxels, and the shapes of boxes where they stand.
+    #[default]
+    Shapes,
+}
+
+/// How the LiDAR sweep comes about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LidarModel {
+    /// Every ray to the first voxel.
+    #[default]
+    Exact,
+    /// The network: ranges within voxels, intensity, lost echoes.
+    Learned,
+}
+
+/// A sensor of the rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorChoice {
+    /// By index.
+    Camera(usize),
+    /// By index.
+    Lidar(usize),
 }
 
 /// What lies under the layers of the bird's-eye view.
@@ -127,6 +164,18 @@ pub struct UiState {
     pub lidar_colors: LidarColorMode,
     /// What the camera strip shows.
     pub camera_mode: CameraMode,
+    /// What its classes and depths are rendered from.
+    pub camera_source: CameraSource,
+    /// Depth of the plane that is shown, m.
+    pub plane_m: f64,
+    /// Bit per camera that is not rendered.
+    pub cameras_hidden: u32,
+    /// How the LiDAR sweep comes about.
+    pub lidar_model: LidarModel,
+    /// The sensors' window is open.
+    pub sensors_open: bool,
+    /// The sensor chosen in it.
+    pub sensor: SensorChoice,
     /// Camera that is enlarged.
     pub inspected: Option<usize>,
     /// The 3D view is the left pane.
@@ -152,6 +201,18 @@ impl UiState {
     /// True if a map layer is drawn.
     pub fn shows(&self, layer: BevLayer) -> bool {
         self.layers_shown & layer.bit() != 0
+    }
+
+    /// True if a camera of the rig is not rendered.
+    pub fn camera_hidden(&self, camera: usize) -> bool {
+        camera < 32 && self.cameras_hidden >> camera & 1 == 1
+    }
+
+    /// After a camera was taken away, those behind it move up.
+    pub fn forget_camera(&mut self, camera: usize) {
+        let below = (1u32 << camera.min(31)) - 1;
+        self.cameras_hidden = (self.cameras_hidden & below) | (self.cameras_hidden >> 1 & !below);
+        self.inspected = None;
     }
 
     /// Edits as they are meant: corrections while the user corrects what was inferred.
@@ -214,6 +275,12 @@ impl Default for UiState {
             named: Named::default(),
             lidar_colors: LidarColorMode::Range,
             camera_mode: CameraMode::Semantic,
+            camera_source: CameraSource::default(),
+            plane_m: 12.0,
+            cameras_hidden: 0,
+            lidar_model: LidarModel::default(),
+            sensors_open: false,
+            sensor: SensorChoice::Camera(0),
             inspected: None,
             swapped: false,
             hovered_pane: None,
@@ -273,6 +340,19 @@ mod tests {
             ui.step_brush(step);
             assert_eq!(ui.voxel_size, size);
         }
+    }
+
+    #[test]
+    fn hidden_cameras_stay_hidden_when_another_goes() {
+        let mut ui = UiState {
+            cameras_hidden: 0b10_1001,
+            ..UiState::default()
+        };
+        assert!(ui.camera_hidden(3) && !ui.camera_hidden(4) && !ui.camera_hidden(40));
+        ui.forget_camera(2);
+        assert_eq!(ui.cameras_hidden, 0b1_0101);
+        ui.forget_camera(0);
+        assert_eq!(ui.cameras_hidden, 0b1010);
     }
 
     #[test]

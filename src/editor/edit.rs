@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
-    BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SourceFrame, VoxelGrid, VoxelPaint,
+    BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SensorRig, SourceFrame, VoxelGrid, VoxelPaint,
 };
 
 use super::Shape;
 use super::immediate;
 use super::shape::at_least;
 
-/// One change of the current frame (or, for the prompt, of the scene). As JSON:
+/// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -99,6 +99,11 @@ pub enum Edit {
         /// The text; empty means none.
         prompt: String,
     },
+    /// Replaces the sensors of the vehicle. No voxel changes.
+    SetRig {
+        /// The new ones.
+        rig: Box<SensorRig>,
+    },
     /// Takes a generated occupancy as the frame's own and as the source of what comes. Not in JSON.
     #[serde(skip)]
     AdoptResult {
@@ -128,6 +133,9 @@ pub enum EditError {
     /// The box that would result is not sound; see [`SceneBox::problem`].
     #[error("{0}")]
     BadBox(String),
+    /// The sensors that would result are not sound; see [`SensorRig::problem`].
+    #[error("{0}")]
+    BadRig(String),
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
@@ -187,6 +195,14 @@ impl Edit {
                 if scene.prompt.as_ref() != prompt {
                     scene.rev = crate::scene::SceneRev::fresh();
                     scene.prompt = prompt.as_str().into();
+                }
+            }
+            Self::SetRig { rig } => {
+                if let Some(problem) = rig.problem() {
+                    return Err(EditError::BadRig(problem));
+                }
+                if *scene.rig != **rig {
+                    scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }
             edit => {
@@ -281,7 +297,7 @@ impl Edit {
             }
             Self::ClearPaint {} => frame.painted = VoxelPaint::new(),
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
-            Self::SetPrompt { .. } => {} // concerns the scene, see `apply`
+            Self::SetPrompt { .. } | Self::SetRig { .. } => {} // concern the scene, see `apply`
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ pub mod layout;
 pub mod pose;
 pub mod raster;
 pub mod rig;
+pub mod rig_presets;
 pub mod sensor_data;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,6 @@
 //! Sensors as data: cameras with intrinsics and mount, LiDARs as lists of elevations.
 
+use glam::{DQuat, EulerRot};
 use serde::{Deserialize, Serialize};
 
 use super::Pose;
@@ -30,6 +31,47 @@ impl Camera {
         Pose::from_wxyz(self.rotation_wxyz, self.translation_m)
     }
 
+    /// A level camera at the origin that looks ahead: 1600 x 900 pixels, `fov_deg` wide.
+    pub fn new(name: &str, fov_deg: f64) -> Camera {
+        let mut camera = Camera {
+            name: name.into(),
+            width: 1600,
+            height: 900,
+            focal_px: [1.0; 2],
+            center_px: [800.0, 450.0],
+            rotation_wxyz: [0.5, -0.5, 0.5, -0.5],
+            translation_m: [0.0; 3],
+        };
+        camera.set_fov_deg(fov_deg);
+        camera
+    }
+
+    /// Horizontal field of view, degrees, as if the principal point were in the middle.
+    pub fn fov_deg(&self) -> f64 {
+        2.0 * (f64::from(self.width) / 2.0 / self.focal_px[0])
+            .atan()
+            .to_degrees()
+    }
+
+    /// Sets the horizontal field of view (held to 1 to 179 degrees); pixels keep their aspect.
+    pub fn set_fov_deg(&mut self, fov_deg: f64) {
+        let aspect = self.focal_px[1] / self.focal_px[0];
+        let half = (fov_deg.clamp(1.0, 179.0) / 2.0).to_radians();
+        let focal = f64::from(self.width) / 2.0 / half.tan();
+        self.focal_px = [focal, focal * if aspect.is_finite() { aspect } else { 1.0 }];
+    }
+
+    /// Where the camera looks.
+    pub fn aim(&self) -> Aim {
+        Aim::of(self.ego_from_camera().rotation * BODY_FROM_OPTICAL.inverse())
+    }
+
+    /// Turns the camera.
+    pub fn set_aim(&mut self, aim: Aim) {
+        let q = aim.rotation() * BODY_FROM_OPTICAL;
+        self.rotation_wxyz = [q.w, q.x, q.y, q.z];
+    }
+
     /// The same view at another image size; the focal length and centre scale with each axis.
     pub fn resized(&self, width: u32, height: u32) -> Camera {
         let (sx, sy) = (
@@ -43,6 +85,41 @@ impl Camera {
             center_px: [self.center_px[0] * sx, self.center_px[1] * sy],
             ..self.clone()
         }
+    }
+}
+
+/// Optical axes (x right, y down, z forward) to body axes (x forward, y left, z up).
+const BODY_FROM_OPTICAL: DQuat = DQuat::from_xyzw(-0.5, 0.5, -0.5, 0.5);
+
+/// The direction of a sensor's body (x forward, y left, z up) in the ego frame: turned about z by yaw, then raised by
+/// pitch, then rolled about its own axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// Counter-clockwise from straight ahead, degrees.
+    pub yaw_deg: f64,
+    /// Upward, degrees.
+    pub pitch_deg: f64,
+    /// Clockwise as the sensor sees it, degrees.
+    pub roll_deg: f64,
+}
+
+impl Aim {
+    /// The angles of a rotation from body to ego.
+    pub fn of(rotation: DQuat) -> Aim {
+        let (yaw, down, roll) = rotation.normalize().to_euler(EulerRot::ZYX);
+        // Adding 0 turns -0 into 0.
+        let tidy = |v: f64| (v.to_degrees() * 1e6).round() / 1e6 + 0.0;
+        Aim {
+            yaw_deg: tidy(yaw),
+            pitch_deg: tidy(-down),
+            roll_deg: tidy(roll),
+        }
+    }
+
+    /// Body to ego.
+    pub fn rotation(&self) -> DQuat {
+        let [yaw, pitch, roll] = [self.yaw_deg, self.pitch_deg, self.roll_deg].map(f64::to_radians);
+        DQuat::from_euler(EulerRot::ZYX, yaw, -pitch, roll)
     }
 }
 
@@ -83,6 +160,17 @@ impl LidarPattern {
     /// Takes points of the sensor frame to the ego frame.
     pub fn ego_from_sensor(&self) -> Pose {
         Pose::from_wxyz(self.rotation_wxyz, self.translation_m)
+    }
+
+    /// Where its x axis points.
+    pub fn aim(&self) -> Aim {
+        Aim::of(self.ego_from_sensor().rotation)
+    }
+
+    /// Turns it.
+    pub fn set_aim(&mut self, aim: Aim) {
+        let q = aim.rotation();
+        self.rotation_wxyz = [q.w, q.x, q.y, q.z];
     }
 
     /// Columns that return anything: those in the sector.
@@ -227,6 +315,47 @@ mod tests {
         assert_eq!(rig.lidars[0].elevations_deg.len(), 32);
         let forward = rig.cameras[1].ego_from_camera().rotation * glam::DVec3::Z;
         assert!(forward.x > 0.99, "front camera looks along ego x, got {forward}");
+    }
+
+    #[test]
+    fn aims_and_fields_of_view_come_back() {
+        for camera in &mut SensorRig::default().cameras {
+            let (before, aim) = (camera.ego_from_camera().rotation, camera.aim());
+            assert!(
+                aim.pitch_deg.abs() < 3.0 && aim.roll_deg.abs() < 3.0,
+                "{}: {aim:?}",
+                camera.name
+            );
+            camera.set_aim(aim);
+            assert!(before.angle_between(camera.ego_from_camera().rotation) < 1e-6);
+            let (fov_deg, focal_px) = (camera.fov_deg(), camera.focal_px);
+            camera.set_fov_deg(fov_deg);
+            assert!((camera.focal_px[1] - focal_px[1]).abs() < 1e-9 * focal_px[1]);
+        }
+        let mut camera = Camera::new("CAM", 90.0);
+        assert!((camera.focal_px[0] - 800.0).abs() < 1e-9);
+        let forward = |c: &Camera| c.ego_from_camera().rotation * glam::DVec3::Z;
+        assert!(forward(&camera).distance(glam::DVec3::X) < 1e-12);
+        camera.set_aim(Aim {
+            yaw_deg: 90.0,
+            pitch_deg: 30.0,
+            roll_deg: 0.0,
+        });
+        let up = glam::DVec3::new(0.0, 0.75f64.sqrt(), 0.5);
+        assert!(
+            forward(&camera).distance(up) < 1e-12,
+            "left and 30 degrees up: {}",
+            forward(&camera)
+        );
+        camera.set_aim(Aim {
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            roll_deg: 90.0,
+        });
+        // Rolled clockwise by a quarter, what was its right side is below.
+        let right = camera.ego_from_camera().rotation * glam::DVec3::X;
+        assert!(right.distance(-glam::DVec3::Z) < 1e-12, "{right}");
+        camera.set_fov_deg(f64::NAN);
     }
 
     #[test]

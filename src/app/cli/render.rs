@@ -1,10 +1,10 @@
 //! `sceneloom render`: pictures of what the sensors see.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
@@ -47,17 +47,6 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// A sensor rig from a JSON file.
-pub fn read_rig(path: &Path) -> anyhow::Result<SensorRig> {
-    let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
-    let rig: SensorRig = serde_json::from_str(&text).with_context(|| name.to_string())?;
-    match rig.problem() {
-        Some(problem) => bail!("{name}: {problem}"),
-        None => Ok(rig),
-    }
-}
-
 /// The six cameras' maps and the LiDAR sweep of a scene.
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
     let frame = scene.frame();
@@ -95,7 +84,7 @@ impl Render {
         }
         let mut scene = open::scene(&self.scene)?;
         if let Some(path) = &self.rig {
-            scene.rig = read_rig(path)?.into();
+            scene.rig = open::rig(path)?.into();
         }
         let dir = &self.output;
         std::fs::create_dir_all(dir).with_context(|| format!("create {}", dir.display()))?;

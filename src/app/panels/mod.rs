@@ -2,9 +2,11 @@
 
 pub mod cameras;
 pub mod dialogs;
+pub mod fields;
 pub mod layers;
 pub mod objects;
 pub mod panes;
+pub mod sensors;
 pub mod status;
 pub mod toasts;
 pub mod toolbar;

@@ -1,10 +1,10 @@
 //! The right panel: the chosen box in numbers, the list of boxes, the history.
 
 use egui::{DragValue, Ui};
-use glam::DVec3;
 
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
+use crate::app::panels::fields::{caption, field, numbers};
 use crate::app::state::UiState;
 use crate::app::theme;
 use crate::editor::{Document, Edit};
@@ -198,59 +198,6 @@ fn speed(ui: &mut Ui, b: &SceneBox) {
         ui.label(text);
         ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::TEXT_WEAK));
     });
-}
-
-fn caption(ui: &mut Ui, text: &str) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(52.0, theme::ROW), egui::Sense::hover());
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    ui.painter().text(
-        rect.left_center(),
-        egui::Align2::LEFT_CENTER,
-        text,
-        font,
-        theme::TEXT_WEAK,
-    );
-}
-
-/// Three numbers in a row; the response of all of them.
-fn numbers(
-    ui: &mut Ui,
-    title: &str,
-    names: [&str; 3],
-    value: &mut DVec3,
-    range: std::ops::RangeInclusive<f64>,
-    speed: f64,
-) -> egui::Response {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        caption(ui, title);
-        let width = ((ui.available_width() - 6.0) / 3.0).clamp(40.0, 90.0);
-        let mut fields = names.into_iter().enumerate().map(|(axis, name)| {
-            let drag = DragValue::new(&mut value[axis])
-                .speed(speed)
-                .range(range.clone())
-                .fixed_decimals(2);
-            ui.add_sized([width, theme::ROW], drag)
-                .on_hover_text(format!("{name}, m"))
-                .accessible_name(name)
-        });
-        let first = fields.next().expect("three names");
-        fields.fold(first, |all, one| all.union(one))
-    })
-    .inner
-}
-
-/// Dragging previews, letting go commits, typing applies.
-fn field(response: &egui::Response, label: &'static str, edit: Edit, commands: &mut Vec<Command>) {
-    if response.dragged() {
-        if response.changed() {
-            commands.push(Command::Preview(vec![edit]));
-        }
-    } else if response.drag_stopped() {
-        commands.push(Command::Commit(label));
-    } else if response.changed() {
-        commands.push(Command::Apply(label, vec![edit]));
-    }
 }
 
 fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {

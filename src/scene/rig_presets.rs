@@ -1,0 +1,162 @@
+//! Sensors to begin with: LiDARs by their published beam patterns, camera rigs of common vehicles.
+
+use super::rig::Aim;
+use super::{Camera, LidarPattern, SensorRig};
+
+/// A LiDAR model by its name.
+pub struct LidarPreset {
+    /// As its maker calls it.
+    pub name: &'static str,
+    /// Builds the pattern, mounted on the roof of the default vehicle, level.
+    pub build: fn() -> LidarPattern,
+}
+
+/// Patterns from data sheets and from what was measured (`reference/rigs.json`).
+pub const LIDARS: [LidarPreset; 5] = [
+    LidarPreset {
+        name: "HDL-32E (nuScenes)",
+        build: || SensorRig::default().lidars[0].clone(),
+    },
+    LidarPreset {
+        name: "VLP-16",
+        build: || level("VLP-16", even(-15.0, 15.0, 16), 1800, 100.0, 1.84),
+    },
+    LidarPreset {
+        name: "HDL-64E (KITTI)",
+        build: || {
+            // Two blocks: 32 beams half a degree apart below, 32 a third of a degree apart above.
+            let lower = (0..32).map(|i| -24.33 + 0.5 * f64::from(i));
+            let upper = (0..32).map(|i| -8.33 + f64::from(i) / 3.0);
+            let mut lidar = level("HDL-64E", lower.chain(upper).collect(), 2010, 120.0, 1.73);
+            lidar.translation_m[0] = 0.81;
+            lidar
+        },
+    },
+    LidarPreset {
+        name: "64 beams (Waymo-like)",
+        build: || {
+            let mut lidar = level("TOP-64", even(-17.54, 2.5, 64), 2650, 75.0, 2.18);
+            lidar.translation_m[0] = 1.43;
+            lidar
+        },
+    },
+    LidarPreset {
+        name: "128 beams, 45 degrees",
+        build: || level("OS1-128", even(-22.5, 22.5, 128), 1024, 120.0, 1.84),
+    },
+];
+
+fn even(low_deg: f64, high_deg: f64, beams: u32) -> Vec<f64> {
+    let step = (high_deg - low_deg) / f64::from(beams - 1);
+    (0..beams).map(|i| low_deg + step * f64::from(i)).collect()
+}
+
+fn level(
+    name: &str,
+    elevations_deg: Vec<f64>,
+    columns: u32,
+    max_range_m: f64,
+    height_m: f64,
+) -> LidarPattern {
+    LidarPattern {
+        name: name.into(),
+        elevations_deg,
+        columns,
+        first_azimuth_deg: 0.0,
+        sector_deg: 360.0,
+        clockwise: false,
+        spin_hz: 0.0,
+        max_range_m,
+        min_range_m: 1.0,
+        rotation_wxyz: [1.0, 0.0, 0.0, 0.0],
+        translation_m: [0.94, 0.0, height_m],
+    }
+}
+
+/// A rig by its name.
+pub struct RigPreset {
+    /// For a menu.
+    pub name: &'static str,
+    /// Builds the rig.
+    pub build: fn() -> SensorRig,
+}
+
+/// Whole vehicles.
+pub const RIGS: [RigPreset; 4] = [
+    RigPreset {
+        name: "nuScenes: six cameras, HDL-32E",
+        build: SensorRig::default,
+    },
+    RigPreset {
+        name: "Front camera, VLP-16",
+        build: || rig("front", &[("CAM_FRONT", 0.0, 60.0)], 1),
+    },
+    RigPreset {
+        name: "Surround: four 110 degree cameras, 128 beams",
+        build: || {
+            let cameras = [
+                ("CAM_LEFT", 90.0, 110.0),
+                ("CAM_FRONT", 0.0, 110.0),
+                ("CAM_RIGHT", -90.0, 110.0),
+                ("CAM_BACK", 180.0, 110.0),
+            ];
+            rig("surround", &cameras, 4)
+        },
+    },
+    RigPreset {
+        name: "Five cameras, 64 beams (Waymo-like)",
+        build: || {
+            let cameras = [
+                ("CAM_SIDE_LEFT", 90.0, 50.0),
+                ("CAM_FRONT_LEFT", 45.0, 50.0),
+                ("CAM_FRONT", 0.0, 50.0),
+                ("CAM_FRONT_RIGHT", -45.0, 50.0),
+                ("CAM_SIDE_RIGHT", -90.0, 50.0),
+            ];
+            rig("five cameras", &cameras, 3)
+        },
+    },
+];
+
+/// Cameras by name, yaw and field of view in degrees, around the windscreen's height.
+fn rig(name: &str, cameras: &[(&str, f64, f64)], lidar: usize) -> SensorRig {
+    let of = |&(name, yaw_deg, fov_deg): &(&str, f64, f64)| {
+        let mut camera = Camera::new(name, fov_deg);
+        camera.set_aim(Aim {
+            yaw_deg,
+            pitch_deg: 0.0,
+            roll_deg: 0.0,
+        });
+        let (sin, cos) = yaw_deg.to_radians().sin_cos();
+        camera.translation_m = [1.0 + 0.7 * cos, 0.5 * sin, 1.55];
+        camera
+    };
+    SensorRig {
+        name: name.into(),
+        cameras: cameras.iter().map(of).collect(),
+        lidars: vec![(LIDARS[lidar].build)()],
+        ..SensorRig::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_sound_and_beams_go_upward() {
+        for preset in &RIGS {
+            let rig = (preset.build)();
+            assert_eq!(rig.problem(), None, "{}", preset.name);
+            for c in &rig.cameras {
+                let right = c.ego_from_camera().rotation * glam::DVec3::X;
+                assert!(right.z.abs() < 0.05, "{}: {} stands askew", preset.name, c.name);
+            }
+        }
+        for preset in &LIDARS {
+            let lidar = (preset.build)();
+            assert!(lidar.elevations_deg.is_sorted(), "{}", preset.name);
+        }
+        assert_eq!((LIDARS[2].build)().elevations_deg.len(), 64);
+    }
+}
