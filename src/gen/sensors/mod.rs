@@ -6,6 +6,7 @@
 pub mod cloud;
 pub mod color;
 pub mod lidar;
+pub mod march;
 pub mod order;
 pub mod project;
 pub mod raycast;
