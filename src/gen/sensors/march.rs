@@ -243,7 +243,7 @@ impl CameraRays {
 }
 
 /// Takes the voxels out that a box's solids stand for.
-fn remove_voxels(grid: &mut VoxelGrid, ground: &mut Ground, b: &SceneBox, height: GroundHeight) {
+pub(crate) fn remove_voxels(grid: &mut VoxelGrid, ground: &mut Ground, b: &SceneBox, height: GroundHeight) {
     if b.problem().is_some() {
         return;
     }

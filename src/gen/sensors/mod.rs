@@ -3,6 +3,7 @@
 //! The ego frame's grid is taken as it is: in Occ3D labels the road lies in bin 0 (top face at
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
+pub mod appearance;
 pub mod cloud;
 pub mod color;
 pub mod lidar;
