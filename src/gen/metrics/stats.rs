@@ -23,6 +23,14 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
+/// The smallest value that at least the share `q` (0 to 1) of the values do not exceed; NaN for none.
+pub fn quantile(values: &[f64], q: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = (q.clamp(0.0, 1.0) * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.max(1) - 1).copied().unwrap_or(f64::NAN)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -33,5 +41,9 @@ mod tests {
         assert!((mean_ci95(&[1.0, 2.0, 3.0]).1 - 1.96 / 3f64.sqrt()).abs() < 1e-12);
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert!(median(&[]).is_nan());
+        let hundred: Vec<f64> = (1..=100).rev().map(f64::from).collect();
+        assert_eq!((quantile(&hundred, 0.95), quantile(&hundred, 0.0)), (95.0, 1.0));
+        assert_eq!(quantile(&[7.0], 1.0), 7.0);
+        assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -157,6 +157,50 @@ impl Solid {
         inside && !self.is_pore(p)
     }
 
+    /// Outward unit normal of the face nearest to a point on the surface; pores count as the surface
+    /// that they were cut from. Up where there is no nearest face.
+    pub fn normal_at(&self, p: DVec3) -> DVec3 {
+        let in_world = |n: DVec3, heading: DVec2| {
+            DVec3::new(
+                n.x * heading.x - n.y * heading.y,
+                n.x * heading.y + n.y * heading.x,
+                n.z,
+            )
+        };
+        match self.shape {
+            Shape::Hull { half, top, heading } => {
+                let q = self.local(p, heading);
+                let mut best = (half.z - q.z.abs(), DVec3::Z * q.z.signum());
+                for axis in 0..2 {
+                    let slope = (top[axis] - half[axis]) / (2.0 * half.z).max(1e-9);
+                    let middle = (top[axis] + half[axis]) / 2.0;
+                    let mut n = DVec3::new(0.0, 0.0, -slope);
+                    n[axis] = q[axis].signum();
+                    let gap = (middle + slope * q.z - q[axis].abs()) / n.length();
+                    if gap < best.0 {
+                        best = (gap, n);
+                    }
+                }
+                in_world(best.1, heading).normalize_or(DVec3::Z)
+            }
+            Shape::Frustum {
+                bottom,
+                top,
+                half_height,
+            } => {
+                let q = p - self.center;
+                let slope = (top - bottom) / (2.0 * half_height).max(1e-9);
+                let side = (top + bottom) / 2.0 + slope * q.z - q.truncate().length();
+                if half_height - q.z.abs() < side / (1.0 + slope * slope).sqrt() {
+                    return DVec3::Z * q.z.signum();
+                }
+                let out = q.truncate().normalize_or(DVec2::X);
+                out.extend(-slope).normalize_or(DVec3::Z)
+            }
+            Shape::Ellipsoid { radii } => ((p - self.center) / (radii * radii)).normalize_or(DVec3::Z),
+        }
+    }
+
     /// Distance along the ray to the first point of the solid, at most `limit`; rays that start
     /// inside a solid pass out of it unseen. `dir` is a unit vector.
     pub fn enter(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
@@ -326,5 +370,38 @@ mod tests {
             }
         }
         assert!(hits > 2000, "{hits} hits");
+    }
+
+    /// Towards the normal lies the outside, against it the inside.
+    #[test]
+    fn normals_point_outward() {
+        let heading = DVec2::from_angle(-1.1);
+        let base = DVec3::new(-3.0, 1.0, 0.1);
+        let solids = [
+            Solid::tapered(Class::Car, base, DVec3::new(4.0, 2.0, 1.5), DVec2::new(0.5, 0.8), heading),
+            Solid::frustum(Class::TrafficCone, base, 1.5, 0.8, 0.1),
+            Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
+        ];
+        let mut draw = Draw::new(4, "normals");
+        let mut hits = 0;
+        for solid in solids {
+            for _ in 0..500 {
+                let from = base + DVec3::new(draw.range(-8.0, 8.0), draw.range(-8.0, 8.0), draw.range(-2.0, 5.0));
+                let aim = base + DVec3::new(draw.range(-1.0, 1.0), draw.range(-1.0, 1.0), draw.range(0.0, 1.0));
+                let dir = (aim - from).normalize_or(DVec3::X);
+                if solid.contains(from) {
+                    continue;
+                }
+                if let Some(t) = solid.enter(from, dir, 30.0) {
+                    let p = from + dir * t;
+                    let n = solid.normal_at(p);
+                    hits += 1;
+                    assert!((n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6, "{solid:?} {n} {dir}");
+                    assert!(!solid.contains(p + n * 1e-3), "{solid:?} at {p}");
+                    assert!(solid.contains(p - n * 1e-3 + dir * 1e-6) || n.dot(dir) > -0.02);
+                }
+            }
+        }
+        assert!(hits > 500, "{hits}");
     }
 }

@@ -1,0 +1,190 @@
+//! The ground as it is drawn: its classes as smooth fields, so that kerbs run in curves and not in
+//! steps of a voxel, with heights, without holes, and without an end at the border of the grid.
+
+use std::collections::VecDeque;
+
+use glam::{Vec2, Vec3};
+
+use super::noise::{ramp, value2};
+use crate::generation::sensors::march::ground::Ground as Columns;
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
+
+/// Height of a sidewalk, m.
+const KERB_M: f32 = 0.13;
+/// Nothing of the ground is higher, m.
+const HIGHEST_M: f32 = 0.2;
+/// Width of the blur's kernel in columns: its standard deviation is about 1.2.
+const BLURS: usize = 3;
+
+/// Shares of road, sidewalk, other flat ground and terrain, `[x][y]`, each 0..1, adding up to 1.
+pub struct Ground {
+    share: Vec<[f32; 4]>,
+}
+
+/// The ground at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct GroundAt {
+    /// Shares of road, sidewalk, other flat ground and terrain.
+    pub share: [f32; 4],
+    /// Distance inside the road from its edge in m, negative outside; good to about 0.4 m.
+    pub inside_road_m: f32,
+    /// Height, m.
+    pub height_m: f32,
+}
+
+fn slot(class: u8) -> usize {
+    match Class::from_id(class) {
+        Some(Class::DriveableSurface) => 0,
+        Some(Class::Sidewalk) => 1,
+        Some(Class::OtherFlat) => 2,
+        _ => 3,
+    }
+}
+
+impl Ground {
+    /// From the labelled ground; columns without any take the layout's or that of the nearest one.
+    pub fn new(columns: &Columns, layout: &BevLayout) -> Self {
+        let n = GridSpec::COLUMNS;
+        let mut kind: Vec<Option<usize>> = (0..n)
+            .map(|i| {
+                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let bits = layout.cells()[i];
+                let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+                let seen = columns.at(x, y).map(|(class, _)| slot(class));
+                seen.or((bits & road != 0).then_some(0))
+                    .or((bits & BevLayer::Walkway.bit() != 0).then_some(1))
+            })
+            .collect();
+        let mut queue: VecDeque<usize> = (0..n).filter(|i| kind[*i].is_some()).collect();
+        while let Some(i) = queue.pop_front() {
+            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            for (nx, ny) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+                if nx < GridSpec::NX && ny < GridSpec::NY && kind[nx * GridSpec::NY + ny].is_none() {
+                    // Far from any label it is terrain, not road.
+                    kind[nx * GridSpec::NY + ny] = kind[i];
+                    queue.push_back(nx * GridSpec::NY + ny);
+                }
+            }
+        }
+        let mut share: Vec<[f32; 4]> = kind
+            .iter()
+            .map(|k| {
+                let mut one = [0.0; 4];
+                one[k.unwrap_or(3)] = 1.0;
+                one
+            })
+            .collect();
+        for _ in 0..BLURS {
+            for axis in 0..2 {
+                share = blurred(&share, axis);
+            }
+        }
+        Self { share }
+    }
+
+    fn shares(&self, p: Vec2) -> [f32; 4] {
+        let q = ((p + 40.0) * 2.5 - 0.5).clamp(Vec2::ZERO, Vec2::splat(GridSpec::NX as f32 - 1.001));
+        let c = q.floor();
+        let f = q - c;
+        let i = c.x as usize * GridSpec::NY + c.y as usize;
+        let (a, b) = (&self.share[i], &self.share[i + 1]);
+        let (c, d) = (&self.share[i + GridSpec::NY], &self.share[i + GridSpec::NY + 1]);
+        std::array::from_fn(|k| {
+            let low = a[k] + (b[k] - a[k]) * f.y;
+            let high = c[k] + (d[k] - c[k]) * f.y;
+            low + (high - low) * f.x
+        })
+    }
+
+    /// The ground at a point of the ego frame; beyond the grid its border goes on. `anchor` is the same
+    /// point where textures stay.
+    #[inline]
+    pub fn at(&self, p: Vec2, anchor: Vec2) -> GroundAt {
+        let share = self.shares(p);
+        // A blurred edge crosses one half with a slope of 1 / (sigma sqrt(2 pi)).
+        let inside_road_m = (share[0] - 0.5) * 1.23;
+        let up = ramp(0.03, -0.03, inside_road_m);
+        let rest = (1.0 - share[0]).max(1e-3);
+        let soft = share[3] / rest;
+        let bumps = || 0.05 * value2(anchor * 0.35, 11) - 0.01;
+        let height = if up > 0.0 {
+            let verge = if soft > 0.02 { 0.06 + bumps() } else { 0.0 };
+            let slow = ramp(0.0, -0.35, inside_road_m);
+            up * KERB_M * (1.0 - soft) + soft * verge * slow
+        } else {
+            0.0
+        };
+        GroundAt {
+            share,
+            inside_road_m,
+            height_m: height,
+        }
+    }
+
+    /// Where a ray meets the ground, m; the normal follows from [`Self::normal`].
+    pub fn cast(&self, o: Vec3, d: Vec3, limit: f32, anchor: &impl Fn(Vec3) -> Vec3) -> Option<f32> {
+        if d.z >= -1e-5 {
+            return None;
+        }
+        let (t0, t1) = (((HIGHEST_M - o.z) / d.z).max(0.0), (-o.z / d.z).max(0.0));
+        if t0 > limit {
+            return None;
+        }
+        let above = |t: f32| {
+            let p = o + d * t;
+            p.z - self.at(p.truncate(), anchor(p).truncate()).height_m
+        };
+        // Far away nobody sees a kerb's height.
+        let steps = ((t1 - t0) / 0.12).ceil().clamp(2.0, 14.0);
+        let mut before = t0;
+        if t0 < 60.0 {
+            for i in 1..steps as usize {
+                let t = t0 + (t1 - t0) * i as f32 / steps;
+                if above(t) <= 0.0 {
+                    let (mut out, mut within) = (before, t);
+                    for _ in 0..5 {
+                        let middle = (out + within) * 0.5;
+                        if above(middle) <= 0.0 {
+                            within = middle;
+                        } else {
+                            out = middle;
+                        }
+                    }
+                    return (within < limit).then_some(within);
+                }
+                before = t;
+            }
+        }
+        (t1 < limit).then_some(t1)
+    }
+
+    /// Normal of the ground.
+    pub fn normal(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let h = 0.03;
+        let height = |d: Vec3| self.at((p + d).truncate(), anchor(p + d).truncate()).height_m;
+        Vec3::new(
+            height(-Vec3::X * h) - height(Vec3::X * h),
+            height(-Vec3::Y * h) - height(Vec3::Y * h),
+            2.0 * h,
+        )
+        .normalize()
+    }
+}
+
+/// One pass of the kernel 1 2 1 along an axis, edges repeated.
+fn blurred(share: &[[f32; 4]], axis: usize) -> Vec<[f32; 4]> {
+    let n = GridSpec::NX;
+    let at = |x: usize, y: usize| share[x * GridSpec::NY + y];
+    (0..share.len())
+        .map(|i| {
+            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            let (a, b) = if axis == 0 {
+                (at(x.saturating_sub(1), y), at((x + 1).min(n - 1), y))
+            } else {
+                (at(x, y.saturating_sub(1)), at(x, (y + 1).min(n - 1)))
+            };
+            let m = share[i];
+            std::array::from_fn(|k| (a[k] + 2.0 * m[k] + b[k]) / 4.0)
+        })
+        .collect()
+}

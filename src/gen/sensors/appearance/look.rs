@@ -1,0 +1,329 @@
+//! A frame prepared to be looked at: voxels as a field, ground, things, lamps; and the rays through it.
+
+use glam::{DVec3, Quat, Vec2, Vec3};
+
+use super::conditions::Conditions;
+use super::field::{BLOCK_M, BLOCKS, Field};
+use super::ground::Ground;
+use super::sky::Air;
+use super::things::{Material, Thing};
+use crate::generation::sensors::march::paint::Paint;
+use crate::generation::sensors::march::{GroundHeight, ground, remove_voxels};
+use crate::scene::{Frame, SceneBox, SensorRig};
+
+/// Corner of the blocks, m: half a voxel and the ring outside the grid.
+const BLOCKS_FROM_M: f32 = -40.2;
+/// Things are listed this far around, m, for their contact shadows.
+const NEAR_M: f32 = 0.6;
+
+/// A lamp.
+#[derive(Clone, Copy, Debug)]
+pub struct Lamp {
+    /// Place, ego frame, m.
+    pub at: Vec3,
+    /// Axis of its beam, a unit vector.
+    pub axis: Vec3,
+    /// Light at 1 m on the axis.
+    pub color: Vec3,
+    /// Kind of beam.
+    pub beam: Beam,
+    /// No light beyond, m.
+    pub range_m: f32,
+}
+
+/// How a lamp spreads its light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Beam {
+    /// All around below it.
+    Street,
+    /// Low beam: wide, cut off above.
+    Head,
+    /// A weak glow.
+    Glow,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug)]
+pub enum What {
+    /// Ground.
+    Ground,
+    /// Voxels of a class.
+    Voxel(u8),
+    /// A part of a thing; local point and material.
+    Thing(u32, Vec3, Material),
+}
+
+/// Where a ray met something.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// Distance, m.
+    pub t: f32,
+    /// Place, ego frame, m.
+    pub p: Vec3,
+    /// Normal, ego frame; for the ground and voxels filled in by [`Look::normal`].
+    pub normal: Vec3,
+    /// What it is.
+    pub what: What,
+}
+
+/// A frame under certain conditions, ready for any camera.
+pub struct Look {
+    pub(super) field: Field,
+    pub(super) ground: Ground,
+    pub(super) things: Vec<Thing>,
+    lists: Vec<Vec<u16>>, // things near each block
+    pub(super) paint: Paint,
+    pub(super) lamps: Vec<Lamp>,
+    pub(super) air: Air,
+    pub(super) seed: u32,
+    /// Ego frame to where textures stay.
+    turn: Quat,
+    shift: Vec3,
+    /// Nothing is higher, m.
+    highest: f32,
+}
+
+impl Look {
+    /// Prepares a frame: some 50 ms.
+    pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
+        let seed = (conditions.seed ^ conditions.seed >> 32) as u32;
+        let (mut grid, mut columns) = ground::split(&frame.occupancy, GroundHeight::Physical);
+        let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
+        for b in &boxes {
+            remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical);
+        }
+        let field = Field::new(&grid, seed);
+        let ground = Ground::new(&columns, &frame.layout);
+        let mut things: Vec<Thing> = boxes.iter().filter_map(|b| Thing::of(b, seed)).take(60_000).collect();
+        // Textures stay in the world; whole kilometres are taken off so that f32 is fine enough.
+        let pose = frame.world_from_ego;
+        let finite = pose.translation_m.is_finite() && pose.rotation.is_finite();
+        let shift: DVec3 = if finite { pose.translation_m % 4096.0 } else { DVec3::ZERO };
+        let turn = if finite { pose.rotation.as_quat() } else { Quat::IDENTITY };
+        let mut lists = vec![Vec::new(); BLOCKS * BLOCKS];
+        for (i, thing) in things.iter_mut().enumerate() {
+            // Nobody stands in the pavement.
+            let p = thing.foot.truncate();
+            let height = ground.at(p, p).height_m;
+            if thing.foot.z > -0.3 {
+                thing.foot.z = thing.foot.z.max(height);
+            }
+            let reach = thing.reach().truncate() + NEAR_M;
+            let block = |v: f32| ((v - BLOCKS_FROM_M) / BLOCK_M).floor().clamp(-1.0, BLOCKS as f32);
+            let (lo, hi) = (p - reach, p + reach);
+            for x in block(lo.x).max(0.0) as usize..(block(hi.x) + 1.0).min(BLOCKS as f32) as usize {
+                for y in block(lo.y).max(0.0) as usize..(block(hi.y) + 1.0).min(BLOCKS as f32) as usize {
+                    lists[x * BLOCKS + y].push(i as u16);
+                }
+            }
+        }
+        let tallest = things.iter().map(|t| t.foot.z + t.size.z).fold(0.3, f32::max);
+        let air = Air::new(conditions);
+        let lamps = lamps(&air, &field, &things, rig);
+        Self {
+            highest: field.highest_m().max(tallest) + 0.1,
+            field,
+            ground,
+            things,
+            lists,
+            paint: Paint::new(&frame.layout),
+            lamps,
+            air,
+            seed,
+            turn,
+            shift: shift.as_vec3(),
+        }
+    }
+
+    /// A point where textures stay.
+    #[inline]
+    pub(super) fn anchor(&self, p: Vec3) -> Vec3 {
+        self.turn * p + self.shift
+    }
+
+    /// A direction there.
+    #[inline]
+    pub(super) fn anchor_dir(&self, d: Vec3) -> Vec3 {
+        self.turn * d
+    }
+
+    /// Towards the sun in the ego frame.
+    pub(super) fn to_sun(&self) -> Vec3 {
+        self.turn.conjugate() * self.air.to_sun
+    }
+
+    /// Things near a point of the ground.
+    pub(super) fn things_near(&self, p: Vec2) -> &[u16] {
+        let c = ((p - BLOCKS_FROM_M) / BLOCK_M).floor();
+        if c.cmpge(Vec2::ZERO).all() && c.cmplt(Vec2::splat(BLOCKS as f32)).all() {
+            &self.lists[c.x as usize * BLOCKS + c.y as usize]
+        } else {
+            &[]
+        }
+    }
+
+    /// The first surface along a ray; `dir` is a unit vector. The normal of voxels and ground is left for
+    /// [`Self::normal`].
+    pub(super) fn trace(&self, o: Vec3, d: Vec3, limit: f32, coarse: bool) -> Option<Hit> {
+        if !(o.is_finite() && d.is_finite()) {
+            return None;
+        }
+        let anchor = |p: Vec3| self.anchor(p);
+        let ground = self.ground.cast(o, d, limit, &anchor);
+        let mut best = ground.unwrap_or(limit);
+        let mut hit = ground.map(|t| (Vec3::Z, What::Ground, t));
+        self.walk(o, d, best, |index, t_in, t_out| {
+            for &i in &self.lists[index] {
+                let thing = &self.things[usize::from(i)];
+                if let Some(h) = thing.cast(o, d, best) {
+                    best = h.t;
+                    let what = What::Thing(u32::from(i), h.local, h.material);
+                    hit = Some((thing.turn_back(h.normal), what, h.t));
+                }
+            }
+            if self.field.block(index) && t_in < best {
+                let step = if coarse { 0.17 } else { (0.1 + t_in * 0.002).min(0.15) };
+                // Leaves beyond 45 m are finer than a pixel.
+                let leaves = !coarse || t_in < 12.0;
+                if let Some(h) = self.field.cast_block(index, (o, d), (t_in, t_out.min(best)), step, leaves, &anchor)
+                    && h.t < best
+                {
+                    best = h.t;
+                    hit = Some((Vec3::ZERO, What::Voxel(h.label), h.t));
+                }
+            }
+            best <= t_out
+        });
+        hit.map(|(normal, what, t)| Hit {
+            t,
+            p: o + d * t,
+            normal,
+            what,
+        })
+    }
+
+    /// Visits the blocks along a ray until `visit` says that it has its hit.
+    #[inline]
+    fn walk(&self, o: Vec3, d: Vec3, limit: f32, mut visit: impl FnMut(usize, f32, f32) -> bool) {
+        let size = BLOCKS as f32 * BLOCK_M;
+        let (mut t0, mut t1) = (0.0f32, limit);
+        let bounds = [
+            (BLOCKS_FROM_M, BLOCKS_FROM_M + size),
+            (BLOCKS_FROM_M, BLOCKS_FROM_M + size),
+            (-0.4, self.highest),
+        ];
+        for (axis, (lo, hi)) in bounds.into_iter().enumerate() {
+            if d[axis].abs() < 1e-9 {
+                if !(lo..=hi).contains(&o[axis]) {
+                    return;
+                }
+                continue;
+            }
+            let (a, b) = ((lo - o[axis]) / d[axis], (hi - o[axis]) / d[axis]);
+            (t0, t1) = (t0.max(a.min(b)), t1.min(a.max(b)));
+        }
+        // Written so that NaN ends here too.
+        if !(t0 < t1) {
+            return;
+        }
+        let q = (o.truncate() - BLOCKS_FROM_M) / BLOCK_M;
+        let qd = d.truncate() / BLOCK_M;
+        let start = |a: usize| ((q[a] + qd[a] * (t0 + 1e-4)).max(0.0) as usize).min(BLOCKS - 1);
+        let mut cell = [start(0), start(1)];
+        let mut t = t0;
+        for _ in 0..2 * BLOCKS + 2 {
+            let next = |a: usize| {
+                if qd[a].abs() < 1e-9 {
+                    return f32::INFINITY;
+                }
+                ((cell[a] + usize::from(qd[a] > 0.0)) as f32 - q[a]) / qd[a]
+            };
+            let (tx, ty) = (next(0), next(1));
+            let t_out = tx.min(ty).min(t1);
+            if visit(cell[0] * BLOCKS + cell[1], t, t_out) || t_out >= t1 {
+                return;
+            }
+            let axis = usize::from(ty < tx);
+            let moved = cell[axis].wrapping_add_signed(if qd[axis] > 0.0 { 1 } else { -1 });
+            if moved >= BLOCKS {
+                return;
+            }
+            cell[axis] = moved;
+            t = t_out;
+        }
+    }
+
+    /// True if something stands between a point and the light `d`.
+    pub(super) fn occluded(&self, o: Vec3, d: Vec3, limit: f32) -> bool {
+        let anchor = |p: Vec3| self.anchor(p);
+        let mut dark = false;
+        self.walk(o, d, limit, |index, t_in, t_out| {
+            dark = self.lists[index]
+                .iter()
+                .any(|i| self.things[usize::from(*i)].cast(o, d, limit).is_some())
+                || self.field.block(index)
+                    && self
+                        .field
+                        .cast_block(index, (o, d), (t_in.max(0.05), t_out), 0.16, true, &anchor)
+                        .is_some();
+            dark
+        });
+        dark
+    }
+
+    /// The normal at a hit.
+    pub(super) fn normal(&self, hit: &Hit) -> Vec3 {
+        let anchor = |p: Vec3| self.anchor(p);
+        match hit.what {
+            What::Ground if hit.t < 60.0 => self.ground.normal(hit.p, &anchor),
+            What::Voxel(label) => self.field.normal(hit.p, label, &anchor),
+            _ => hit.normal,
+        }
+    }
+}
+
+fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lamp> {
+    let mut out = Vec::new();
+    if air.lamps <= 0.0 {
+        return out;
+    }
+    let warm = Vec3::new(1.0, 0.70, 0.38);
+    for s in field.structures.iter().filter(|s| s.thin && s.height_m > 3.9) {
+        out.push(Lamp {
+            at: s.top.extend(s.height_m - 0.25),
+            axis: -Vec3::Z,
+            color: warm * 9.0 * air.lamps,
+            beam: Beam::Street,
+            range_m: 26.0,
+        });
+    }
+    let mut beams = |foot: Vec3, turn: &dyn Fn(Vec3) -> Vec3, size: Vec3, strength: f32| {
+        for side in [1.0, -1.0] {
+            let place = |x: f32, z: f32| foot + turn(Vec3::new(x * size.x, side * 0.36 * size.y, z));
+            out.push(Lamp {
+                at: place(0.51, 0.62),
+                axis: turn(Vec3::new(1.0, 0.0, -0.035).normalize()),
+                color: Vec3::new(1.0, 0.93, 0.80) * strength,
+                beam: Beam::Head,
+                range_m: 60.0,
+            });
+            out.push(Lamp {
+                at: place(-0.52, 0.75),
+                axis: turn(-Vec3::X),
+                color: Vec3::new(1.0, 0.06, 0.03) * 0.35,
+                beam: Beam::Glow,
+                range_m: 6.0,
+            });
+        }
+    };
+    for t in things.iter().filter(|t| t.lamps) {
+        beams(t.foot, &|p| t.turn_back(p), t.size, 26.0 * air.lamps);
+    }
+    let size = Vec3::from(rig.ego_size_m.map(|v| v as f32));
+    let mut foot = Vec3::from(rig.ego_center_m.map(|v| v as f32));
+    foot.z = 0.0;
+    beams(foot, &|p| p, size, 34.0 * air.lamps);
+    out.truncate(96);
+    out.retain(|l| l.at.is_finite());
+    out
+}

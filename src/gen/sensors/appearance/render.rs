@@ -1,0 +1,214 @@
+//! From rays to a picture: samples, more of them at edges, rain and flakes in the air, glare of lamps,
+//! exposure and tone.
+
+use glam::{IVec3, Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::look::Look;
+use super::noise::{hash3, ramp, unit, unit3};
+use super::shade::Sample;
+use super::{CameraImage, Quality};
+use crate::generation::sensors::march::CameraRays;
+use crate::scene::Camera;
+
+/// A pixel gets more samples if its tone differs from a neighbour's by more than this.
+const CONTRAST: f32 = 0.045;
+
+impl Look {
+    /// The picture of one camera at `width` x `height` px.
+    pub fn render(&self, camera: &Camera, width: u32, height: u32, quality: Quality) -> CameraImage {
+        let (w, h) = (width as usize, height as usize);
+        let rays = CameraRays::new(camera, width, height);
+        let focal = camera.resized(width.max(1), height.max(1)).focal_px;
+        let pixel = (1.0 / focal[0].max(1e-3)) as f32;
+        let at = |u: f64, v: f64| {
+            let d = rays.direction(u, v).as_vec3().normalize_or_zero();
+            let o = rays.origin.as_vec3();
+            if d == Vec3::ZERO || !d.is_finite() || !o.is_finite() {
+                return Sample::default();
+            }
+            let mut sample = self.light_along(o, d, pixel);
+            sample.color = self.falling(o, d, sample.t, pixel, sample.color);
+            if !sample.color.is_finite() {
+                sample.color = Vec3::ZERO;
+            }
+            sample
+        };
+        let mut samples = vec![Sample::default(); w * h];
+        if !samples.is_empty() {
+            samples.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+                for (x, out) in row.iter_mut().enumerate() {
+                    *out = at(x as f64 + 0.5, y as f64 + 0.5);
+                }
+            });
+        }
+        let mut light: Vec<Vec3> = samples.iter().map(|s| s.color).collect();
+        if quality == Quality::Full && w > 1 && h > 1 {
+            let rough = |x: usize, y: usize| {
+                let s = &samples[y * w + x];
+                let tone = |c: Vec3| (c.element_sum() * self.air.exposure).sqrt();
+                let near = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+                near.into_iter().any(|(x, y)| {
+                    x < w && y < h && {
+                        let o = &samples[y * w + x];
+                        (tone(o.color) - tone(s.color)).abs() > CONTRAST || o.key != s.key && (tone(o.color) - tone(s.color)).abs() > 0.015
+                    }
+                })
+            };
+            light.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+                for (x, out) in row.iter_mut().enumerate() {
+                    if rough(x, y) {
+                        // Four places turned against the pixel's sides. Clamped, so that a single
+                        // spark does not fill a pixel with steps.
+                        let places = [(0.375, 0.125), (0.875, 0.375), (0.625, 0.875), (0.125, 0.625)];
+                        let limit = 5.0 / self.air.exposure;
+                        let sum: Vec3 = places
+                            .iter()
+                            .map(|(u, v)| at(x as f64 + u, y as f64 + v).color.min(Vec3::splat(limit)))
+                            .sum();
+                        *out = sum / 4.0;
+                    }
+                }
+            });
+        }
+        glare(&mut light, w, h, self.air.lamps, self.air.exposure);
+        let rgba = light
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(i, c)| {
+                let (x, y) = (i % w, i / w);
+                self.develop(*c, Vec2::new(x as f32 / w as f32, y as f32 / h as f32) - 0.5, x, y)
+            })
+            .collect();
+        CameraImage {
+            camera: camera.name.clone(),
+            width: w,
+            height: h,
+            rgba,
+        }
+    }
+
+    /// Rain, snow and dust between the camera and what it sees: drops and flakes sit on cylinders around
+    /// the vehicle, so that all cameras see the same ones.
+    fn falling(&self, o: Vec3, d: Vec3, t: f32, pixel: f32, mut color: Vec3) -> Vec3 {
+        let air = &self.air;
+        let (rain, snow) = (air.wet >= 1.0, air.snow > 0.0);
+        if !rain && !snow {
+            return color;
+        }
+        let flat = d.truncate().length_squared();
+        let radii: &[f32] = if rain { &[3.2, 5.0, 7.5, 11.0] } else { &[2.6, 3.7, 5.0, 6.8, 9.0, 12.0, 16.0] };
+        for (layer, radius) in radii.iter().enumerate() {
+            let b = o.truncate().dot(d.truncate());
+            let c = o.truncate().length_squared() - radius * radius;
+            let disc = b * b - flat * c;
+            if flat < 1e-6 || disc <= 0.0 || c > 0.0 {
+                continue;
+            }
+            let at = (-b + disc.sqrt()) / flat;
+            if at > t {
+                break;
+            }
+            let p = self.anchor_dir(o + d * at);
+            let s = p.y.atan2(p.x) * radius;
+            let px = at * pixel;
+            if rain {
+                let cell = Vec2::new(0.11, 0.62);
+                let q = Vec2::new(s + p.z * 0.06, p.z) / cell;
+                let c = q.floor().as_ivec2();
+                let h = hash3(IVec3::new(c.x, c.y, layer as i32), self.seed ^ 0x7a1);
+                if h % 100 < 34 {
+                    let x = ((q.x - c.x as f32) - 0.2 - 0.6 * unit(h)).abs() * cell.x;
+                    let y = (q.y - c.y as f32 - 0.5).abs();
+                    let half = 0.0022f32.max(px * 0.55);
+                    let line = ramp(half, half * 0.4, x) * ramp(0.5, 0.25, y);
+                    let share = 0.22 * (0.0022 / half).sqrt() * line;
+                    color = color.lerp(air.ambient * 0.75 + air.haze * 0.4, share);
+                }
+            } else {
+                let cell = 0.24 + 0.05 * layer as f32;
+                let q = Vec2::new(s, p.z) / cell;
+                let c = q.floor().as_ivec2();
+                let h = hash3(IVec3::new(c.x, c.y, layer as i32), self.seed ^ 0x5e0);
+                if h % 100 < 46 {
+                    let middle = Vec2::new(unit3(IVec3::new(c.x, c.y, 1), h), unit3(IVec3::new(c.x, c.y, 2), h)) * 0.7 + 0.15;
+                    let off = (q - c.as_vec2() - middle) * cell * Vec2::new(1.0, 0.8);
+                    let radius = 0.004 + 0.006 * unit(h);
+                    let r = radius.max(px * 0.6);
+                    let share = 0.75 * (radius / r).powi(2) * ramp(r * 1.15, r * 0.3, off.length());
+                    color = color.lerp(air.ambient * 0.95 + air.haze * 0.1, share);
+                }
+            }
+        }
+        color
+    }
+
+    /// Exposure, tone curve, fine sensor noise (the only thing that belongs to the pixel), sRGB.
+    fn develop(&self, c: Vec3, at: Vec2, x: usize, y: usize) -> [u8; 4] {
+        let vignette = 1.0 - 0.34 * at.length_squared();
+        let c = film(c.max(Vec3::ZERO) * (self.air.exposure * vignette));
+        let noise = unit3(IVec3::new(x as i32, y as i32, 5), 99) - unit3(IVec3::new(x as i32, y as i32, 6), 99);
+        let strength = 0.008 + 0.016 * ramp(0.9, 1.0, self.air.lamps);
+        let byte = |v: f32| {
+            let v = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+            ((v + noise * strength).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+        };
+        [byte(c.x), byte(c.y), byte(c.z), 255]
+    }
+}
+
+/// The filmic curve of K. Narkowicz (2015), an approximation of ACES, with colours drawn a little
+/// towards grey as they burn out.
+fn film(c: Vec3) -> Vec3 {
+    let c = c.lerp(Vec3::splat(c.element_sum() / 3.0), ramp(0.8, 6.0, c.max_element()) * 0.5);
+    let curve = |x: f32| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
+    c.map(|v| curve(v * 0.92).clamp(0.0, 1.0))
+}
+
+/// Adds light scattered in the lens: what is brighter than white, blurred at a quarter of the size.
+fn glare(light: &mut [Vec3], w: usize, h: usize, lamps: f32, exposure: f32) {
+    let (sw, sh) = (w.div_ceil(4), h.div_ceil(4));
+    if sw < 2 || sh < 2 {
+        return;
+    }
+    let mut small = vec![Vec3::ZERO; sw * sh];
+    for (i, c) in light.iter().enumerate() {
+        let bright = (*c * exposure - 1.1).max(Vec3::ZERO).min(Vec3::splat(14.0));
+        small[i / w / 4 * sw + i % w / 4] += bright / 16.0;
+    }
+    let blur = |from: &[Vec3], reach: isize| {
+        let pass = |from: &[Vec3], along_x: bool| {
+            let mut out = vec![Vec3::ZERO; from.len()];
+            out.par_chunks_mut(sw).enumerate().for_each(|(y, row)| {
+                for (x, out) in row.iter_mut().enumerate() {
+                    let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+                    for k in -reach..=reach {
+                        let weight = (-(k * k) as f32 / (0.18 * (reach * reach) as f32)).exp();
+                        total += weight;
+                        let (px, py) = if along_x { (x.wrapping_add_signed(k), y) } else { (x, y.wrapping_add_signed(k)) };
+                        if px < sw && py < sh {
+                            sum += from[py * sw + px] * weight;
+                        }
+                    }
+                    *out = sum / total;
+                }
+            });
+            out
+        };
+        pass(&pass(from, true), false)
+    };
+    let reach = (sw / 40).max(1) as isize;
+    let (near, far) = (blur(&small, reach), blur(&small, reach * 4));
+    let strength = (0.10 + 0.30 * lamps) / exposure;
+    for (i, c) in light.iter_mut().enumerate() {
+        // Between the middles of the small pixels.
+        let (x, y) = ((i % w) as f32 / 4.0 - 0.375, (i / w) as f32 / 4.0 - 0.375);
+        let (x0, y0) = (x.floor().max(0.0) as usize, y.floor().max(0.0) as usize);
+        let (fx, fy) = ((x - x0 as f32).clamp(0.0, 1.0), (y - y0 as f32).clamp(0.0, 1.0));
+        let (x1, y1) = ((x0 + 1).min(sw - 1), (y0 + 1).min(sh - 1));
+        let at = |x: usize, y: usize| near[y * sw + x] * 0.55 + far[y * sw + x] * 0.9;
+        let low = at(x0, y0).lerp(at(x1, y0), fx);
+        let high = at(x0, y1).lerp(at(x1, y1), fx);
+        *c += low.lerp(high, fy) * strength;
+    }
+}

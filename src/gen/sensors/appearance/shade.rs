@@ -1,0 +1,233 @@
+//! Light on surfaces: sun with shadows, sky with ambient occlusion, lamps, mirrored surroundings, air.
+
+use glam::Vec3;
+
+use super::look::{Beam, Hit, Look, What};
+use super::material::Surface;
+use super::noise::ramp;
+
+/// Farthest shadow caster and mirrored thing, m.
+const SHADOW_M: f32 = 45.0;
+const MIRROR_M: f32 = 60.0;
+/// Nothing of the grid lies beyond, m.
+const FAR_M: f32 = 400.0;
+
+/// A sample of a picture: its light and what was seen, to find edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Linear light.
+    pub color: Vec3,
+    /// Distance, m; infinite for the sky.
+    pub t: f32,
+    /// Something that differs between surfaces.
+    pub key: u32,
+}
+
+impl Look {
+    /// Light along a ray; `pixel` is the angle between neighbouring pixels.
+    pub(super) fn light_along(&self, o: Vec3, d: Vec3, pixel: f32) -> Sample {
+        let Some(hit) = self.trace(o, d, FAR_M, false) else {
+            return Sample {
+                color: self.beyond(o, d, f32::INFINITY).unwrap_or_else(|| self.air.sky(self.anchor_dir(d))),
+                t: f32::INFINITY,
+                key: 0,
+            };
+        };
+        if hit.t > 55.0
+            && let Some(color) = self.beyond(o, d, hit.t)
+        {
+            return Sample {
+                color,
+                t: hit.t,
+                key: 1,
+            };
+        }
+        let slant = match hit.what {
+            What::Ground => (-d.z).max(0.03),
+            _ => 0.6,
+        };
+        let footprint = hit.t * pixel / slant.sqrt();
+        let s = self.surface(&hit, d, footprint);
+        let color = self.lit(&hit, &s, d, true);
+        let key = match hit.what {
+            What::Ground => 2,
+            What::Voxel(l) => 8 + u32::from(l),
+            What::Thing(i, ..) => 64 + i,
+        };
+        Sample {
+            color: self.air.through(color, hit.t, self.anchor_dir(d)),
+            t: hit.t,
+            key: key << 8 | ((s.normal * 3.0 + 4.0).as_uvec3().dot(glam::UVec3::new(1, 8, 32)) & 0xff),
+        }
+    }
+
+    /// What stands outside the grid in front of `limit`, hazed.
+    fn beyond(&self, o: Vec3, d: Vec3, limit: f32) -> Option<Vec3> {
+        let flat = d.truncate().length_squared();
+        for radius in [72.0, 150.0, 320.0f32] {
+            // The circle around the grid's middle, from inside.
+            let b = o.truncate().dot(d.truncate());
+            let c = o.truncate().length_squared() - radius * radius;
+            let disc = b * b - flat * c;
+            if flat < 1e-8 || disc <= 0.0 || c > 0.0 {
+                continue;
+            }
+            let t = (-b + disc.sqrt()) / flat;
+            let p = o + d * t;
+            if t > limit || p.z < 0.0 || p.z > 60.0 {
+                continue;
+            }
+            // Streets that leave the grid stay open in front.
+            let share = self.ground.at(p.truncate(), p.truncate()).share[0];
+            let open = if radius < 100.0 { ramp(0.15, 0.5, share) } else { 0.0 };
+            let around = self.anchor_dir(p);
+            if let Some(color) = self.air.skyline(around, radius, open) {
+                return Some(self.air.through(color, t, self.anchor_dir(d)));
+            }
+        }
+        None
+    }
+
+    /// Light that a surface sends back along a ray. Mirrored surroundings are followed once.
+    fn lit(&self, hit: &Hit, s: &Surface, d: Vec3, follow: bool) -> Vec3 {
+        let (air, n) = (&self.air, s.normal);
+        let view = -d;
+        let lift = hit.p + self.geometric(hit, n) * (0.012 + hit.t * 2e-4);
+        let to_sun = self.to_sun();
+        let mut out = s.emit;
+        let facing = n.dot(to_sun);
+        let strength = air.sun.max_element();
+        let lit_through = s.through * (-facing).max(0.0);
+        if strength > 0.05 && (facing > 0.0 || lit_through > 0.02) {
+            let shadow = if follow { self.occluded(lift, to_sun, SHADOW_M) } else { false };
+            if !shadow {
+                out += s.albedo * air.sun * (facing.max(0.0) * (1.0 - 0.3 * s.through) + lit_through * 0.6);
+                if s.gloss > 0.0 {
+                    let half = (to_sun + view).normalize_or(n);
+                    let power = 2f32.powf(2.0 + 9.0 * s.gloss);
+                    let spot = n.dot(half).max(0.0).powf(power) * (power + 2.0) * 0.125;
+                    out += air.sun * (s.mirror * spot.min(60.0) * facing.max(0.0));
+                }
+            }
+        } else if strength > 0.0 {
+            out += s.albedo * air.sun * facing.max(0.0);
+        }
+        let open = self.openness(hit, n);
+        let sky = 0.5 + 0.5 * n.z;
+        let below = air.bounce.lerp(air.ambient * 0.75, air.snow * 0.6);
+        out += s.albedo * (air.ambient * sky + below * (1.0 - sky) + air.horizon * 0.08) * open;
+        if !self.lamps.is_empty() {
+            out += self.lamp_light(hit.p, n, view, s);
+        }
+        if s.mirror > 0.008 {
+            let grazing = (1.0 - n.dot(view).clamp(0.0, 1.0)).powi(5);
+            let share = s.mirror + (1.0 - s.mirror) * grazing * s.gloss * s.gloss * 0.85;
+            if share > 0.012 {
+                let r = d - n * (2.0 * d.dot(n));
+                let r = if r.dot(n) < 0.0 { r - n * (2.0 * r.dot(n)) } else { r };
+                let mut seen = if follow && s.gloss > 0.55 {
+                    self.mirrored(lift, r)
+                } else {
+                    air.horizon.lerp(air.zenith, r.z.max(0.0)) * open
+                };
+                // A rough mirror shows a mean of what is around.
+                let mean = (air.ambient * 0.6 + air.horizon * 0.2) * open;
+                seen = mean.lerp(seen, ramp(0.2, 0.8, s.gloss));
+                out = out * (1.0 - share) + seen * share;
+            }
+        }
+        out
+    }
+
+    fn geometric(&self, hit: &Hit, n: Vec3) -> Vec3 {
+        match hit.what {
+            What::Thing(..) => hit.normal,
+            What::Ground => Vec3::Z,
+            What::Voxel(_) => n,
+        }
+    }
+
+    fn mirrored(&self, o: Vec3, r: Vec3) -> Vec3 {
+        let there = self.anchor_dir(r);
+        let sky = |limit: f32| self.beyond(o, r, limit).unwrap_or_else(|| self.air.sky(there));
+        match self.trace(o, r, MIRROR_M, true) {
+            Some(hit) if hit.t > 0.02 => {
+                let s = self.surface(&hit, r, 0.05 + hit.t * 0.004);
+                self.air.through(self.lit(&hit, &s, r, false), hit.t, there)
+            }
+            _ => sky(f32::INFINITY),
+        }
+    }
+
+    /// Share of the sky's light that reaches a point, from the field around and the things near.
+    fn openness(&self, hit: &Hit, n: Vec3) -> f32 {
+        let p = hit.p;
+        let f = |d: Vec3| self.field.value(p + d);
+        let is_plant = matches!(hit.what, What::Voxel(16));
+        let near = f(n * 0.45 + Vec3::Z * 0.1);
+        let mid = f(n * 1.0 + Vec3::Z * 0.35);
+        let mut closed = 0.34 * near + 0.26 * mid;
+        closed += 0.16 * f(n * 1.6 + Vec3::Z * 1.2) + 0.14 * f(Vec3::Z * 2.4 + n * 0.8);
+        let side = Vec3::new(-n.y, n.x, 0.0).normalize_or(Vec3::X) * 1.3;
+        closed += 0.10 * (f(n * 0.7 + side) + f(n * 0.7 - side));
+        if is_plant {
+            // Deep inside a crown it is dark.
+            closed = closed * 0.9 + 0.10 * (f(Vec3::Z * 0.9) + f(Vec3::Z * 1.8));
+        }
+        let mut open = (1.0 - closed).clamp(0.12, 1.0);
+        if p.z < 2.5 {
+            for &i in self.things_near(p.truncate()) {
+                let thing = &self.things[usize::from(i)];
+                let q = thing.to_local(p);
+                let out = (q.truncate().abs() - thing.size.truncate() / 2.0).max(glam::Vec2::ZERO);
+                let over = (q.z / thing.size.z).clamp(0.0, 1.0);
+                match hit.what {
+                    What::Ground => {
+                        let small = (thing.size.x.min(thing.size.y) / 1.6).min(1.0);
+                        open *= 1.0 - 0.80 * small * ramp(0.55 * thing.size.z.min(1.6), 0.0, out.length());
+                    }
+                    What::Thing(k, ..) if k == u32::from(i) => open *= 0.62 + 0.38 * ramp(0.0, 0.35, over),
+                    _ => {}
+                }
+            }
+        }
+        open
+    }
+
+    fn lamp_light(&self, p: Vec3, n: Vec3, view: Vec3, s: &Surface) -> Vec3 {
+        let mut out = Vec3::ZERO;
+        for lamp in &self.lamps {
+            let to = lamp.at - p;
+            let d2 = to.length_squared();
+            if d2 > lamp.range_m * lamp.range_m {
+                continue;
+            }
+            let l = to / d2.sqrt().max(1e-3);
+            let facing = n.dot(l);
+            let cos = -l.dot(lamp.axis);
+            let beam = match lamp.beam {
+                Beam::Street => ramp(-0.15, 0.6, cos),
+                Beam::Head => {
+                    // Wide on the sides, cut off above the horizon.
+                    let up = -l.z + lamp.axis.z * -1.0;
+                    ramp(0.80, 0.985, cos) * (0.12 + 0.88 * ramp(0.035, -0.02, up)) + 0.04 * ramp(0.2, 0.9, cos)
+                }
+                Beam::Glow => ramp(-0.1, 0.8, cos),
+            };
+            if beam <= 0.0 {
+                continue;
+            }
+            let fade = ramp(1.0, 0.55, d2.sqrt() / lamp.range_m);
+            let light = lamp.color * (beam * fade / (d2 + 0.6));
+            let through = s.through * (-facing).max(0.0) * 0.5;
+            out += s.albedo * light * (facing.max(0.0) + through);
+            if s.gloss > 0.2 && facing > 0.0 {
+                let half = (l + view).normalize_or(n);
+                let power = 2f32.powf(2.0 + 7.0 * s.gloss);
+                let spot = n.dot(half).max(0.0).powf(power) * (power + 2.0) * 0.125;
+                out += light * (s.mirror + 0.015) * spot.min(30.0) * facing;
+            }
+        }
+        out
+    }
+}

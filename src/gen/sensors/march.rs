@@ -1,0 +1,291 @@
+//! Crisp camera maps: one exact ray per pixel through the voxels, instead of splats. Where a box
+//! stands its analytic solids may take the place of its voxels, and lines on the road are drawn from
+//! their polylines, so edges are finer than a voxel.
+
+pub mod ground;
+pub mod paint;
+pub mod solids;
+
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::raycast::ColumnMasks;
+use crate::scene::raster::box_cells;
+use crate::scene::sensor_data::RenderId;
+use crate::scene::{BevLayout, BoxId, Camera, CameraMaps, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
+use ground::Ground;
+pub use ground::GroundHeight;
+use paint::Paint;
+use solids::SolidIndex;
+
+/// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.
+const FOOTPRINT_MARGIN_M: f64 = 0.3;
+/// Voxels this far above a box's top or below its bottom still belong to it, m (the label smear is 0.8).
+const HEIGHT_MARGIN_M: f64 = 0.5;
+const SMEAR_M: f64 = 0.8;
+
+/// What is marched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarchOptions {
+    /// Where the ground lies.
+    pub ground: GroundHeight,
+    /// Draw analytic solids instead of the voxels of boxes.
+    pub boxes: bool,
+    /// Draw lines and crossings on the road as render ids 17 to 19.
+    pub lines: bool,
+    /// Varies the solids of a box together with its id.
+    pub seed: u64,
+}
+
+impl Default for MarchOptions {
+    /// Boxes and lines as exact as they are known, ground as labelled, as the splats show it.
+    fn default() -> Self {
+        Self {
+            ground: GroundHeight::AsLabelled,
+            boxes: true,
+            lines: true,
+            seed: 0,
+        }
+    }
+}
+
+/// A frame prepared for marching: some milliseconds to build, then shared by all cameras.
+pub struct MarchScene {
+    grid: VoxelGrid,
+    masks: ColumnMasks,
+    ground: Ground,
+    solids: SolidIndex,
+    paint: Paint,
+}
+
+/// What a ray met first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarchHit {
+    /// Distance in units of the direction's length (m for a unit vector); 0 inside a voxel.
+    pub t: f64,
+    /// Render id: a class, or 17 to 19 for paint.
+    pub id: RenderId,
+    /// Outward unit normal of the face.
+    pub normal: DVec3,
+    /// The box whose solid was hit.
+    pub box_id: Option<BoxId>,
+}
+
+/// Everything known per pixel of one camera, row-major, `height * width` values each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarchMaps {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The first surface through the middle of each pixel, `t` along the optical axis in m.
+    pub hits: Vec<Option<MarchHit>>,
+}
+
+impl MarchScene {
+    /// Prepares voxels, layout and boxes.
+    pub fn new(
+        occupancy: &VoxelGrid,
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        options: &MarchOptions,
+    ) -> Self {
+        let (mut grid, mut ground) = ground::split(occupancy, options.ground);
+        let drawn: Vec<&SceneBox> = boxes.values().filter(|_| options.boxes).collect();
+        for b in &drawn {
+            remove_voxels(&mut grid, &mut ground, b, options.ground);
+        }
+        ground.fill_wanted();
+        let paint = if options.lines {
+            Paint::new(layout)
+        } else {
+            Paint::default()
+        };
+        Self {
+            masks: ColumnMasks::from_grid(&grid),
+            grid,
+            ground,
+            solids: SolidIndex::of_boxes(drawn.into_iter(), options.seed),
+            paint,
+        }
+    }
+
+    /// The first surface along a ray of the ego frame. `direction` need not have unit length; `None`
+    /// for NaN and infinite input and for a zero direction.
+    pub fn cast(&self, origin_in_ego: DVec3, direction: DVec3) -> Option<MarchHit> {
+        let speed = direction.length();
+        if !(origin_in_ego.is_finite() && speed.is_finite() && speed > 1e-12) {
+            return None;
+        }
+        let (origin, unit) = (GridSpec::to_voxel_units(origin_in_ego), direction / speed);
+        let ground = self.ground.cast(origin, unit, f64::INFINITY);
+        let mut best = ground.as_ref().map_or(f64::INFINITY, |h| h.t);
+        let mut hit = ground.map(|h| {
+            let p = GridSpec::from_voxel_units(origin + unit * h.t).truncate();
+            (self.road_id(h.class, h.normal, p), h.normal, None)
+        });
+        // A voxel at the very distance of the ground lies in front of nothing: the ground stays.
+        if let Some((t, voxel)) = self.masks.cast_in_voxels(origin, unit, best)
+            && (t < best || hit.is_none())
+        {
+            best = t;
+            let normal = face_normal(origin, unit, t, voxel);
+            let p = GridSpec::from_voxel_units(origin + unit * t).truncate();
+            hit = Some((self.road_id(self.label(voxel), normal, p), normal, None));
+        }
+        let mut best_m = best * GridSpec::VOXEL_M;
+        if let Some(s) = self.solids.cast(origin_in_ego, unit, best_m) {
+            best_m = s.t_m;
+            let id = s.solid.class.id();
+            hit = Some((id, s.solid.normal_at(origin_in_ego + unit * s.t_m), s.box_id));
+        }
+        hit.map(|(id, normal, box_id)| MarchHit {
+            t: best_m / speed,
+            id,
+            normal,
+            box_id,
+        })
+    }
+
+    fn label(&self, [x, y, z]: [usize; 3]) -> u8 {
+        // A label outside the table means a damaged grid: shown as others.
+        Some(self.grid.get(x, y, z))
+            .filter(|v| *v < Class::FREE)
+            .unwrap_or(0)
+    }
+
+    /// Paint lies only on top of the road.
+    fn road_id(&self, label: u8, normal: DVec3, p: DVec2) -> RenderId {
+        if label == Class::DriveableSurface.id() && normal.z > 0.5 {
+            return self.paint.render_id(p).unwrap_or(label);
+        }
+        label
+    }
+
+    /// Marches one camera at `width` x `height` pixels (0 gives empty maps).
+    pub fn render(&self, camera: &Camera, width: u32, height: u32) -> MarchMaps {
+        let (w, h) = (width as usize, height as usize);
+        let mut hits = vec![None; w * h];
+        if !hits.is_empty() {
+            let rays = CameraRays::new(camera, width, height);
+            hits.par_chunks_mut(w).enumerate().for_each(|(v, row)| {
+                for (u, out) in row.iter_mut().enumerate() {
+                    *out = self.cast(rays.origin, rays.direction(u as f64 + 0.5, v as f64 + 0.5));
+                }
+            });
+        }
+        MarchMaps {
+            width: w,
+            height: h,
+            hits,
+        }
+    }
+
+    /// The maps of every camera of a rig, in the rig's order.
+    pub fn render_rig(&self, rig: &SensorRig, width: u32, height: u32) -> Vec<CameraMaps> {
+        let cameras = rig.cameras.par_iter();
+        cameras
+            .map(|c| self.render(c, width, height).into_camera_maps(&c.name))
+            .collect()
+    }
+}
+
+impl MarchMaps {
+    /// Labels, depths along the optical axis and coverage (1 on every hit) as the splats give them.
+    pub fn into_camera_maps(self, camera: &str) -> CameraMaps {
+        let depth_m: Vec<f32> = self
+            .hits
+            .iter()
+            .map(|h| h.as_ref().map_or(-1.0, |h| h.t as f32))
+            .collect();
+        CameraMaps {
+            camera: camera.into(),
+            width: self.width,
+            height: self.height,
+            semantic: self.hits.iter().map(|h| h.as_ref().map_or(0, |h| h.id)).collect(),
+            coverage: depth_m.iter().map(|d| f32::from(*d >= 0.0)).collect(),
+            depth_m,
+        }
+    }
+}
+
+/// The rays of a camera at an image size; `direction` advances 1 m along the optical axis.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraRays {
+    /// Optical centre in the ego frame, m.
+    pub origin: DVec3,
+    rotation: DQuat,
+    focal_px: DVec2,
+    center_px: DVec2,
+}
+
+impl CameraRays {
+    /// For pictures of `width` x `height` pixels.
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
+        let camera = camera.resized(width, height);
+        let pose = camera.ego_from_camera();
+        Self {
+            origin: pose.translation_m,
+            rotation: pose.rotation,
+            focal_px: DVec2::from_array(camera.focal_px),
+            center_px: DVec2::from_array(camera.center_px),
+        }
+    }
+
+    /// Through the image point (u, v) in px; pixel i has its middle at i + 1/2.
+    #[inline]
+    pub fn direction(&self, u: f64, v: f64) -> DVec3 {
+        let at = (DVec2::new(u, v) - self.center_px) / self.focal_px;
+        self.rotation * at.extend(1.0)
+    }
+}
+
+/// Takes the voxels out that a box's solids stand for.
+pub(crate) fn remove_voxels(grid: &mut VoxelGrid, ground: &mut Ground, b: &SceneBox, height: GroundHeight) {
+    if b.problem().is_some() {
+        return;
+    }
+    let (bottom, top) = (
+        b.center_m.z - b.size_m.z / 2.0,
+        b.center_m.z + b.size_m.z / 2.0 + HEIGHT_MARGIN_M,
+    );
+    let bottom = match height {
+        // What the labels smear below the object stays: it joins the solids to the low ground.
+        GroundHeight::AsLabelled => bottom,
+        GroundHeight::Physical => bottom - SMEAR_M - HEIGHT_MARGIN_M,
+    };
+    box_cells(b, FOOTPRINT_MARGIN_M, |x, y| {
+        for z in 0..GridSpec::NZ {
+            let middle = GridSpec::center(x, y, z).z;
+            if (bottom..top).contains(&middle) && grid.get(x, y, z) == b.class.id() {
+                grid.set(x, y, z, Class::FREE);
+                ground.want(x, y);
+            }
+        }
+    });
+}
+
+/// Normal of the face of `voxel` that the ray enters by at `t`.
+fn face_normal(origin: DVec3, unit: DVec3, t: f64, voxel: [usize; 3]) -> DVec3 {
+    let p = origin + unit * t;
+    let mut best = (f64::INFINITY, DVec3::Z);
+    for axis in 0..3 {
+        let d = unit[axis];
+        if d == 0.0 {
+            continue;
+        }
+        let plane = voxel[axis] as f64 + if d > 0.0 { 0.0 } else { 1.0 };
+        let gap = (p[axis] - plane).abs();
+        if gap < best.0 {
+            let mut normal = DVec3::ZERO;
+            normal[axis] = -d.signum();
+            best = (gap, normal);
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,243 @@
+//! The ground at its physical height: ground labels lie two bins low and everything else is smeared two
+//! bins down (`real_statistics.md`, 2.2). Here the ground becomes a height per column and the smear goes.
+
+use std::collections::VecDeque;
+
+use glam::DVec3;
+
+use crate::scene::{Class, GridSpec, VoxelGrid};
+
+/// Where the ground is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum GroundHeight {
+    /// In the voxels that are labelled so: the road's surface at z = -0.6 m.
+    #[default]
+    AsLabelled,
+    /// Where it was measured: bin 0 at z = 0, bin k at the lower face of bin k + 2, the lowest
+    /// height that the labels allow (a kerb of 0.2 m); what hangs in the air loses its smear.
+    Physical,
+}
+
+const SMEAR: usize = 2;
+/// Thickness of a ground voxel in voxels: seen only from the side or from below.
+const THICK: f64 = 1.0;
+
+/// Heights of the ground in voxel units, `[x][y]`; empty if the ground stays among the voxels.
+#[derive(Clone, Debug, Default)]
+pub struct Ground {
+    top: Vec<f64>, // NaN: none
+    class: Vec<u8>,
+    wanted: Vec<bool>,
+    lowest: f64,
+    highest: f64,
+}
+
+/// Where a ray meets the ground, in voxel units.
+#[derive(Clone, Copy, Debug)]
+pub struct GroundHit {
+    /// In units of the direction's length.
+    pub t: f64,
+    /// Label.
+    pub class: u8,
+    /// Of the face.
+    pub normal: DVec3,
+}
+
+fn is_ground(label: u8) -> bool {
+    Class::from_id(label).is_some_and(Class::is_ground)
+}
+
+/// What stands on the ground, and the ground.
+pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, Ground) {
+    if height == GroundHeight::AsLabelled {
+        return (grid.clone(), Ground::default());
+    }
+    let mut ground = Ground {
+        top: vec![f64::NAN; GridSpec::COLUMNS],
+        class: vec![Class::FREE; GridSpec::COLUMNS],
+        wanted: vec![false; GridSpec::COLUMNS],
+        lowest: f64::INFINITY,
+        highest: f64::NEG_INFINITY,
+    };
+    let mut out = VoxelGrid::new();
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            let column = grid.column(x, y);
+            if *column == [Class::FREE; GridSpec::NZ] {
+                continue;
+            }
+            let mut upper = *column;
+            if let Some(bin) = (0..GridSpec::NZ).rev().find(|z| is_ground(column[*z])) {
+                ground.set(x * GridSpec::NY + y, top_of(bin), column[bin]);
+                for label in upper.iter_mut().filter(|l| is_ground(**l)) {
+                    *label = Class::FREE;
+                }
+            }
+            unsmear(&mut upper);
+            if upper != [Class::FREE; GridSpec::NZ] {
+                out.column_mut(x, y).copy_from_slice(&upper);
+            }
+        }
+    }
+    (out, ground)
+}
+
+/// Height of the ground labelled in `bin`, in voxel units above the grid's floor.
+pub fn top_of(bin: usize) -> f64 {
+    match bin {
+        0 => 2.5,
+        _ => (bin + SMEAR) as f64,
+    }
+}
+
+/// Takes away the two lowest voxels of every run that hangs in the air, and what lies below the ground.
+fn unsmear(column: &mut [u8; GridSpec::NZ]) {
+    let labels = *column;
+    for z in 1..GridSpec::NZ {
+        let begins = labels[z] != Class::FREE && labels[z - 1] == Class::FREE;
+        let run = labels[z..].iter().take_while(|l| **l != Class::FREE).count();
+        if begins && run > SMEAR {
+            column[z..z + SMEAR].fill(Class::FREE);
+        }
+    }
+    column[..SMEAR].fill(Class::FREE);
+}
+
+impl Ground {
+    fn set(&mut self, at: usize, top: f64, class: u8) {
+        (self.top[at], self.class[at]) = (top, class);
+        self.lowest = self.lowest.min(top);
+        self.highest = self.highest.max(top);
+    }
+
+    /// Label and height in m above the ego's ground of a column, if there is ground.
+    pub fn at(&self, x: usize, y: usize) -> Option<(u8, f64)> {
+        let i = x * GridSpec::NY + y;
+        let top = *self.top.get(i)?;
+        (!top.is_nan()).then(|| (self.class[i], top * GridSpec::VOXEL_M + GridSpec::MIN_M[2]))
+    }
+
+    /// Asks for ground in a column that an object hid.
+    pub fn want(&mut self, x: usize, y: usize) {
+        if let Some(wanted) = self.wanted.get_mut(x * GridSpec::NY + y) {
+            *wanted = true;
+        }
+    }
+
+    /// Gives each column asked for the ground of the nearest one that has some (steps over faces).
+    pub fn fill_wanted(&mut self) {
+        if !self.wanted.contains(&true) {
+            return;
+        }
+        let mut source: Vec<u32> = vec![u32::MAX; self.top.len()];
+        let mut queue: VecDeque<usize> = VecDeque::new();
+        for (i, top) in self.top.iter().enumerate() {
+            if !top.is_nan() {
+                source[i] = i as u32;
+                queue.push_back(i);
+            }
+        }
+        while let Some(i) = queue.pop_front() {
+            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            for (nx, ny) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+                if nx < GridSpec::NX && ny < GridSpec::NY {
+                    let n = nx * GridSpec::NY + ny;
+                    if source[n] == u32::MAX {
+                        source[n] = source[i];
+                        queue.push_back(n);
+                    }
+                }
+            }
+        }
+        for i in 0..source.len() {
+            if self.wanted[i] && self.top[i].is_nan() && source[i] != u32::MAX {
+                let from = source[i] as usize;
+                self.set(i, self.top[from], self.class[from]);
+            }
+        }
+    }
+
+    /// The first ground along a ray in voxel units before `t_max`; the input is finite.
+    pub fn cast(&self, o: DVec3, d: DVec3, t_max: f64) -> Option<GroundHit> {
+        if self.top.is_empty() || self.lowest > self.highest {
+            return None;
+        }
+        let (mut t0, mut t1) = (0.0, t_max);
+        let limits = [
+            (0.0, GridSpec::NX as f64),
+            (0.0, GridSpec::NY as f64),
+            (self.lowest - THICK, self.highest),
+        ];
+        let mut entered = 2; // axis by whose plane the ray comes in
+        for axis in [0, 1, 2] {
+            let (lo, hi) = limits[axis];
+            if d[axis] == 0.0 {
+                if !(lo..=hi).contains(&o[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((lo - o[axis]) / d[axis], (hi - o[axis]) / d[axis]);
+            if a.min(b) > t0 {
+                (t0, entered) = (a.min(b), axis);
+            }
+            t1 = f64::min(t1, a.max(b));
+        }
+        // Written so that NaN ends here too.
+        if !(t0 <= t1) {
+            return None;
+        }
+        let n = [GridSpec::NX, GridSpec::NY];
+        let start = |axis: usize| ((o[axis] + d[axis] * t0).max(0.0) as usize).min(n[axis] - 1);
+        let mut cell = [start(0), start(1)];
+        let next = |cell: [usize; 2], axis: usize| {
+            if d[axis] == 0.0 {
+                return f64::INFINITY;
+            }
+            ((cell[axis] + usize::from(d[axis] > 0.0)) as f64 - o[axis]) / d[axis]
+        };
+        let mut t_in = t0;
+        for _ in 0..GridSpec::NX + GridSpec::NY + 2 {
+            let (tx, ty) = (next(cell, 0), next(cell, 1));
+            let axis = usize::from(ty < tx);
+            let t_out = tx.min(ty).min(t1).max(t_in);
+            let at = cell[0] * GridSpec::NY + cell[1];
+            let top = self.top[at];
+            if !top.is_nan() {
+                let hit = |t: f64, normal: DVec3| {
+                    Some(GroundHit {
+                        t,
+                        class: self.class[at],
+                        normal,
+                    })
+                };
+                let (za, zb) = (o.z + d.z * t_in, o.z + d.z * t_out);
+                if za <= top && za >= top - THICK {
+                    let mut side = DVec3::Z;
+                    if entered < 2 {
+                        side = DVec3::ZERO;
+                        side[entered] = -d[entered].signum();
+                    }
+                    return hit(t_in, side);
+                }
+                if za > top && zb <= top {
+                    return hit((top - o.z) / d.z, DVec3::Z);
+                }
+                if za < top - THICK && zb >= top - THICK {
+                    return hit((top - THICK - o.z) / d.z, -DVec3::Z);
+                }
+            }
+            if tx.min(ty) >= t1 {
+                return None;
+            }
+            t_in = t_out;
+            entered = axis;
+            let moved = cell[axis].wrapping_add_signed(if d[axis] > 0.0 { 1 } else { -1 });
+            if moved >= n[axis] {
+                return None;
+            }
+            cell[axis] = moved;
+        }
+        None
+    }
+}
