@@ -116,6 +116,8 @@ mod tests {
             ring,
             azimuth: 0,
             class,
+            intensity: 0.0,
+            drop_probability: 0.0,
         };
         let sweep = LidarSweep {
             points: vec![

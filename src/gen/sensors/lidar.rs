@@ -79,6 +79,8 @@ pub fn sweep_with(
                 azimuth: column as u16,
                 // A label outside the table can only come from a damaged grid; it still reflects.
                 class: Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others),
+                intensity: 0.0,
+                drop_probability: 0.0,
             });
         }
         points

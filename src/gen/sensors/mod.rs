@@ -11,3 +11,4 @@ pub mod project;
 pub mod raycast;
 pub mod splat;
 mod tile;
+pub mod truth;

@@ -157,6 +157,55 @@ impl Solid {
         inside && !self.is_pore(p)
     }
 
+    /// Outward unit normal at a point of the surface. Leaves of a porous solid look anywhere: their normal is a
+    /// hash of the lump.
+    pub fn normal(&self, p: DVec3) -> DVec3 {
+        if self.porosity > 0.0 {
+            let q = (p / LUMP_M).floor();
+            let h = hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64)) ^ 0x1eaf);
+            let unit = |shift: u32| f64::from((h >> shift) as u16) / 32767.5 - 1.0;
+            return DVec3::new(unit(0), unit(16), unit(32)).normalize_or(DVec3::Z);
+        }
+        match self.shape {
+            Shape::Hull { half, top, heading } => {
+                let q = self.local(p, heading);
+                let slope = (top - half.truncate()) / (2.0 * half.z).max(1e-9);
+                let wide = (top + half.truncate()) / 2.0 + slope * q.z;
+                // The face with the least room left is the one the point lies on.
+                let room = DVec3::new(wide.x - q.x.abs(), wide.y - q.y.abs(), half.z - q.z.abs());
+                let n = if room.z <= room.x.min(room.y) {
+                    DVec3::Z * q.z.signum()
+                } else if room.x <= room.y {
+                    DVec3::new(q.x.signum(), 0.0, -slope.x)
+                } else {
+                    DVec3::new(0.0, q.y.signum(), -slope.y)
+                };
+                DVec3::new(
+                    n.x * heading.x - n.y * heading.y,
+                    n.x * heading.y + n.y * heading.x,
+                    n.z,
+                )
+            }
+            Shape::Frustum {
+                bottom,
+                top,
+                half_height,
+            } => {
+                let q = p - self.center;
+                let k = (top - bottom) / (2.0 * half_height).max(1e-9);
+                let flat = q.truncate();
+                let room = (bottom + top) / 2.0 + k * q.z - flat.length();
+                if half_height - q.z.abs() < room {
+                    DVec3::Z * q.z.signum()
+                } else {
+                    flat.normalize_or(DVec2::X).extend(-k)
+                }
+            }
+            Shape::Ellipsoid { radii } => (p - self.center) / (radii * radii),
+        }
+        .normalize_or(DVec3::Z)
+    }
+
     /// Distance along the ray to the first point of the solid, at most `limit`; rays that start
     /// inside a solid pass out of it unseen. `dir` is a unit vector.
     pub fn enter(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
@@ -317,6 +366,9 @@ mod tests {
                     (Some(t), Some(m)) => {
                         hits += 1;
                         assert!((t - m).abs() < 3e-3, "{solid:?} {t} {m}");
+                        let (p, n) = (origin + dir * t, solid.normal(origin + dir * t));
+                        assert!((n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6, "{solid:?} {n}");
+                        assert!(!solid.contains(p + n * 1e-3) && solid.contains(p - n * 2e-3 + dir * 1e-3));
                     }
                     (None, None) => {}
                     // A graze shorter than the march's step.
