@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use sceneloom::generation::sensors::{lidar, raycast::ColumnMasks};
+use sceneloom::generation::sensors::{caster::Caster, lidar, raycast::ColumnMasks};
 use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
 
 #[path = "timing.rs"]
@@ -62,4 +62,22 @@ fn main() {
     timing::time("sweep with masks", 60, || {
         lidar::sweep(&grid, pattern, None).points.len()
     });
+    // A car beside the road, there in one grid and not in the other.
+    let mut with_car = grid.clone();
+    for (x, y, z) in (118..130).flat_map(|x| (106..111).flat_map(move |y| (1..6).map(move |z| (x, y, z)))) {
+        let label = if grid.get(x, y, z) == Class::FREE {
+            Class::Car.id()
+        } else {
+            Class::FREE
+        };
+        with_car.set(x, y, z, label);
+    }
+    let mut caster = Caster::new(&grid, pattern, 0.0, None);
+    let mut there = false;
+    timing::time("kept sweep after a car came or went", 60, || {
+        there = !there;
+        caster.update(if there { &with_car } else { &grid });
+        caster.cast_last()
+    });
+    timing::time("its points", 60, || caster.sweep().points.len());
 }

@@ -15,6 +15,7 @@ use crate::generation::job::{
 use crate::generation::worker::GenWorker;
 use crate::scene::{Scene, SceneRev};
 
+use super::camera_views::Wanted;
 use super::canvas::{Canvas, CanvasInput};
 use super::command::Command;
 use super::file_dialogs::FileDialogs;
@@ -25,6 +26,7 @@ use super::panels::dialogs::{self, Unsaved};
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
 use super::panels::panes;
+use super::panels::sensors::sensors_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
@@ -235,7 +237,8 @@ impl SceneloomApp {
         }
         // Small pictures while they will not last; the large ones cost as much as the generation itself.
         let for_a_moment = self.document.is_dragging() || self.live.running.is_some();
-        self.sensing.ask(self.document.scene(), for_a_moment);
+        let wanted = Wanted::of(&self.state);
+        self.sensing.ask(self.document.scene(), wanted, for_a_moment);
     }
 
     pub(super) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
@@ -525,6 +528,9 @@ impl SceneloomApp {
         self.strip
             .enlarged(ui, self.center, &cameras, &mut self.state, commands);
         self.toasts.log_window(ui, self.center, &mut self.state.log_open);
+        if self.state.sensors_open {
+            sensors_ui(ui, &scene.rig, &mut self.state, commands);
+        }
         if self.state.keys_open {
             dialogs::keys_sheet(ui, &mut self.state.keys_open);
         }
@@ -576,8 +582,9 @@ fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync +
 
 fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> CamerasInput<'a> {
     CamerasInput {
-        rig: &scene.rig,
-        maps: sensing.cameras(),
+        scene,
+        views: sensing.cameras(),
+        prompt: &scene.prompt,
         stale: sensing.cameras_stale(rev),
         lidar_points: sensing.lidar().map(|l| l.points.len()),
     }

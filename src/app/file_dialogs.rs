@@ -257,7 +257,8 @@ fn problem(path: &Path, field: &mut Field) -> Option<String> {
 /// A name without an extension gets the one that fits.
 fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
     let extension = match purpose {
-        Purpose::Open => return path,
+        Purpose::Open | Purpose::ImportRig => return path,
+        Purpose::ExportRig => "json",
         Purpose::SaveAs => "loom",
         Purpose::Screenshot => "png",
     };

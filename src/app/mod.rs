@@ -2,6 +2,7 @@
 
 pub mod application;
 mod bev_image;
+pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
 pub mod canvas_tools;

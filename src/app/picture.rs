@@ -136,8 +136,8 @@ pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
     let (width, height) = (w * SIDE, h * SIDE);
     let mut rgba = vec![255; width * height * 4];
     for tile in 0..SIDE * SIDE {
-        // Evenly in log depth from 3 m: near planes hold little but road.
-        let depth_m = 3.0 * (image.planes.far_m / 3.0).powf(tile as f64 / (SIDE * SIDE) as f64);
+        // Evenly in log depth from 5 m: near planes hold little but road.
+        let depth_m = 5.0 * (image.planes.far_m / 5.0).powf(tile as f64 / (SIDE * SIDE) as f64);
         let step_m = image.planes.depth_m(1) - image.planes.depth_m(0);
         let plane = ((depth_m - image.planes.near_m) / step_m).max(0.0) as u16;
         let slice = color::plane_rgba(image, plane);

@@ -6,24 +6,24 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
+use super::camera_views::{CameraView, LARGE_SIZE, Prepared, Wanted};
+use super::state::CameraMode;
 use crate::generation::sensors::caster::Caster;
 use crate::generation::sensors::lidar::EgoBox;
-use crate::generation::sensors::splat::{self, GaussianCloud, PREVIEW_SIZE, SplatOptions, VIEW_SIZE};
-use crate::scene::{CameraMaps, LidarSweep, Scene, SceneRev, SensorRig};
-
-/// Voxels below the surface that still count for a picture; see [`GaussianCloud::from_grid_shell`].
-const SHELL_LAYERS: usize = 2;
+use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
+use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
 
 /// A scene to sense.
 struct Request {
     scene: Arc<Scene>,
+    wanted: Wanted,
     preview: bool,
 }
 
 /// News from the thread.
 enum News {
     Lidar(SceneRev, LidarSweep),
-    Cameras(SceneRev, Vec<CameraMaps>),
+    Cameras(SceneRev, Wanted, Vec<CameraView>),
 }
 
 /// The newest of what was sensed, and the thread that senses.
@@ -31,9 +31,9 @@ pub struct Sensing {
     requests: Option<Sender<Request>>, // None only while dropping
     news: Receiver<News>,
     thread: Option<JoinHandle<()>>,
-    asked: Option<(SceneRev, bool)>,
+    asked: Option<(SceneRev, Wanted, bool)>,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
-    cameras: Option<(SceneRev, Arc<Vec<CameraMaps>>)>,
+    cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     version: u64,
 }
 
@@ -57,19 +57,23 @@ impl Sensing {
         })
     }
 
-    /// Asks for a scene, unless it was asked for already. A preview has smaller pictures.
-    pub fn ask(&mut self, scene: &Arc<Scene>, preview: bool) {
-        if self
-            .asked
-            .is_some_and(|(rev, was_preview)| rev == scene.rev && (!was_preview || preview))
-        {
+    /// Asks for a scene, unless the same was asked for already. A preview has smaller pictures.
+    pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, preview: bool) {
+        let known = |(rev, was, was_preview): (SceneRev, Wanted, bool)| {
+            rev == scene.rev && was == wanted && (!was_preview || preview)
+        };
+        if self.asked.is_some_and(known) {
             return;
         }
-        self.asked = Some((scene.rev, preview));
+        self.asked = Some((scene.rev, wanted, preview));
         if let Some(requests) = &self.requests {
             let scene = scene.clone();
             // The thread ends only when this sender is gone.
-            let _ = requests.send(Request { scene, preview });
+            let _ = requests.send(Request {
+                scene,
+                wanted,
+                preview,
+            });
         }
     }
 
@@ -79,7 +83,7 @@ impl Sensing {
             self.version += 1;
             match news {
                 News::Lidar(rev, sweep) => self.lidar = Some((rev, Arc::new(sweep))),
-                News::Cameras(rev, maps) => self.cameras = Some((rev, Arc::new(maps))),
+                News::Cameras(rev, wanted, views) => self.cameras = Some((rev, wanted, Arc::new(views))),
             }
         }
     }
@@ -89,14 +93,16 @@ impl Sensing {
         self.lidar.as_ref().map(|(_, sweep)| sweep)
     }
 
-    /// The newest maps of all cameras, in the rig's order.
-    pub fn cameras(&self) -> Option<&Arc<Vec<CameraMaps>>> {
-        self.cameras.as_ref().map(|(_, maps)| maps)
+    /// The newest pictures of the cameras that are rendered, in the rig's order.
+    pub fn cameras(&self) -> Option<&Arc<Vec<CameraView>>> {
+        self.cameras.as_ref().map(|(_, _, views)| views)
     }
 
-    /// True if the pictures are not those of this state.
+    /// True if the pictures are not those of this state, or not of the kind that was asked for last.
     pub fn cameras_stale(&self, rev: SceneRev) -> bool {
-        self.cameras.as_ref().is_none_or(|(of, _)| *of != rev)
+        let wanted = self.asked.map(|(_, wanted, _)| wanted.pictures());
+        let current = |(of, shown, _): &(SceneRev, Wanted, _)| *of == rev && Some(shown.pictures()) == wanted;
+        !self.cameras.as_ref().is_some_and(current)
     }
 
     /// True if the sweep is not that of this state.
@@ -136,7 +142,11 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
 type KeptLidar = Option<(Arc<SensorRig>, Caster)>;
 
 fn sense(request: &Request, requests: &Receiver<Request>, lidar: &mut KeptLidar, tell: impl Fn(News)) {
-    let Request { scene, preview } = request;
+    let Request {
+        scene,
+        wanted,
+        preview,
+    } = request;
     let (frame, rig) = (scene.frame(), &scene.rig);
     match lidar {
         Some((of, caster)) if of == rig => caster.update(&frame.occupancy),
@@ -150,19 +160,40 @@ fn sense(request: &Request, requests: &Receiver<Request>, lidar: &mut KeptLidar,
     }
     let sweep = lidar.as_ref().map(|(_, caster)| caster.sweep());
     tell(News::Lidar(scene.rev, sweep.unwrap_or_default()));
-    let [width, height] = if *preview { PREVIEW_SIZE } else { VIEW_SIZE };
-    let cloud = GaussianCloud::from_grid_shell(&frame.occupancy, frame.layout.cells(), SHELL_LAYERS);
-    let options = SplatOptions::default();
-    let mut maps = Vec::with_capacity(rig.cameras.len());
-    for camera in &rig.cameras {
-        // Full pictures give way to a newer scene; previews are quick, and giving way would leave
-        // the strip without any news for as long as the user drags.
-        if !preview && !requests.is_empty() {
-            return;
+
+    let prepared = Prepared::new(scene, wanted.mode, wanted.source);
+    let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
+    let render = |quick: bool| -> Option<Vec<CameraView>> {
+        let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
+        let mut views = Vec::with_capacity(rig.cameras.len());
+        for i in (0..rig.cameras.len()).filter(shown) {
+            // Full pictures give way to a newer scene; previews are quick, and giving way would leave
+            // the strip without any news for as long as the user drags.
+            if !quick && !requests.is_empty() {
+                return None;
+            }
+            views.push(prepared.view(scene, i, size, quick));
         }
-        maps.push(splat::render(&cloud, camera, width, height, &options));
+        Some(views)
+    };
+    // Camera pictures take their time: a coarse one comes first.
+    if (*preview || wanted.mode == CameraMode::Picture)
+        && let Some(views) = render(true)
+    {
+        tell(News::Cameras(scene.rev, *wanted, views));
     }
-    tell(News::Cameras(scene.rev, maps));
+    if *preview {
+        return;
+    }
+    let Some(mut views) = render(false) else { return };
+    tell(News::Cameras(scene.rev, *wanted, views.clone()));
+    let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
+    if let Some(view) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
+        && requests.is_empty()
+    {
+        *view = prepared.view(scene, view.camera, LARGE_SIZE, false);
+        tell(News::Cameras(scene.rev, *wanted, views));
+    }
 }
 
 #[cfg(test)]
@@ -182,7 +213,7 @@ mod tests {
         let mut sensing = Sensing::spawn(|| {}).expect("a thread");
         for _ in 0..20 {
             scene.rev = SceneRev::fresh();
-            sensing.ask(&Arc::new(scene.clone()), true);
+            sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
         }
         let start = Instant::now();
         while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
@@ -194,9 +225,39 @@ mod tests {
         assert!(sensing.lidar().is_some_and(|l| l.points.len() > 1000));
         // Asked for already: nothing new comes.
         let version = sensing.version();
-        sensing.ask(&Arc::new(scene.clone()), true);
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
         std::thread::sleep(Duration::from_millis(50));
         sensing.drain();
         assert_eq!(sensing.version(), version);
+        // Another kind of picture of the same scene is news; hidden cameras are not rendered.
+        for mode in [
+            CameraMode::Depth,
+            CameraMode::Planes,
+            CameraMode::Layout,
+            CameraMode::Picture,
+        ] {
+            let wanted = Wanted {
+                mode,
+                hidden: 0b101,
+                ..Wanted::default()
+            };
+            sensing.ask(&Arc::new(scene.clone()), wanted, true);
+            assert!(sensing.cameras_stale(scene.rev));
+            while sensing.cameras_stale(scene.rev) {
+                assert!(start.elapsed() < Duration::from_secs(120), "no news of {mode:?}");
+                std::thread::sleep(Duration::from_millis(5));
+                sensing.drain();
+            }
+            let views = sensing.cameras().expect("pictures");
+            assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
+            for view in views.iter() {
+                let ([w, h], rgba) = view.picture.rgba(mode, 12.0);
+                assert_eq!(rgba.len(), w * h * 4);
+                assert!(
+                    rgba.chunks(4).any(|c| c != &rgba[..4]),
+                    "{mode:?}: all of one colour"
+                );
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Training and evaluation data from procedural worlds, as safetensors shards.
 
+pub mod lidar;
+
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,8 +14,6 @@ use super::world::voxelize::{Drive, Vertical, complete, labels};
 use super::world::{World, template, traffic};
 use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
-/// Arrays of a shard.
-const ARRAYS: [&str; 5] = ["dense", "labels", "draft", "bev", "heading"];
 /// Frames per shard.
 pub const SHARD_FRAMES: usize = 32;
 
@@ -79,14 +79,22 @@ pub struct DatasetReport {
     pub resumed_shards: usize,
 }
 
-/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`: u8 `dense`, `labels`, `draft`
-/// `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`. Shards that hold all of these are kept, so an interrupted run resumes.
-/// `make` makes frame i ([`occupancy_frame`], or a file's); its first error ends the run. `progress` gets
-/// the number of finished frames and may end the run by returning false.
-pub fn write_occupancy<E: From<std::io::Error> + Send>(
+/// A kind of frame that shards are made of.
+pub trait Shard: Send + Sized {
+    /// Names of its arrays.
+    const ARRAYS: &'static [&'static str];
+
+    /// Type, shape and bytes of each array, in that order, for some frames; the frames come first in the shape.
+    fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)>;
+}
+
+/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`. Shards that hold all arrays are kept, so an
+/// interrupted run resumes. `make` makes frame i; its first error ends the run. `progress` gets the number of
+/// finished frames and may end the run by returning false.
+pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     dir: &Path,
     frames: usize,
-    make: impl Fn(usize) -> Result<OccupancyFrame, E> + Sync,
+    make: impl Fn(usize) -> Result<F, E> + Sync,
     progress: impl Fn(usize) -> bool + Sync,
 ) -> Result<DatasetReport, E> {
     std::fs::create_dir_all(dir)?;
@@ -98,12 +106,12 @@ pub fn write_occupancy<E: From<std::io::Error> + Send>(
     for (shard, first) in (0..frames).step_by(SHARD_FRAMES).enumerate() {
         let path = dir.join(format!("shard_{shard:05}.safetensors"));
         let n = SHARD_FRAMES.min(frames - first);
-        if is_complete(&path) {
+        if is_complete(&path, F::ARRAYS) {
             report.resumed_shards += 1;
             done.fetch_add(n, Ordering::Relaxed);
             continue;
         }
-        let made: Result<Vec<OccupancyFrame>, E> = (first..first + n)
+        let made: Result<Vec<F>, E> = (first..first + n)
             .into_par_iter()
             .map(|i| {
                 let frame = make(i)?;
@@ -121,7 +129,7 @@ pub fn write_occupancy<E: From<std::io::Error> + Send>(
 }
 
 /// True for a shard that holds every array; older ones lack some.
-fn is_complete(path: &Path) -> bool {
+fn is_complete(path: &Path, arrays: &[&str]) -> bool {
     let header = || -> Option<serde_json::Value> {
         let mut file = std::fs::File::open(path).ok()?;
         let mut length = [0; 8];
@@ -131,36 +139,50 @@ fn is_complete(path: &Path) -> bool {
         file.take(length).read_to_end(&mut header).ok()?;
         serde_json::from_slice(&header).ok()
     };
-    header().is_some_and(|h| ARRAYS.iter().all(|name| h.get(name).is_some()))
+    header().is_some_and(|h| arrays.iter().all(|name| h.get(name).is_some()))
 }
 
-fn write_shard(path: &PathBuf, frames: &[OccupancyFrame]) -> std::io::Result<u64> {
-    let grids = |pick: fn(&OccupancyFrame) -> &VoxelGrid| -> Vec<u8> {
-        frames.iter().flat_map(|f| pick(f).to_dense()).collect()
-    };
-    let voxels = vec![frames.len(), GridSpec::NX, GridSpec::NY, GridSpec::NZ];
-    let (dense, labels, draft) = (grids(|f| &f.dense), grids(|f| &f.labels), grids(|f| &f.draft));
-    let bev: Vec<u8> = frames
+fn write_shard<F: Shard>(path: &PathBuf, frames: &[F]) -> std::io::Result<u64> {
+    let arrays = F::arrays(frames);
+    let tensors: Result<Vec<_>, _> = F::ARRAYS
         .iter()
-        .flat_map(|f| f.bev.iter().flat_map(|b| b.to_le_bytes()))
+        .zip(&arrays)
+        .map(|(name, (dtype, shape, data))| {
+            let shape = [&[frames.len()], &shape[..]].concat();
+            TensorView::new(*dtype, shape, data).map(|t| (*name, t))
+        })
         .collect();
-    let heading: Vec<u8> = frames.iter().flat_map(|f| &f.heading).copied().collect();
-    let view = |dtype, shape: &[usize], data| TensorView::new(dtype, shape.to_vec(), data);
-    let tensors = [
-        ("dense", view(Dtype::U8, &voxels, &dense)),
-        ("labels", view(Dtype::U8, &voxels, &labels)),
-        ("draft", view(Dtype::U8, &voxels, &draft)),
-        ("bev", view(Dtype::I32, &voxels[..3], &bev)),
-        ("heading", view(Dtype::U8, &voxels[..3], &heading)),
-    ];
-    let tensors = tensors
-        .into_iter()
-        .map(|(name, t)| t.map(|t| (name, t)))
-        .collect::<Result<Vec<_>, _>>()
-        .and_then(|t| safetensors::serialize(t, None));
-    let bytes = tensors.map_err(std::io::Error::other)?;
+    let bytes = tensors
+        .and_then(|t| safetensors::serialize(t, None))
+        .map_err(std::io::Error::other)?;
     let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(Path::new(".")))?;
     std::io::Write::write_all(&mut file, &bytes)?;
     file.persist(path)?;
     Ok(bytes.len() as u64)
 }
+
+/// Voxels of some frames, one after another.
+fn voxels<'a>(grids: impl Iterator<Item = &'a VoxelGrid>) -> Vec<u8> {
+    grids.flat_map(VoxelGrid::to_dense).collect()
+}
+
+impl Shard for OccupancyFrame {
+    const ARRAYS: &'static [&'static str] = &["dense", "labels", "draft", "bev", "heading"];
+
+    /// u8 `dense`, `labels`, `draft` `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`.
+    fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
+        let (grid, columns) = (VOXELS.to_vec(), VOXELS[..2].to_vec());
+        let bev = frames.iter().flat_map(|f| &f.bev).flat_map(|b| b.to_le_bytes());
+        let heading = frames.iter().flat_map(|f| &f.heading).copied();
+        vec![
+            (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.dense))),
+            (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.labels))),
+            (Dtype::U8, grid, voxels(frames.iter().map(|f| &f.draft))),
+            (Dtype::I32, columns.clone(), bev.collect()),
+            (Dtype::U8, columns, heading.collect()),
+        ]
+    }
+}
+
+/// Shape of a grid.
+const VOXELS: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];

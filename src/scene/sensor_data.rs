@@ -136,6 +136,10 @@ pub struct LidarPoint {
     pub azimuth: u16,
     /// Class of the voxel that was hit.
     pub class: super::Class,
+    /// Strength of the echo as sensors report it, 0 to 255; 0 where nothing is known of it.
+    pub intensity: f32,
+    /// How likely a real sensor gets no echo from there, 0 to 1.
+    pub drop_probability: f32,
 }
 
 /// One revolution of a LiDAR.

@@ -23,6 +23,10 @@ pub enum LidarColorMode {
     Class,
     /// Beam, lowest to highest.
     Ring,
+    /// Strength of the echo, 0 to 64 of 255: brighter ones are rare.
+    Intensity,
+    /// How likely the echo is lost: pale is sure, red is lost more often than not.
+    Drop,
 }
 
 /// One sRGB colour per return, alpha 255.
@@ -31,6 +35,16 @@ pub fn lidar_colors(sweep: &LidarSweep, mode: LidarColorMode) -> Vec<[u8; 4]> {
     let color = |p: &LidarPoint| match mode {
         LidarColorMode::Range => ramp(p.range_m / 50.0),
         LidarColorMode::Ring => ramp(f32::from(p.ring) / f32::from(rings)),
+        LidarColorMode::Intensity => ramp(1.0 - (p.intensity / 64.0).sqrt()),
+        LidarColorMode::Drop => {
+            let t = if p.drop_probability > 0.0 {
+                p.drop_probability.min(1.0)
+            } else {
+                0.0
+            };
+            let mix = |pale: f32, red: f32| (pale + (red - pale) * t).round() as u8;
+            [mix(214.0, 255.0), mix(226.0, 48.0), mix(236.0, 60.0), 255]
+        }
         LidarColorMode::Class => {
             // Lighter than the voxel underneath, or it could not be seen on it.
             let base = match p.class {
@@ -116,6 +130,8 @@ mod tests {
             ring,
             azimuth: 0,
             class,
+            intensity: 0.0,
+            drop_probability: 0.0,
         };
         let sweep = LidarSweep {
             points: vec![

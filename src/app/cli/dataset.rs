@@ -9,13 +9,14 @@ use super::{Common, Outcome, output};
 use crate::app::open;
 use crate::app::roads::Roads;
 use crate::formats::occ3d;
+use crate::generation::dataset::lidar::lidar_frame;
 use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Dataset {
     /// What the frames hold.
-    #[arg(value_parser = ["occupancy"])]
+    #[arg(value_parser = ["occupancy", "lidar"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -41,6 +42,11 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = std::time::Instant::now();
+        if self.kind == "lidar" && self.from.is_some() {
+            (|| -> anyhow::Result<()> {
+                bail!("--from gives labels, kind lidar needs surfaces: expected procedural worlds")
+            })()?;
+        }
         let files = match &self.from {
             Some(dir) => open::files_below(dir, "npz", "Occ3D frames")?,
             None => Vec::new(),
@@ -67,10 +73,16 @@ impl Dataset {
                 None => occupancy_frame(self.seed, i as u64, |seed| roads.layout(seed)),
             })
         };
-        let report = dataset::write_occupancy(&self.output, frames, make, |done| {
+        let step = |done| {
             progress.at(&self.kind, done, frames);
             true
-        })
+        };
+        let report = if self.kind == "lidar" {
+            let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+            dataset::write(&self.output, frames, make, step)
+        } else {
+            dataset::write(&self.output, frames, make, step)
+        }
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
         let mut json = serde_json::to_value(&report)?;

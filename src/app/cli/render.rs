@@ -12,7 +12,7 @@ use crate::app::{open, picture};
 use crate::formats::multi_plane;
 use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, mpi, perspective, splat};
 use crate::scene::sensor_data::Planes;
-use crate::scene::{CameraMaps, LidarSweep, Scene, SensorRig};
+use crate::scene::{CameraMaps, LidarSweep, Scene};
 
 /// What can be rendered.
 const KINDS: [&str; 7] = ["semantic", "depth", "perspective", "mpi", "lidar", "bev", "view"];

@@ -7,34 +7,37 @@ use egui::{
     Align2, Color32, ColorImage, Rect, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui,
     WidgetInfo, pos2, vec2,
 };
+use glam::DVec3;
 
+use super::camera_header::header;
+use crate::app::camera_views::CameraView;
 use crate::app::command::Command;
-use crate::app::icons;
 use crate::app::state::{CameraMode, UiState};
 use crate::app::theme;
-use crate::generation::sensors::color::{depth_rgba, semantic_rgba};
-use crate::scene::{CameraMaps, Class, SensorRig};
-
-/// Depth at which the colours begin and end, m.
-const DEPTH_M: (f32, f32) = (2.0, 60.0);
+use crate::generation::sensors::march::{MarchOptions, MarchScene};
+use crate::scene::{Camera, Class, Scene, SceneRev};
 
 /// Textures of the pictures.
 #[derive(Default)]
 pub struct CameraStrip {
-    textures: Vec<TextureHandle>,
-    made_from: Option<(Arc<Vec<CameraMaps>>, CameraMode)>,
+    /// One for each camera that was ever shown.
+    textures: Vec<Option<TextureHandle>>,
+    made_from: Option<(Arc<Vec<CameraView>>, CameraMode, f64)>,
+    probe: Option<(SceneRev, MarchScene)>,
     stale_since_s: Option<f64>,
     looks_stale: bool,
 }
 
 /// What the strip shows.
 pub struct CamerasInput<'a> {
-    /// The rig.
-    pub rig: &'a SensorRig,
-    /// The newest maps, in the rig's order.
-    pub maps: Option<&'a Arc<Vec<CameraMaps>>>,
-    /// The maps belong to an earlier state.
+    /// The scene shown.
+    pub scene: &'a Scene,
+    /// The newest pictures, in the rig's order.
+    pub views: Option<&'a Arc<Vec<CameraView>>>,
+    /// The pictures belong to an earlier state.
     pub stale: bool,
+    /// Text that decides time and weather.
+    pub prompt: &'a str,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
 }
@@ -48,11 +51,13 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        self.refresh(ui, input.maps, state.camera_mode);
+        self.refresh(ui, input.views, state);
         self.note_stale(ui, input.stale);
-        header(ui, input, self.looks_stale, state);
+        header(ui, input, self.looks_stale, state, commands);
         ui.add_space(2.0);
-        let count = input.rig.cameras.len().max(1) as f32;
+        let cameras = &input.scene.rig.cameras;
+        let shown: Vec<usize> = (0..cameras.len()).filter(|i| !state.camera_hidden(*i)).collect();
+        let count = shown.len().max(1) as f32;
         let gap = 6.0;
         let room = ui.available_size();
         let width = ((room.x - gap * (count - 1.0)) / count)
@@ -61,10 +66,17 @@ impl CameraStrip {
         let used = width * count + gap * (count - 1.0);
         let left = ui.max_rect().left() + ((room.x - used) / 2.0).max(0.0);
         let top = ui.cursor().top();
-        for (i, camera) in input.rig.cameras.iter().enumerate() {
-            let at = pos2(left + i as f32 * (width + gap), top);
+        for (place, &i) in shown.iter().enumerate() {
+            let at = pos2(left + place as f32 * (width + gap), top);
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
-            self.picture(ui, rect, i, &camera.name, state, commands);
+            let hovered = self.picture(ui, rect, i, &cameras[i].name, state, commands);
+            if let Some(part) = hovered {
+                state.readout = self.pixel_text(input.scene, &cameras[i], part);
+            }
+        }
+        if shown.is_empty() {
+            let text = "No camera is shown. Sensors… adds and shows them.";
+            ui.label(egui::RichText::new(text).color(theme::TEXT_WEAK));
         }
     }
 
@@ -84,30 +96,63 @@ impl CameraStrip {
         }
     }
 
-    fn refresh(&mut self, ui: &Ui, maps: Option<&Arc<Vec<CameraMaps>>>, mode: CameraMode) {
-        let Some(maps) = maps else { return };
+    fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, state: &UiState) {
+        let Some(views) = views else { return };
+        let (mode, plane_m) = (state.camera_mode, state.plane_m);
         if self
             .made_from
             .as_ref()
-            .is_some_and(|(of, in_mode)| Arc::ptr_eq(of, maps) && *in_mode == mode)
+            .is_some_and(|(of, in_mode, at_m)| Arc::ptr_eq(of, views) && *in_mode == mode && *at_m == plane_m)
         {
             return;
         }
-        self.textures.truncate(maps.len());
-        for (i, map) in maps.iter().enumerate() {
-            let rgba = match mode {
-                CameraMode::Semantic => semantic_rgba(map, true),
-                CameraMode::Depth => depth_rgba(&map.depth_m, DEPTH_M.0, DEPTH_M.1),
-            };
-            let image = ColorImage::from_rgba_unmultiplied([map.width, map.height], &rgba);
-            match self.textures.get_mut(i) {
+        let count = views.iter().map(|v| v.camera + 1).max().unwrap_or(0);
+        self.textures.resize(count, None);
+        for view in views.iter() {
+            let (size, rgba) = view.picture.rgba(mode, plane_m);
+            let image = ColorImage::from_rgba_unmultiplied(size, &rgba);
+            match &mut self.textures[view.camera] {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => self
-                    .textures
-                    .push(ui.ctx().load_texture("camera", image, TextureOptions::LINEAR)),
+                empty => *empty = Some(ui.ctx().load_texture("camera", image, TextureOptions::LINEAR)),
             }
         }
-        self.made_from = Some((maps.clone(), mode));
+        self.made_from = Some((views.clone(), mode, plane_m));
+    }
+
+    /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
+    /// across the picture.
+    fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
+        if self.probe.as_ref().is_none_or(|(rev, _)| *rev != scene.rev) {
+            let frame = scene.frame();
+            let options = MarchOptions {
+                seed: scene.seed,
+                ..MarchOptions::default()
+            };
+            let march = MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options);
+            self.probe = Some((scene.rev, march));
+        }
+        let (_, march) = self.probe.as_ref().expect("just made");
+        let size = [camera.width, camera.height].map(f64::from);
+        let at = |i: usize, part: f32| (f64::from(part) * size[i] - camera.center_px[i]) / camera.focal_px[i];
+        let pose = camera.ego_from_camera();
+        let ray = (pose.rotation * DVec3::new(at(0, part.x), at(1, part.y), 1.0)).normalize_or(DVec3::X);
+        let label = camera_label(&camera.name);
+        let Some(hit) = march.cast(pose.translation_m, ray) else {
+            return format!("{label}  ·  sky");
+        };
+        let name = match hit.id {
+            17 => "crossing".to_owned(),
+            18 => "road divider".to_owned(),
+            19 => "lane divider".to_owned(),
+            id => Class::from_id(id).map_or_else(|| "unknown".into(), Class::label),
+        };
+        let name = hit.box_id.map_or(name.clone(), |id| format!("{name} #{}", id.0));
+        let p = pose.translation_m + ray * hit.t;
+        let (x, y, z) = (p.x + 0.0, p.y + 0.0, p.z + 0.0);
+        format!(
+            "{label}  ·  {name}  ·  {:.1} m away  ·  {x:.1}, {y:.1}, {z:.1} m",
+            hit.t
+        )
     }
 
     fn picture(
@@ -118,12 +163,12 @@ impl CameraStrip {
         name: &str,
         state: &UiState,
         commands: &mut Vec<Command>,
-    ) {
+    ) -> Option<egui::Vec2> {
         let label = camera_label(name);
         let response = ui.interact(rect, ui.scope_id().with(("camera", index)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Camera {label}")));
         let painter = ui.painter_at(rect.expand(1.0));
-        match self.textures.get(index) {
+        match self.texture(index) {
             Some(texture) => {
                 let tint = if self.looks_stale {
                     Color32::from_gray(170)
@@ -158,19 +203,23 @@ impl CameraStrip {
             &label,
             theme::TEXT_STRONG,
         );
-        let response = response
-            .on_hover_ui(|ui| icons::tip(ui, &label, "click to enlarge, double click to look through"));
+        let part = response.hover_pos().map(|p| (p - rect.min) / rect.size());
         if response.double_clicked() {
             commands.push(Command::Inspect(None));
             commands.push(Command::LookThrough(index));
         } else if response.clicked() {
             commands.push(Command::Inspect((!chosen).then_some(index)));
         }
+        part
+    }
+
+    fn texture(&self, camera: usize) -> Option<&TextureHandle> {
+        self.textures.get(camera).and_then(Option::as_ref)
     }
 
     /// One camera large, over the views; its pixels can be read.
     pub fn enlarged(
-        &self,
+        &mut self,
         ui: &Ui,
         over: Rect,
         input: &CamerasInput<'_>,
@@ -178,14 +227,14 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         let Some(index) = state.inspected else { return };
-        let (Some(texture), Some(maps)) = (self.textures.get(index), input.maps.and_then(|m| m.get(index)))
+        let (Some(texture), Some(camera)) =
+            (self.texture(index).cloned(), input.scene.rig.cameras.get(index))
         else {
             return;
         };
-        let aspect = maps.width as f32 / maps.height.max(1) as f32;
+        let aspect = camera.width as f32 / camera.height.max(1) as f32;
         let width = (over.width() * 0.72).min((over.height() * 0.8) * aspect);
-        let name = input.rig.cameras.get(index).map_or("", |c| c.name.as_str());
-        let window = egui::Window::new(format!("Camera: {}", camera_label(name)))
+        let window = egui::Window::new(format!("Camera: {}", camera_label(&camera.name)))
             .id(egui::Id::unique("enlarged camera"))
             .collapsible(false)
             .resizable(false)
@@ -198,7 +247,7 @@ impl CameraStrip {
             ui.horizontal(|ui| {
                 let text = response
                     .hover_pos()
-                    .map(|p| pixel_text(maps, (p - rect.min) / rect.size()));
+                    .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
                 ui.label(text.unwrap_or_else(|| "Move over the picture to read a pixel".into()));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if ui.button("Look through in 3D").clicked() {
@@ -214,32 +263,6 @@ impl CameraStrip {
     }
 }
 
-fn header(ui: &mut Ui, input: &CamerasInput<'_>, stale: bool, state: &mut UiState) {
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Cameras").color(theme::TEXT));
-        ui.add_space(4.0);
-        icons::segments(
-            ui,
-            &mut state.camera_mode,
-            &[
-                (CameraMode::Semantic, "Semantic", "classes"),
-                (CameraMode::Depth, "Depth", "2 m warm to 60 m cold"),
-            ],
-        );
-        if stale {
-            ui.add_space(4.0);
-            ui.add(egui::Spinner::new().size(12.0).color(theme::TEXT_WEAK));
-            ui.label(egui::RichText::new("updating").small().color(theme::TEXT_WEAK));
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if let Some(n) = input.lidar_points {
-                let text = format!("LiDAR  {} returns", thousands(n));
-                ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
-            }
-        });
-    });
-}
-
 fn unit() -> Rect {
     Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0))
 }
@@ -251,29 +274,6 @@ fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, 
     let rect = Rect::from_min_size(left_bottom - vec2(0.0, size.y), size);
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(150));
     painter.galley(rect.min + vec2(5.0, 2.0), galley, color);
-}
-
-/// What a pixel shows; `part` runs from 0 to 1 across the picture.
-fn pixel_text(maps: &CameraMaps, part: egui::Vec2) -> String {
-    let (x, y) = (
-        (part.x * maps.width as f32) as usize,
-        (part.y * maps.height as f32) as usize,
-    );
-    if x >= maps.width || y >= maps.height {
-        return String::new();
-    }
-    let i = y * maps.width + x;
-    let name = match maps.semantic[i] {
-        0 => "nothing".to_owned(),
-        17 => "crossing".to_owned(),
-        18 => "road divider".to_owned(),
-        19 => "lane divider".to_owned(),
-        id => Class::from_id(id).map_or_else(|| "unknown".into(), Class::label),
-    };
-    match maps.depth_m[i] {
-        d if d > 0.0 => format!("{x}, {y}  ·  {name}  ·  {d:.1} m"),
-        _ => format!("{x}, {y}  ·  {name}"),
-    }
 }
 
 /// `CAM_FRONT_LEFT` as a person says it.
@@ -304,20 +304,5 @@ mod tests {
         assert_eq!(thousands(999), "999");
         assert_eq!(thousands(34_720), "34,720");
         assert_eq!(thousands(1_234_567), "1,234,567");
-    }
-
-    #[test]
-    fn pixels_are_read_and_the_edge_is_no_pixel() {
-        let maps = CameraMaps {
-            camera: "CAM".into(),
-            width: 2,
-            height: 1,
-            semantic: vec![4, 0],
-            depth_m: vec![12.34, -1.0],
-            coverage: vec![1.0, 0.0],
-        };
-        assert_eq!(pixel_text(&maps, vec2(0.1, 0.5)), "0, 0  ·  car  ·  12.3 m");
-        assert_eq!(pixel_text(&maps, vec2(0.9, 0.5)), "1, 0  ·  nothing");
-        assert_eq!(pixel_text(&maps, vec2(1.0, 0.5)), "");
     }
 }

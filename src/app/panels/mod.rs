@@ -1,5 +1,6 @@
 //! The panels around the views: each draws from values and pushes commands.
 
+pub mod camera_header;
 pub mod cameras;
 pub mod dialogs;
 pub mod fields;

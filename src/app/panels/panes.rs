@@ -122,6 +122,16 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
             (LidarColorMode::Range, "Range", "near warm, far cool"),
             (LidarColorMode::Class, "Class", "of the voxel hit"),
             (LidarColorMode::Ring, "Ring", "beam"),
+            (
+                LidarColorMode::Intensity,
+                "Echo",
+                "strength, from the learned LiDAR",
+            ),
+            (
+                LidarColorMode::Drop,
+                "Loss",
+                "how likely an echo is lost, from the learned LiDAR",
+            ),
         ],
     );
 }

@@ -307,7 +307,7 @@ fn lidar_fields(
 
 /// A name that is taken when the field is left.
 fn name_row(ui: &mut Ui, name: &mut String) -> bool {
-    let memory = ui.id().with("sensor name");
+    let memory = ui.scope_id().with("sensor name");
     let mut text = ui.data(|d| d.get_temp::<(String, String)>(memory));
     if text.as_ref().is_none_or(|(of, _)| of != name) {
         text = Some((name.clone(), name.clone()));

@@ -147,7 +147,11 @@ mod tests {
     fn nothing_and_one_pixel() {
         let mut a = MapAgreement::default();
         a.add(&LabelledDepth::default(), &LabelledDepth::default());
-        let one = LabelledDepth { width: 1, label: vec![3], depth_m: vec![f32::NAN] };
+        let one = LabelledDepth {
+            width: 1,
+            label: vec![3],
+            depth_m: vec![f32::NAN],
+        };
         a.add(&one, &one);
         assert_eq!(a.labels(), 1.0);
         assert!(a.depth_error_m().0.is_nan());

@@ -149,6 +149,8 @@ impl Caster {
             azimuth: (ray % self.columns) as u16,
             // A label outside the table can only come from a damaged grid; it still reflects.
             class: Class::from_id(self.grid.get(x, y, z)).unwrap_or(Class::Others),
+            intensity: 0.0,
+            drop_probability: 0.0,
         };
         // Rounded up, so that the voxel that was hit is within reach.
         let reach = (hit.range_m as f32).next_up();

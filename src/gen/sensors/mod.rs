@@ -3,19 +3,17 @@
 //! The ego frame's grid is taken as it is: in Occ3D labels the road lies in bin 0 (top face at
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
+pub mod appearance;
 pub mod caster;
 pub mod cloud;
 pub mod color;
 pub mod lidar;
-pub mod mpi;
-pub mod appearance;
-pub mod cloud;
-pub mod color;
-pub mod lidar;
 pub mod march;
+pub mod mpi;
 pub mod order;
 pub mod perspective;
 pub mod project;
 pub mod raycast;
 pub mod splat;
 mod tile;
+pub mod truth;

@@ -24,6 +24,19 @@ pub struct Hit {
     pub range_m: f64,
     /// What was hit.
     pub class: Class,
+    /// Index of the solid that was hit; `None` is the ground.
+    pub solid: Option<u32>,
+}
+
+/// What a point of a surface is made of, as far as the world knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Outward unit normal.
+    pub normal: DVec3,
+    /// Names the thing it belongs to: solids of one object have the same, another thing has another. 0 is the ground.
+    pub instance: u32,
+    /// Which of the object's solids, in the order of `objects.rs`; 0 for all others.
+    pub part: u8,
 }
 
 const BIN_M: f64 = 4.0;
@@ -36,7 +49,8 @@ pub struct World {
     /// Objects.
     pub boxes: BTreeMap<BoxId, SceneBox>,
     solids: Vec<Solid>,
-    bins: Vec<Vec<u32>>, // [x][y] of 4 m, indices of solids that reach in
+    owners: Vec<(u32, u8)>, // instance and part of each solid
+    bins: Vec<Vec<u32>>,    // [x][y] of 4 m, indices of solids that reach in
     ground: Vec<Class>,
     seed: u64,
 }
@@ -44,11 +58,19 @@ pub struct World {
 impl World {
     /// Builds the world of `seed` on a layout with these boxes.
     pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, seed: u64) -> Self {
-        let mut solids = Vec::new();
+        let (mut solids, mut owners) = (Vec::new(), Vec::new());
         for b in boxes.values() {
             objects::object(b, seed, &mut solids);
+            let instance = 1 + b.id.0;
+            owners.extend(
+                (owners.len()..solids.len())
+                    .enumerate()
+                    .map(|(part, _)| (instance, part as u8)),
+            );
         }
         scenery::scenery(&layout, &boxes, seed, &mut solids);
+        // Beyond any box's id, so that a bush never shares a number with a car.
+        owners.extend((owners.len()..solids.len()).map(|i| (1 << 31 | i as u32, 0)));
         let mut bins = vec![Vec::new(); BINS * BINS];
         let bin = |v: f64| ((v + 40.0) / BIN_M).floor();
         for (i, s) in solids.iter().enumerate() {
@@ -65,6 +87,7 @@ impl World {
             layout,
             boxes,
             solids,
+            owners,
             bins,
             ground,
             seed,
@@ -81,6 +104,30 @@ impl World {
     /// The solids standing on the ground.
     pub fn solids(&self) -> &[Solid] {
         &self.solids
+    }
+
+    /// Seed it was made from.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The surface at a point that [`cast`](Self::cast) found.
+    pub fn surface(&self, hit: &Hit, p: DVec3) -> Surface {
+        let solid = hit
+            .solid
+            .and_then(|i| self.solids.get(i as usize).zip(self.owners.get(i as usize)));
+        match solid {
+            Some((solid, &(instance, part))) => Surface {
+                normal: solid.normal(p),
+                instance,
+                part,
+            },
+            None => Surface {
+                normal: DVec3::Z,
+                instance: 0,
+                part: 0,
+            },
+        }
     }
 
     /// Class of the ground in a column.
@@ -131,6 +178,7 @@ impl World {
                     hit = Some(Hit {
                         range_m: t,
                         class: s.class,
+                        solid: Some(i),
                     });
                 }
             }
@@ -162,6 +210,7 @@ impl World {
         (t > 0.0).then(|| Hit {
             range_m: t,
             class: self.ground_class(x, y),
+            solid: None,
         })
     }
 }

@@ -157,6 +157,18 @@ impl Solid {
         inside && !self.is_pore(p)
     }
 
+    /// Outward unit normal at a point of the surface, for what an echo is like. Leaves of a porous solid look anywhere:
+    /// their normal is a hash of the lump.
+    pub fn normal(&self, p: DVec3) -> DVec3 {
+        if self.porosity > 0.0 {
+            let q = (p / LUMP_M).floor();
+            let h = hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64)) ^ 0x1eaf);
+            let unit = |shift: u32| f64::from((h >> shift) as u16) / 32767.5 - 1.0;
+            return DVec3::new(unit(0), unit(16), unit(32)).normalize_or(DVec3::Z);
+        }
+        self.normal_at(p)
+    }
+
     /// Outward unit normal of the face nearest to a point on the surface; pores count as the surface
     /// that they were cut from. Up where there is no nearest face.
     pub fn normal_at(&self, p: DVec3) -> DVec3 {
@@ -378,7 +390,13 @@ mod tests {
         let heading = DVec2::from_angle(-1.1);
         let base = DVec3::new(-3.0, 1.0, 0.1);
         let solids = [
-            Solid::tapered(Class::Car, base, DVec3::new(4.0, 2.0, 1.5), DVec2::new(0.5, 0.8), heading),
+            Solid::tapered(
+                Class::Car,
+                base,
+                DVec3::new(4.0, 2.0, 1.5),
+                DVec2::new(0.5, 0.8),
+                heading,
+            ),
             Solid::frustum(Class::TrafficCone, base, 1.5, 0.8, 0.1),
             Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
         ];
@@ -386,8 +404,14 @@ mod tests {
         let mut hits = 0;
         for solid in solids {
             for _ in 0..500 {
-                let from = base + DVec3::new(draw.range(-8.0, 8.0), draw.range(-8.0, 8.0), draw.range(-2.0, 5.0));
-                let aim = base + DVec3::new(draw.range(-1.0, 1.0), draw.range(-1.0, 1.0), draw.range(0.0, 1.0));
+                let from = base
+                    + DVec3::new(
+                        draw.range(-8.0, 8.0),
+                        draw.range(-8.0, 8.0),
+                        draw.range(-2.0, 5.0),
+                    );
+                let aim =
+                    base + DVec3::new(draw.range(-1.0, 1.0), draw.range(-1.0, 1.0), draw.range(0.0, 1.0));
                 let dir = (aim - from).normalize_or(DVec3::X);
                 if solid.contains(from) {
                     continue;
@@ -396,7 +420,10 @@ mod tests {
                     let p = from + dir * t;
                     let n = solid.normal_at(p);
                     hits += 1;
-                    assert!((n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6, "{solid:?} {n} {dir}");
+                    assert!(
+                        (n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6,
+                        "{solid:?} {n} {dir}"
+                    );
                     assert!(!solid.contains(p + n * 1e-3), "{solid:?} at {p}");
                     assert!(solid.contains(p - n * 1e-3 + dir * 1e-6) || n.dot(dir) > -0.02);
                 }

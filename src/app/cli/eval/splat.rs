@@ -49,7 +49,11 @@ fn without_paint(maps: CameraMaps) -> LabelledDepth {
     let road = Class::DriveableSurface.id();
     LabelledDepth {
         width: maps.width,
-        label: maps.semantic.iter().map(|id| if *id > 16 { road } else { *id }).collect(),
+        label: maps
+            .semantic
+            .iter()
+            .map(|id| if *id > 16 { road } else { *id })
+            .collect(),
         depth_m: maps.depth_m,
     }
 }

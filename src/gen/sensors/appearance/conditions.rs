@@ -89,19 +89,47 @@ impl FromStr for Weather {
 
 /// Words that name a time.
 const TIMES: [(&[&str], TimeOfDay); 4] = [
-    (&["night", "nighttime", "midnight", "dark", "nocturnal"], TimeOfDay::Night),
+    (
+        &["night", "nighttime", "midnight", "dark", "nocturnal"],
+        TimeOfDay::Night,
+    ),
     (&["dusk", "sunset", "evening", "twilight"], TimeOfDay::Dusk),
     (&["dawn", "sunrise", "morning"], TimeOfDay::Dawn),
-    (&["day", "daytime", "noon", "midday", "afternoon", "daylight"], TimeOfDay::Day),
+    (
+        &["day", "daytime", "noon", "midday", "afternoon", "daylight"],
+        TimeOfDay::Day,
+    ),
 ];
 
 /// Words that name a weather; the first row that occurs wins, so "foggy after rain" is rain.
 const WEATHERS: [(&[&str], Weather); 6] = [
-    (&["sandstorm", "dust", "dusty", "sandy", "duststorm"], Weather::Sandstorm),
-    (&["snow", "snowy", "snowing", "snowfall", "blizzard", "winter", "snowstorm"], Weather::Snow),
-    (&["rain", "rainy", "raining", "wet", "drizzle", "storm", "stormy", "shower", "downpour"], Weather::Rain),
+    (
+        &["sandstorm", "dust", "dusty", "sandy", "duststorm"],
+        Weather::Sandstorm,
+    ),
+    (
+        &[
+            "snow",
+            "snowy",
+            "snowing",
+            "snowfall",
+            "blizzard",
+            "winter",
+            "snowstorm",
+        ],
+        Weather::Snow,
+    ),
+    (
+        &[
+            "rain", "rainy", "raining", "wet", "drizzle", "storm", "stormy", "shower", "downpour",
+        ],
+        Weather::Rain,
+    ),
     (&["fog", "foggy", "mist", "misty", "haze", "hazy"], Weather::Fog),
-    (&["overcast", "cloudy", "clouds", "grey", "gray"], Weather::Overcast),
+    (
+        &["overcast", "cloudy", "clouds", "grey", "gray"],
+        Weather::Overcast,
+    ),
     (&["sunny", "clear", "sun", "bright"], Weather::Clear),
 ];
 
@@ -113,7 +141,10 @@ impl Conditions {
     /// day), and so does what is denied ("no rain").
     pub fn from_prompt(prompt: &str) -> Self {
         let text = prompt.to_lowercase();
-        let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+        let words: Vec<&str> = text
+            .split(|c: char| !c.is_alphanumeric())
+            .filter(|w| !w.is_empty())
+            .collect();
         let said = |names: &[&str]| {
             (0..words.len()).any(|i| {
                 let denied = words[i.saturating_sub(2)..i].iter().any(|w| NOT.contains(w));
@@ -146,7 +177,10 @@ mod tests {
         assert_eq!(of("foggy morning"), (TimeOfDay::Dawn, Weather::Fog));
         assert_eq!(of("day, no rain, cloudy"), (TimeOfDay::Day, Weather::Overcast));
         assert_eq!(of("a sandstorm at noon"), (TimeOfDay::Day, Weather::Sandstorm));
-        assert_eq!(of("a training run; Saturday; 夜 \u{0}"), (TimeOfDay::Day, Weather::Clear));
+        assert_eq!(
+            of("a training run; Saturday; 夜 \u{0}"),
+            (TimeOfDay::Day, Weather::Clear)
+        );
         for (name, time) in TimeOfDay::ALL {
             assert_eq!(name.parse(), Ok(time));
             assert_eq!(of(name).0, time);
@@ -155,6 +189,11 @@ mod tests {
             assert_eq!(name.parse(), Ok(weather));
             assert_eq!(of(name).1, weather);
         }
-        assert!("hail".parse::<Weather>().expect_err("unknown").contains("sandstorm"));
+        assert!(
+            "hail"
+                .parse::<Weather>()
+                .expect_err("unknown")
+                .contains("sandstorm")
+        );
     }
 }

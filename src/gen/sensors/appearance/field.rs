@@ -132,8 +132,21 @@ impl Field {
         let q = to_field(p).truncate().round().max(Vec2::ZERO).as_uvec2();
         let (x, y) = ((q.x as usize).min(NX - 1), (q.y as usize).min(NY - 1));
         // The surface may lie half a voxel outside.
-        for (dx, dy) in [(1, 1), (0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (0, 2), (2, 0), (2, 2)] {
-            let (x, y) = ((x + dx).saturating_sub(1).min(NX - 1), (y + dy).saturating_sub(1).min(NY - 1));
+        for (dx, dy) in [
+            (1, 1),
+            (0, 1),
+            (2, 1),
+            (1, 0),
+            (1, 2),
+            (0, 0),
+            (0, 2),
+            (2, 0),
+            (2, 2),
+        ] {
+            let (x, y) = (
+                (x + dx).saturating_sub(1).min(NX - 1),
+                (y + dy).saturating_sub(1).min(NY - 1),
+            );
             if let i @ 1.. = self.structure[x * NY + y] {
                 return self.structures.get(usize::from(i) - 1);
             }
@@ -171,7 +184,11 @@ impl Field {
     #[inline(always)]
     fn label_near(&self, q: Vec3) -> u8 {
         let r = (q + 0.5).floor();
-        let (x, y, z) = ((r.x as usize).min(NX - 1), (r.y as usize).min(NY - 1), (r.z as usize).min(NZ - 1));
+        let (x, y, z) = (
+            (r.x as usize).min(NX - 1),
+            (r.y as usize).min(NY - 1),
+            (r.z as usize).min(NZ - 1),
+        );
         self.label[at(x, y, z)]
     }
 
@@ -189,7 +206,11 @@ impl Field {
 
     /// Outward normal at a surface point: the field's gradient, leaves included.
     pub fn normal(&self, p: Vec3, label: u8, anchor: &impl Fn(Vec3) -> Vec3) -> Vec3 {
-        let h = if label == Class::Vegetation.id() { 0.06 } else { 0.2 };
+        let h = if label == Class::Vegetation.id() {
+            0.06
+        } else {
+            0.2
+        };
         let f = |d: Vec3| {
             if label == Class::Vegetation.id() {
                 self.value(p + d * 4.0) * 1.5 + leaves(anchor(p + d)) * LEAVES
@@ -262,7 +283,9 @@ impl Field {
                             }
                         };
                         if inside(q) && value(p) > SURFACE {
-                            return Some(self.refine(o, d, (k - step).max(0.0), k, |p| inside(to_field(p)) && value(p) > SURFACE));
+                            return Some(self.refine(o, d, (k - step).max(0.0), k, |p| {
+                                inside(to_field(p)) && value(p) > SURFACE
+                            }));
                         }
                     }
                     k += step;
@@ -283,7 +306,14 @@ impl Field {
         None
     }
 
-    fn refine(&self, o: Vec3, d: Vec3, mut out: f32, mut within: f32, solid: impl Fn(Vec3) -> bool) -> FieldHit {
+    fn refine(
+        &self,
+        o: Vec3,
+        d: Vec3,
+        mut out: f32,
+        mut within: f32,
+        solid: impl Fn(Vec3) -> bool,
+    ) -> FieldHit {
         for _ in 0..4 {
             let middle = (out + within) * 0.5;
             if solid(o + d * middle) {
@@ -359,7 +389,12 @@ fn structures(solid: &[u8], seed: u32) -> (Vec<u16>, Vec<Structure>) {
             if g.length() > 4.0 {
                 sum += Vec2::from_angle(g.to_angle() * 4.0) * g.length();
             }
-            wide |= member(x + 1, y) * member(x, y + 1) * member(x + 1, y + 1) * member(x + 2, y) * member(x, y + 2) > 0.5;
+            wide |= member(x + 1, y)
+                * member(x, y + 1)
+                * member(x + 1, y + 1)
+                * member(x + 2, y)
+                * member(x, y + 2)
+                > 0.5;
             let column = &solid[at(c / NY, c % NY, 0)..at(c / NY, c % NY, 0) + NZ];
             top = top.max(column.iter().rposition(|l| *l == made).unwrap_or(0));
         }
@@ -371,7 +406,11 @@ fn structures(solid: &[u8], seed: u32) -> (Vec<u16>, Vec<Structure>) {
             .collect();
         let first = columns.iter().min().copied().unwrap_or(0);
         all.push(Structure {
-            axis: if sum == Vec2::ZERO { Vec2::X } else { Vec2::from_angle(sum.to_angle() / 4.0) },
+            axis: if sum == Vec2::ZERO {
+                Vec2::X
+            } else {
+                Vec2::from_angle(sum.to_angle() / 4.0)
+            },
             columns: columns.len() as u32,
             height_m: top as f32 * 0.4 - 1.0,
             id: hash1(first as u32, seed),
@@ -428,7 +467,10 @@ fn raise(solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
 /// keeps a surface, poles become slim.
 fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8> {
     let n = solid.len();
-    let own: Vec<u8> = solid.iter().map(|l| if *l == Class::FREE { 0 } else { 255 }).collect();
+    let own: Vec<u8> = solid
+        .iter()
+        .map(|l| if *l == Class::FREE { 0 } else { 255 })
+        .collect();
     let mut blurred: Vec<u8> = own.clone();
     for stride in [1, NZ, NY * NZ] {
         let from = blurred.clone();
@@ -437,7 +479,9 @@ fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8>
             blurred[i] = (sum / 4) as u8;
         }
     }
-    let mut out: Vec<u8> = (0..n).map(|i| ((u32::from(own[i]) * 55 + u32::from(blurred[i]) * 45) / 100) as u8).collect();
+    let mut out: Vec<u8> = (0..n)
+        .map(|i| ((u32::from(own[i]) * 55 + u32::from(blurred[i]) * 45) / 100) as u8)
+        .collect();
     for x in 1..NX - 1 {
         for y in 1..NY - 1 {
             let i = structure[x * NY + y];
@@ -460,9 +504,15 @@ fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8>
 fn spread(solid: &[u8]) -> Vec<u8> {
     let mut out = solid.to_vec();
     let steps: Vec<isize> = [
-        IVec3::X, IVec3::Y, IVec3::Z,
-        IVec3::new(1, 1, 0), IVec3::new(1, -1, 0),
-        IVec3::new(1, 0, 1), IVec3::new(1, 0, -1), IVec3::new(0, 1, 1), IVec3::new(0, 1, -1),
+        IVec3::X,
+        IVec3::Y,
+        IVec3::Z,
+        IVec3::new(1, 1, 0),
+        IVec3::new(1, -1, 0),
+        IVec3::new(1, 0, 1),
+        IVec3::new(1, 0, -1),
+        IVec3::new(0, 1, 1),
+        IVec3::new(0, 1, -1),
     ]
     .iter()
     .map(|s| (s.x as isize * NY as isize + s.y as isize) * NZ as isize + s.z as isize)
@@ -474,7 +524,8 @@ fn spread(solid: &[u8]) -> Vec<u8> {
         for step in &steps {
             for j in [i as isize + step, i as isize - step] {
                 if let Some(to) = out.get_mut(j as usize)
-                    && (*to == Class::FREE || (*to == Class::Vegetation.id() && solid[j as usize] == Class::FREE))
+                    && (*to == Class::FREE
+                        || (*to == Class::Vegetation.id() && solid[j as usize] == Class::FREE))
                 {
                     *to = *label;
                 }

@@ -58,7 +58,12 @@ impl Ground {
         let mut queue: VecDeque<usize> = (0..n).filter(|i| kind[*i].is_some()).collect();
         while let Some(i) = queue.pop_front() {
             let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
-            for (nx, ny) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+            for (nx, ny) in [
+                (x.wrapping_sub(1), y),
+                (x + 1, y),
+                (x, y.wrapping_sub(1)),
+                (x, y + 1),
+            ] {
                 if nx < GridSpec::NX && ny < GridSpec::NY && kind[nx * GridSpec::NY + ny].is_none() {
                     // Far from any label it is terrain, not road.
                     kind[nx * GridSpec::NY + ny] = kind[i];

@@ -94,12 +94,24 @@ impl Look {
         }
         let field = Field::new(&grid, seed);
         let ground = Ground::new(&columns, &frame.layout);
-        let mut things: Vec<Thing> = boxes.iter().filter_map(|b| Thing::of(b, seed)).take(60_000).collect();
+        let mut things: Vec<Thing> = boxes
+            .iter()
+            .filter_map(|b| Thing::of(b, seed))
+            .take(60_000)
+            .collect();
         // Textures stay in the world; whole kilometres are taken off so that f32 is fine enough.
         let pose = frame.world_from_ego;
         let finite = pose.translation_m.is_finite() && pose.rotation.is_finite();
-        let shift: DVec3 = if finite { pose.translation_m % 4096.0 } else { DVec3::ZERO };
-        let turn = if finite { pose.rotation.as_quat() } else { Quat::IDENTITY };
+        let shift: DVec3 = if finite {
+            pose.translation_m % 4096.0
+        } else {
+            DVec3::ZERO
+        };
+        let turn = if finite {
+            pose.rotation.as_quat()
+        } else {
+            Quat::IDENTITY
+        };
         let mut lists = vec![Vec::new(); BLOCKS * BLOCKS];
         for (i, thing) in things.iter_mut().enumerate() {
             // Nobody stands in the pavement.
@@ -182,10 +194,16 @@ impl Look {
                 }
             }
             if self.field.block(index) && t_in < best {
-                let step = if coarse { 0.17 } else { (0.1 + t_in * 0.002).min(0.15) };
+                let step = if coarse {
+                    0.17
+                } else {
+                    (0.1 + t_in * 0.002).min(0.15)
+                };
                 // Leaves beyond 45 m are finer than a pixel.
                 let leaves = !coarse || t_in < 12.0;
-                if let Some(h) = self.field.cast_block(index, (o, d), (t_in, t_out.min(best)), step, leaves, &anchor)
+                if let Some(h) =
+                    self.field
+                        .cast_block(index, (o, d), (t_in, t_out.min(best)), step, leaves, &anchor)
                     && h.t < best
                 {
                     best = h.t;

@@ -50,7 +50,8 @@ fn visible(footprint: f32, feature: f32) -> f32 {
 fn band(distance: f32, half: f32, footprint: f32) -> f32 {
     let soft = (footprint * 0.5).max(0.004);
     // A line thinner than a pixel keeps its share of it.
-    (((half - distance) / soft * 0.5 + 0.5).clamp(0.0, 1.0) * (half / soft.max(half)).min(1.0)).clamp(0.0, 1.0)
+    (((half - distance) / soft * 0.5 + 0.5).clamp(0.0, 1.0) * (half / soft.max(half)).min(1.0))
+        .clamp(0.0, 1.0)
 }
 
 fn gray(v: f32) -> Vec3 {
@@ -68,7 +69,11 @@ impl Look {
                 let thing = &self.things[i as usize];
                 let n = thing.turn(hit.normal);
                 let mut s = self.thing_surface(thing, local, n, material, footprint);
-                s.normal = if s.normal == n { hit.normal } else { thing.turn_back(s.normal) };
+                s.normal = if s.normal == n {
+                    hit.normal
+                } else {
+                    thing.turn_back(s.normal)
+                };
                 self.cover(&mut s, hit.p, 0.75);
                 let _ = dir;
                 s
@@ -131,12 +136,18 @@ impl Look {
             if kerb > 0.0 {
                 let stone = 0.30 + 0.08 * value2(a * 7.0, 43) + 0.05 * value2(a * 1.1, 44);
                 let side = ramp(0.8, 0.4, normal.z);
-                c = c.lerp(gray(stone) * Vec3::new(1.0, 0.985, 0.95) * (1.0 - 0.25 * side), kerb);
+                c = c.lerp(
+                    gray(stone) * Vec3::new(1.0, 0.985, 0.95) * (1.0 - 0.25 * side),
+                    kerb,
+                );
             }
             if self.air.snow > 0.0 {
                 let lies = (0.86 + 0.4 * (value2(a * 1.3, 45) - 0.5)).clamp(0.0, 1.0) * self.air.snow;
                 let drift = 0.80 + 0.09 * value2(a * 0.8, 46) + 0.04 * value2(a * 5.0, 47) * visible(fp, 0.2);
-                c = c.lerp(gray(drift) * Vec3::new(0.965, 0.985, 1.02), lies * ramp(0.35, 0.75, normal.z));
+                c = c.lerp(
+                    gray(drift) * Vec3::new(0.965, 0.985, 1.02),
+                    lies * ramp(0.35, 0.75, normal.z),
+                );
             }
             c *= 1.0 - 0.30 * self.air.wet;
             c = c.lerp(Vec3::new(0.44, 0.32, 0.18), 0.55 * self.air.dust);
@@ -174,7 +185,8 @@ impl Look {
         tone *= 1.0 - 0.28 * ramp(0.5, 0.05, inside_m);
         let mut color = gray(tone) * Vec3::new(1.0, 0.995, 0.985);
         let paint = self.road_paint(p, a, fp);
-        let worn = 0.80 + 0.25 * (value2(a * 5.0, 59) - 0.5) - 0.28 * ramp(0.60, 0.78, value2(a * 16.0, 60)) * visible(fp, 0.08);
+        let worn = 0.80 + 0.25 * (value2(a * 5.0, 59) - 0.5)
+            - 0.28 * ramp(0.60, 0.78, value2(a * 16.0, 60)) * visible(fp, 0.08);
         color = color.lerp(paint.0, (paint.1 * worn).clamp(0.0, 1.0));
         let mut s = Surface::matt(color, Vec3::Z);
         s.mirror = 0.012;
@@ -193,7 +205,11 @@ impl Look {
         }
         if air.snow > 0.0 {
             let clear = if lane.is_some() { 0.62 * track + 0.10 } else { 0.05 };
-            let lies = ramp(0.30, 0.62, 0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5) + 0.25 * (value2(a * 6.0, 65) - 0.5) - clear);
+            let lies = ramp(
+                0.30,
+                0.62,
+                0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5) + 0.25 * (value2(a * 6.0, 65) - 0.5) - clear,
+            );
             let slush = Vec3::new(0.66, 0.68, 0.72) * (0.86 + 0.22 * value2(a * 2.4, 66));
             s.albedo = (s.albedo * 0.75).lerp(slush, lies * 0.93 * air.snow);
             s.mirror = 0.02 * (1.0 - lies);
@@ -218,7 +234,11 @@ impl Look {
             band((s - 1.5).abs(), 1.5, fp)
         };
         let line = |kind, layer| {
-            let near = if paint.allows(layer, q) { paint.nearest(kind, q) } else { None };
+            let near = if paint.allows(layer, q) {
+                paint.nearest(kind, q)
+            } else {
+                None
+            };
             near.map(|n| (n.distance_m as f32 + wavy, n.along_m))
         };
         if paint.allows(BevLayer::PedCrossing, q) || paint.is_orphan(BevLayer::PedCrossing, q) {
@@ -261,7 +281,11 @@ impl Look {
             Class::Manmade => self.structure(hit, a, normal, fp),
             _ => {
                 let [r, g, b] = class.color();
-                let calm = if class == Class::Others { rgb(104, 106, 104) } else { rgb(r, g, b).lerp(gray(0.2), 0.4) };
+                let calm = if class == Class::Others {
+                    rgb(104, 106, 104)
+                } else {
+                    rgb(r, g, b).lerp(gray(0.2), 0.4)
+                };
                 Surface::matt(calm * (0.8 + 0.4 * value3(a * 4.0, 21)), normal)
             }
         };
@@ -286,7 +310,11 @@ impl Look {
         let leaf = value3(a * 9.0, 25) * fine + 0.5 * (1.0 - fine);
         let clump = value3(a * 2.3, 26);
         let mut s = Surface::matt(hue * (0.45 + 0.75 * leaf + 0.45 * clump), normal);
-        let jitter = Vec3::new(value3(a * 13.0, 27) - 0.5, value3(a * 13.0, 28) - 0.5, value3(a * 13.0, 29) - 0.3);
+        let jitter = Vec3::new(
+            value3(a * 13.0, 27) - 0.5,
+            value3(a * 13.0, 28) - 0.5,
+            value3(a * 13.0, 29) - 0.3,
+        );
         s.normal = (normal + jitter * 0.9 * fine).normalize_or(normal);
         s.through = 0.35;
         s
@@ -312,8 +340,16 @@ impl Look {
         }
         // The wall's own direction instead of the voxels' steps.
         let flat = normal.truncate().normalize_or(Vec2::X);
-        let axes = [structure.axis, structure.axis.perp(), -structure.axis, -structure.axis.perp()];
-        let wall = axes.into_iter().max_by(|x, y| x.dot(flat).total_cmp(&y.dot(flat))).unwrap_or(flat);
+        let axes = [
+            structure.axis,
+            structure.axis.perp(),
+            -structure.axis,
+            -structure.axis.perp(),
+        ];
+        let wall = axes
+            .into_iter()
+            .max_by(|x, y| x.dot(flat).total_cmp(&y.dot(flat)))
+            .unwrap_or(flat);
         let snapped = wall.dot(flat) > 0.72;
         if snapped {
             normal = wall.extend(0.0).lerp(normal, 0.06).normalize_or(normal);
@@ -342,7 +378,10 @@ impl Look {
         if brick {
             let row = (at.y / 0.085).floor();
             let joint = band(((at.y / 0.085) - row - 0.5).abs() - 0.40, 0.1, fp / 0.085);
-            let tone = unit3(IVec3::new((at.x / 0.26 + 0.5 * (row % 2.0)).floor() as i32, row as i32, 3), 17);
+            let tone = unit3(
+                IVec3::new((at.x / 0.26 + 0.5 * (row % 2.0)).floor() as i32, row as i32, 3),
+                17,
+            );
             wall *= 1.0 + visible(fp, 0.09) * (0.34 * (tone - 0.5) - 0.12 * joint);
         } else {
             wall *= 1.0 + visible(fp, 0.05) * 0.12 * (value3(a * 24.0, 18) - 0.5);
@@ -356,7 +395,8 @@ impl Look {
         let floor_m = 2.9 + 0.4 * unit(hash1(s.id, 3));
         let shop = s.height_m > 5.0 && hash1(s.id, 4) % 3 == 0;
         let (column, row) = ((at.x / bay).floor(), ((at.y - 0.25) / floor_m).floor());
-        let f = Vec2::new(at.x / bay - column - 0.5, (at.y - 0.25) / floor_m - row - 0.5) * Vec2::new(bay, floor_m);
+        let f = Vec2::new(at.x / bay - column - 0.5, (at.y - 0.25) / floor_m - row - 0.5)
+            * Vec2::new(bay, floor_m);
         // The top floor needs its whole height.
         if row < 0.0 || (row + 1.0) * floor_m + 0.1 > s.height_m.max(floor_m) {
             return out;
@@ -372,7 +412,11 @@ impl Look {
         // A sill and a frame around the glass, and bars across it.
         let frame = band((d - 0.03).abs(), 0.05, fp);
         let glass = ramp(0.004 + fp * 0.3, -0.004 - fp * 0.3, d);
-        let trim = if unit(hash1(s.id, 5)) > 0.4 { gray(0.55) } else { gray(0.10) };
+        let trim = if unit(hash1(s.id, 5)) > 0.4 {
+            gray(0.55)
+        } else {
+            gray(0.10)
+        };
         out.albedo = out.albedo.lerp(trim, frame * 0.9);
         let sill = band((f.y - middle + half.y + 0.09).abs(), 0.05, fp) * band(q.x, half.x + 0.1, fp);
         out.albedo = out.albedo.lerp(gray(0.5), sill * 0.7);
@@ -381,17 +425,25 @@ impl Look {
             let bars = band(f.x.abs(), 0.03, fp).max(band((f.y - middle - 0.25).abs(), 0.025, fp));
             let blind = unit3(cell, 6);
             let drawn = f.y - middle > half.y * (1.0 - 2.0 * ramp(0.45, 1.0, blind));
-            let inside = if drawn { gray(0.30) * Vec3::new(1.0, 0.96, 0.88) } else { gray(0.022) };
+            let inside = if drawn {
+                gray(0.30) * Vec3::new(1.0, 0.96, 0.88)
+            } else {
+                gray(0.022)
+            };
             let pane = inside.lerp(trim, bars * 0.8);
             out.albedo = out.albedo.lerp(pane, glass);
             out.mirror = 0.085 * glass * (1.0 - bars);
             out.gloss = 0.97;
             let lit = unit3(cell, 7);
             if self.air.lamps > 0.0 && lit < 0.38 {
-                let warm = Vec3::new(1.0, 0.70, 0.38).lerp(Vec3::new(0.85, 0.92, 1.0), ramp(0.26, 0.3, unit3(cell, 8) * 0.4));
-                let room = 0.55 + 0.45 * (1.0 - q.y / half.y) + 0.25 * (value2(Vec2::new(f.x, f.y) * 2.5 + cell.x as f32 * 7.0, 9) - 0.5);
+                let warm = Vec3::new(1.0, 0.70, 0.38)
+                    .lerp(Vec3::new(0.85, 0.92, 1.0), ramp(0.26, 0.3, unit3(cell, 8) * 0.4));
+                let room = 0.55
+                    + 0.45 * (1.0 - q.y / half.y)
+                    + 0.25 * (value2(Vec2::new(f.x, f.y) * 2.5 + cell.x as f32 * 7.0, 9) - 0.5);
                 let night = ramp(0.1, 1.0, self.air.lamps);
-                out.emit = warm * (room * glass * (1.0 - bars) * (0.15 + 0.55 * night) * if drawn { 0.55 } else { 1.0 });
+                out.emit = warm
+                    * (room * glass * (1.0 - bars) * (0.15 + 0.55 * night) * if drawn { 0.55 } else { 1.0 });
             }
         }
         out
@@ -423,7 +475,10 @@ impl Look {
                 }
                 // Gaps of the doors, and their handles.
                 if n.y.abs() > 0.6 && z > 0.22 && z < 0.6 {
-                    let gap = [0.185, -0.03, -0.225].iter().map(|g| (x - g).abs() * s.x).fold(9.0, f32::min);
+                    let gap = [0.185, -0.03, -0.225]
+                        .iter()
+                        .map(|g| (x - g).abs() * s.x)
+                        .fold(9.0, f32::min);
                     out.albedo *= 1.0 - 0.75 * band(gap, 0.008, fp);
                     for door in [-0.005, -0.205] {
                         if (x - door).abs() < 0.016 && (z - 0.5).abs() < 0.010 {
@@ -498,7 +553,9 @@ impl Look {
                 }
                 if z > 0.80 && z < 0.90 && n.x > 0.6 && y < 0.7 {
                     out.albedo = gray(0.01);
-                    out.emit = Vec3::new(1.0, 0.55, 0.1) * (0.25 + 1.2 * lamps) * f32::from(u8::from(unit3((p * 22.0).floor().as_ivec3(), t.id) > 0.55));
+                    out.emit = Vec3::new(1.0, 0.55, 0.1)
+                        * (0.25 + 1.2 * lamps)
+                        * f32::from(u8::from(unit3((p * 22.0).floor().as_ivec3(), t.id) > 0.55));
                 }
                 for wheel in [-0.28, 0.33] {
                     if side && Vec2::new(p.x - wheel * s.x, p.z - 0.48).length() < 0.56 {
@@ -507,8 +564,16 @@ impl Look {
                     }
                 }
                 if n.x.abs() > 0.6 && y > 0.62 && z > 0.17 && z < 0.25 {
-                    out.emit = if n.x > 0.0 { Vec3::new(1.0, 0.95, 0.85) * 7.0 } else { Vec3::new(1.0, 0.035, 0.02) * 2.6 } * lamps;
-                    out.albedo = if n.x > 0.0 { gray(0.5) } else { Vec3::new(0.3, 0.01, 0.01) };
+                    out.emit = if n.x > 0.0 {
+                        Vec3::new(1.0, 0.95, 0.85) * 7.0
+                    } else {
+                        Vec3::new(1.0, 0.035, 0.02) * 2.6
+                    } * lamps;
+                    out.albedo = if n.x > 0.0 {
+                        gray(0.5)
+                    } else {
+                        Vec3::new(0.3, 0.01, 0.01)
+                    };
                 }
                 if n.x > 0.6 && z > 0.30 && z < 0.74 && y < 0.9 {
                     out.albedo = gray(0.014);
@@ -536,8 +601,15 @@ impl Look {
                 if n.y.abs() > 0.7 {
                     // A rim of five spokes inside the tyre.
                     let bike = t.class == Class::Bicycle;
-                    let r = if t.class == Class::Car { (0.165 * s.z + 0.06).clamp(0.2, 0.42) } else { p.z.max(0.3) };
-                    let near = [-0.295f32, 0.3].iter().map(|w| Vec2::new(p.x - w * s.x, p.z - r)).min_by(|a, b| a.length().total_cmp(&b.length()));
+                    let r = if t.class == Class::Car {
+                        (0.165 * s.z + 0.06).clamp(0.2, 0.42)
+                    } else {
+                        p.z.max(0.3)
+                    };
+                    let near = [-0.295f32, 0.3]
+                        .iter()
+                        .map(|w| Vec2::new(p.x - w * s.x, p.z - r))
+                        .min_by(|a, b| a.length().total_cmp(&b.length()));
                     if let (Some(q), true) = (near, t.class == Class::Car) {
                         let d = q.length() / r;
                         let spoke = (q.to_angle() * 5.0 / std::f32::consts::TAU).fract().abs();
@@ -560,7 +632,9 @@ impl Look {
                 let fold = value3(p * Vec3::new(14.0, 14.0, 7.0), t.id);
                 out.albedo = c * (0.72 + 0.5 * fold);
             }
-            Material::Skin => out.albedo = [rgb(224, 172, 136), rgb(190, 130, 96), rgb(120, 78, 54)][t.id as usize % 3],
+            Material::Skin => {
+                out.albedo = [rgb(224, 172, 136), rgb(190, 130, 96), rgb(120, 78, 54)][t.id as usize % 3]
+            }
             Material::Bands(c) => {
                 let banded = if t.class == Class::TrafficCone {
                     (z > 0.42 && z < 0.60) || (z > 0.72 && z < 0.82)
@@ -584,7 +658,9 @@ fn slabs(a: Vec2, fp: f32) -> Vec3 {
     let joint = band(0.5 - f.max_element(), 0.012, fp / 0.9);
     let stain = value2(a * 0.7, 13) * 0.6 + value2(a * 3.1, 14) * 0.4;
     let grain = visible(fp, 0.03) * (value2(a * 40.0, 15) - 0.5) * 0.14;
-    let v = (0.27 + 0.045 * (tone - 0.5) * visible(fp, 0.9) + 0.07 * (stain - 0.5)) * (1.0 + grain) * (1.0 - 0.5 * joint);
+    let v = (0.27 + 0.045 * (tone - 0.5) * visible(fp, 0.9) + 0.07 * (stain - 0.5))
+        * (1.0 + grain)
+        * (1.0 - 0.5 * joint);
     Vec3::new(v * 1.02, v, v * 0.945)
 }
 
@@ -597,7 +673,8 @@ fn pavers(a: Vec2, fp: f32) -> Vec3 {
     let tone = unit3(IVec3::new(cell.x as i32, cell.y as i32, 2), 16);
     let near = visible(fp, 0.12);
     let joint = band((0.5 - f.max_element()) * 0.15, 0.006, fp);
-    let v = (0.22 + 0.10 * (tone - 0.5) * near + 0.05 * (value2(a * 0.6, 17) - 0.5)) * (1.0 - 0.5 * joint * near);
+    let v =
+        (0.22 + 0.10 * (tone - 0.5) * near + 0.05 * (value2(a * 0.6, 17) - 0.5)) * (1.0 - 0.5 * joint * near);
     Vec3::new(v * 1.12, v * 0.97, v * 0.84)
 }
 
@@ -605,7 +682,10 @@ fn pavers(a: Vec2, fp: f32) -> Vec3 {
 fn grass(a: Vec2, fp: f32, seed: u32) -> Vec3 {
     let dry = fbm2(a * 0.13, 4, seed ^ 33);
     let base = Vec3::new(0.070, 0.105, 0.026).lerp(Vec3::new(0.155, 0.140, 0.058), ramp(0.42, 0.72, dry));
-    let base = base.lerp(Vec3::new(0.120, 0.090, 0.058), ramp(0.64, 0.74, fbm2(a * 0.35 + 5.0, 3, seed ^ 34)) * 0.8);
+    let base = base.lerp(
+        Vec3::new(0.120, 0.090, 0.058),
+        ramp(0.64, 0.74, fbm2(a * 0.35 + 5.0, 3, seed ^ 34)) * 0.8,
+    );
     let blades = visible(fp, 0.05) * (value2(a * Vec2::new(55.0, 42.0), 35) - 0.5);
     let tufts = visible(fp, 0.25) * (value2(a * 5.5, 36) - 0.5);
     let waves = value2(a * 0.9, 37) - 0.5;

@@ -98,7 +98,9 @@ impl ViewSynthesizer for RayMarched {
     fn synthesize(&self, input: &SynthesisInput<'_>) -> Result<Vec<CameraImage>, SynthesisError> {
         let [w, h] = input.size;
         if u64::from(w) * u64::from(h) > 1 << 28 {
-            return Err(SynthesisError::Input(format!("a picture of {w}x{h} px is too large")));
+            return Err(SynthesisError::Input(format!(
+                "a picture of {w}x{h} px is too large"
+            )));
         }
         let look = Look::new(input.frame, input.rig, &input.conditions);
         let cameras = input.rig.cameras.par_iter();

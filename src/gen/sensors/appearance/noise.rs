@@ -48,8 +48,16 @@ pub fn value3(p: Vec3, seed: u32) -> f32 {
     let c = cell.as_ivec3();
     let at = |x, y, z| unit3(c + IVec3::new(x, y, z), seed);
     let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let low = mix(mix(at(0, 0, 0), at(1, 0, 0), u), mix(at(0, 1, 0), at(1, 1, 0), u), v);
-    let high = mix(mix(at(0, 0, 1), at(1, 0, 1), u), mix(at(0, 1, 1), at(1, 1, 1), u), v);
+    let low = mix(
+        mix(at(0, 0, 0), at(1, 0, 0), u),
+        mix(at(0, 1, 0), at(1, 1, 0), u),
+        v,
+    );
+    let high = mix(
+        mix(at(0, 0, 1), at(1, 0, 1), u),
+        mix(at(0, 1, 1), at(1, 1, 1), u),
+        v,
+    );
     mix(low, high, w)
 }
 

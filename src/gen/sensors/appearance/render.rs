@@ -47,11 +47,17 @@ impl Look {
             let rough = |x: usize, y: usize| {
                 let s = &samples[y * w + x];
                 let tone = |c: Vec3| (c.element_sum() * self.air.exposure).sqrt();
-                let near = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+                let near = [
+                    (x.wrapping_sub(1), y),
+                    (x + 1, y),
+                    (x, y.wrapping_sub(1)),
+                    (x, y + 1),
+                ];
                 near.into_iter().any(|(x, y)| {
                     x < w && y < h && {
                         let o = &samples[y * w + x];
-                        (tone(o.color) - tone(s.color)).abs() > CONTRAST || o.key != s.key && (tone(o.color) - tone(s.color)).abs() > 0.015
+                        (tone(o.color) - tone(s.color)).abs() > CONTRAST
+                            || o.key != s.key && (tone(o.color) - tone(s.color)).abs() > 0.015
                     }
                 })
             };
@@ -77,7 +83,12 @@ impl Look {
             .enumerate()
             .flat_map_iter(|(i, c)| {
                 let (x, y) = (i % w, i / w);
-                self.develop(*c, Vec2::new(x as f32 / w as f32, y as f32 / h as f32) - 0.5, x, y)
+                self.develop(
+                    *c,
+                    Vec2::new(x as f32 / w as f32, y as f32 / h as f32) - 0.5,
+                    x,
+                    y,
+                )
             })
             .collect();
         CameraImage {
@@ -97,7 +108,11 @@ impl Look {
             return color;
         }
         let flat = d.truncate().length_squared();
-        let radii: &[f32] = if rain { &[3.2, 5.0, 7.5, 11.0] } else { &[2.6, 3.7, 5.0, 6.8, 9.0, 12.0, 16.0] };
+        let radii: &[f32] = if rain {
+            &[3.2, 5.0, 7.5, 11.0]
+        } else {
+            &[2.6, 3.7, 5.0, 6.8, 9.0, 12.0, 16.0]
+        };
         for (layer, radius) in radii.iter().enumerate() {
             let b = o.truncate().dot(d.truncate());
             let c = o.truncate().length_squared() - radius * radius;
@@ -131,7 +146,11 @@ impl Look {
                 let c = q.floor().as_ivec2();
                 let h = hash3(IVec3::new(c.x, c.y, layer as i32), self.seed ^ 0x5e0);
                 if h % 100 < 46 {
-                    let middle = Vec2::new(unit3(IVec3::new(c.x, c.y, 1), h), unit3(IVec3::new(c.x, c.y, 2), h)) * 0.7 + 0.15;
+                    let middle = Vec2::new(
+                        unit3(IVec3::new(c.x, c.y, 1), h),
+                        unit3(IVec3::new(c.x, c.y, 2), h),
+                    ) * 0.7
+                        + 0.15;
                     let off = (q - c.as_vec2() - middle) * cell * Vec2::new(1.0, 0.8);
                     let radius = 0.004 + 0.006 * unit(h);
                     let r = radius.max(px * 0.6);
@@ -147,10 +166,15 @@ impl Look {
     fn develop(&self, c: Vec3, at: Vec2, x: usize, y: usize) -> [u8; 4] {
         let vignette = 1.0 - 0.34 * at.length_squared();
         let c = film(c.max(Vec3::ZERO) * (self.air.exposure * vignette));
-        let noise = unit3(IVec3::new(x as i32, y as i32, 5), 99) - unit3(IVec3::new(x as i32, y as i32, 6), 99);
+        let noise =
+            unit3(IVec3::new(x as i32, y as i32, 5), 99) - unit3(IVec3::new(x as i32, y as i32, 6), 99);
         let strength = 0.008 + 0.016 * ramp(0.9, 1.0, self.air.lamps);
         let byte = |v: f32| {
-            let v = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+            let v = if v <= 0.003_130_8 {
+                12.92 * v
+            } else {
+                1.055 * v.powf(1.0 / 2.4) - 0.055
+            };
             ((v + noise * strength).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
         };
         [byte(c.x), byte(c.y), byte(c.z), 255]
@@ -160,7 +184,10 @@ impl Look {
 /// The filmic curve of K. Narkowicz (2015), an approximation of ACES, with colours drawn a little
 /// towards grey as they burn out.
 fn film(c: Vec3) -> Vec3 {
-    let c = c.lerp(Vec3::splat(c.element_sum() / 3.0), ramp(0.8, 6.0, c.max_element()) * 0.5);
+    let c = c.lerp(
+        Vec3::splat(c.element_sum() / 3.0),
+        ramp(0.8, 6.0, c.max_element()) * 0.5,
+    );
     let curve = |x: f32| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
     c.map(|v| curve(v * 0.92).clamp(0.0, 1.0))
 }
@@ -185,7 +212,11 @@ fn glare(light: &mut [Vec3], w: usize, h: usize, lamps: f32, exposure: f32) {
                     for k in -reach..=reach {
                         let weight = (-(k * k) as f32 / (0.18 * (reach * reach) as f32)).exp();
                         total += weight;
-                        let (px, py) = if along_x { (x.wrapping_add_signed(k), y) } else { (x, y.wrapping_add_signed(k)) };
+                        let (px, py) = if along_x {
+                            (x.wrapping_add_signed(k), y)
+                        } else {
+                            (x, y.wrapping_add_signed(k))
+                        };
                         if px < sw && py < sh {
                             sum += from[py * sw + px] * weight;
                         }

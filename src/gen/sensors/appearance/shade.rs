@@ -28,7 +28,9 @@ impl Look {
     pub(super) fn light_along(&self, o: Vec3, d: Vec3, pixel: f32) -> Sample {
         let Some(hit) = self.trace(o, d, FAR_M, false) else {
             return Sample {
-                color: self.beyond(o, d, f32::INFINITY).unwrap_or_else(|| self.air.sky(self.anchor_dir(d))),
+                color: self
+                    .beyond(o, d, f32::INFINITY)
+                    .unwrap_or_else(|| self.air.sky(self.anchor_dir(d))),
                 t: f32::INFINITY,
                 key: 0,
             };
@@ -79,7 +81,11 @@ impl Look {
             }
             // Streets that leave the grid stay open in front.
             let share = self.ground.at(p.truncate(), p.truncate()).share[0];
-            let open = if radius < 100.0 { ramp(0.15, 0.5, share) } else { 0.0 };
+            let open = if radius < 100.0 {
+                ramp(0.15, 0.5, share)
+            } else {
+                0.0
+            };
             let around = self.anchor_dir(p);
             if let Some(color) = self.air.skyline(around, radius, open) {
                 return Some(self.air.through(color, t, self.anchor_dir(d)));
@@ -99,7 +105,11 @@ impl Look {
         let strength = air.sun.max_element();
         let lit_through = s.through * (-facing).max(0.0);
         if strength > 0.05 && (facing > 0.0 || lit_through > 0.02) {
-            let shadow = if follow { self.occluded(lift, to_sun, SHADOW_M) } else { false };
+            let shadow = if follow {
+                self.occluded(lift, to_sun, SHADOW_M)
+            } else {
+                false
+            };
             if !shadow {
                 out += s.albedo * air.sun * (facing.max(0.0) * (1.0 - 0.3 * s.through) + lit_through * 0.6);
                 if s.gloss > 0.0 {
@@ -124,7 +134,11 @@ impl Look {
             let share = s.mirror + (1.0 - s.mirror) * grazing * s.gloss * s.gloss * 0.85;
             if share > 0.012 {
                 let r = d - n * (2.0 * d.dot(n));
-                let r = if r.dot(n) < 0.0 { r - n * (2.0 * r.dot(n)) } else { r };
+                let r = if r.dot(n) < 0.0 {
+                    r - n * (2.0 * r.dot(n))
+                } else {
+                    r
+                };
                 let mut seen = if follow && s.gloss > 0.55 {
                     self.mirrored(lift, r)
                 } else {
@@ -210,7 +224,8 @@ impl Look {
                 Beam::Head => {
                     // Wide on the sides, cut off above the horizon.
                     let up = -l.z + lamp.axis.z * -1.0;
-                    ramp(0.80, 0.985, cos) * (0.12 + 0.88 * ramp(0.035, -0.02, up)) + 0.04 * ramp(0.2, 0.9, cos)
+                    ramp(0.80, 0.985, cos) * (0.12 + 0.88 * ramp(0.035, -0.02, up))
+                        + 0.04 * ramp(0.2, 0.9, cos)
                 }
                 Beam::Glow => ramp(-0.1, 0.8, cos),
             };

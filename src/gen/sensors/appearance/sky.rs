@@ -89,7 +89,11 @@ impl Air {
         let azimuth = 2.15 + (unit(hash1(seed, 4)) - 0.5) * if seed == 0 { 0.0 } else { 5.0 };
         let elevation = f32::to_radians(elevation_deg);
         let mut air = Self {
-            to_sun: v(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin()),
+            to_sun: v(
+                azimuth.cos() * elevation.cos(),
+                azimuth.sin() * elevation.cos(),
+                elevation.sin(),
+            ),
             sun,
             zenith,
             horizon,
@@ -179,7 +183,11 @@ impl Air {
         if self.clouds < 0.99 {
             let n = fbm2(q * 0.75 + 9.0, 5, self.seed ^ 0xc10d);
             let cover = ramp(1.0 - self.clouds - 0.06, 1.0 - self.clouds + 0.22, n) * ramp(0.0, 0.16, up);
-            let thick = fbm2(q * 0.75 + 9.0 + self.to_sun.truncate() * 0.22, 4, self.seed ^ 0xc10d);
+            let thick = fbm2(
+                q * 0.75 + 9.0 + self.to_sun.truncate() * 0.22,
+                4,
+                self.seed ^ 0xc10d,
+            );
             let lit = (0.5 + 1.6 * (n - thick)).clamp(0.15, 1.0);
             let white = self.sun * 0.36 * (0.4 + 0.6 * lit) + self.ambient * (0.42 + 0.2 * lit);
             color = color.lerp(white, cover * 0.9);
@@ -222,7 +230,11 @@ impl Air {
         let built = unit(h) > 0.45;
         let height = if built {
             let inside = (s / 19.0 - plot - 0.5).abs();
-            if inside > 0.44 { 0.0 } else { (6.0 + 9.0 * unit(hash1(h, 1))) * scale.sqrt() }
+            if inside > 0.44 {
+                0.0
+            } else {
+                (6.0 + 9.0 * unit(hash1(h, 1))) * scale.sqrt()
+            }
         } else {
             0.0
         };
@@ -236,7 +248,8 @@ impl Air {
         let free = 1.0 - open;
         let lit = |albedo: Vec3, sun: f32| albedo * (self.ambient * 0.62 + self.sun * sun + self.bounce);
         if p.z < trees * free * if built { 0.45 } else { 1.0 } {
-            let leaf = value2(Vec2::new(s, p.z) * 1.4, layer ^ 9) * 0.6 + value2(Vec2::new(s, p.z) * 0.5, layer ^ 10) * 0.4;
+            let leaf = value2(Vec2::new(s, p.z) * 1.4, layer ^ 9) * 0.6
+                + value2(Vec2::new(s, p.z) * 0.5, layer ^ 10) * 0.4;
             let albedo = v(0.055, 0.085, 0.032) * (0.55 + 0.9 * leaf);
             return Some(self.whitened(lit(albedo, 0.34), 0.4));
         }
@@ -248,7 +261,10 @@ impl Air {
             let f = cell - cell.floor();
             if f.x > 0.28 && f.x < 0.72 && f.y > 0.3 && f.y < 0.8 {
                 albedo = v(0.09, 0.11, 0.13);
-                let on = unit3(IVec3::new(cell.x.floor() as i32, cell.y.floor() as i32, h as i32), 3);
+                let on = unit3(
+                    IVec3::new(cell.x.floor() as i32, cell.y.floor() as i32, h as i32),
+                    3,
+                );
                 if on < 0.32 {
                     emit = v(1.0, 0.72, 0.40) * (0.30 * self.lamps * (0.4 + on));
                 }

@@ -194,12 +194,23 @@ impl Thing {
         }
         let id = hash1(b.id.0, seed);
         let size = b.size_m.as_vec3();
-        let mut build = Builder { parts: Vec::new(), s: size };
+        let mut build = Builder {
+            parts: Vec::new(),
+            s: size,
+        };
         let paint = match b.class {
-            Class::Bus => [rgb(200, 60, 40), rgb(40, 90, 160), rgb(230, 230, 225), rgb(50, 120, 80)][id as usize % 4],
-            Class::Truck | Class::Trailer => {
-                [rgb(226, 228, 230), rgb(200, 204, 208), rgb(150, 40, 36), rgb(60, 90, 140)][id as usize % 4]
-            }
+            Class::Bus => [
+                rgb(200, 60, 40),
+                rgb(40, 90, 160),
+                rgb(230, 230, 225),
+                rgb(50, 120, 80),
+            ][id as usize % 4],
+            Class::Truck | Class::Trailer => [
+                rgb(226, 228, 230),
+                rgb(200, 204, 208),
+                rgb(150, 40, 36),
+                rgb(60, 90, 140),
+            ][id as usize % 4],
             Class::ConstructionVehicle => rgb(232, 168, 20),
             _ => car_paint(id),
         };
@@ -344,7 +355,10 @@ impl Part {
                     for t in [t0, t1] {
                         let p = o + d * t;
                         if t > 1e-4 && t < limit && (0.0..=*height).contains(&p.z) {
-                            best = Some((t, Vec3::new(p.x, p.y, -k * p.truncate().length()).normalize_or(Vec3::Z)));
+                            best = Some((
+                                t,
+                                Vec3::new(p.x, p.y, -k * p.truncate().length()).normalize_or(Vec3::Z),
+                            ));
                             break;
                         }
                     }
@@ -408,12 +422,21 @@ fn shape(b: &mut Builder, class: Class, id: u32) {
             let r = (0.165 * s.z + 0.06).clamp(0.2, 0.42);
             b.wheels(&[-0.295, 0.3], r, 0.21);
             for side in [0.98, -0.98] {
-                b.round([front + 0.1, side * 0.53, belt + 0.02], [0.09, 0.11, 0.075], Material::Body);
+                b.round(
+                    [front + 0.1, side * 0.53, belt + 0.02],
+                    [0.09, 0.11, 0.075],
+                    Material::Body,
+                );
             }
         }
         Class::Bus => {
             b.block([-0.5, -0.5, 0.1], [0.5, 0.5, 0.97], 0.14, Material::Coach);
-            b.block([-0.3, -0.3, 0.9], [0.1, 0.3, 1.0], 0.05, Material::Plain(Vec3::splat(0.6)));
+            b.block(
+                [-0.3, -0.3, 0.9],
+                [0.1, 0.3, 1.0],
+                0.05,
+                Material::Plain(Vec3::splat(0.6)),
+            );
             b.wheels(&[-0.28, 0.33], 0.48, 0.3);
         }
         Class::Truck => {
@@ -436,7 +459,12 @@ fn shape(b: &mut Builder, class: Class, id: u32) {
             if van || s.z > 2.2 {
                 b.block([-0.5, -0.5, 0.24], [0.49 - cab, 0.5, 1.0], 0.04, Material::Cargo);
             } else {
-                b.block([-0.5, -0.48, 0.24], [0.49 - cab, 0.48, 0.55], 0.03, Material::Cargo);
+                b.block(
+                    [-0.5, -0.48, 0.24],
+                    [0.49 - cab, 0.48, 0.55],
+                    0.03,
+                    Material::Cargo,
+                );
             }
             b.wheels(&[-0.34, 0.34], (0.16 * s.z).clamp(0.3, 0.5), 0.28);
         }
@@ -458,11 +486,21 @@ fn shape(b: &mut Builder, class: Class, id: u32) {
         Class::Barrier => {
             // Long in y or in x: either way it is a wall with bands.
             let bands = Material::Bands(rgb(206, 44, 30));
-            b.block([-0.5, -0.5, 0.0], [0.5, 0.5, 0.16], 0.03, Material::Plain(Vec3::splat(0.12)));
+            b.block(
+                [-0.5, -0.5, 0.0],
+                [0.5, 0.5, 0.16],
+                0.03,
+                Material::Plain(Vec3::splat(0.12)),
+            );
             b.block([-0.28, -0.5, 0.3], [0.28, 0.5, 0.62], 0.02, bands);
             b.block([-0.28, -0.5, 0.7], [0.28, 0.5, 1.0], 0.02, bands);
             for y in [-0.42, 0.4] {
-                b.block([-0.2, y, 0.1], [0.2, y + 0.04, 1.0], 0.0, Material::Plain(Vec3::splat(0.4)));
+                b.block(
+                    [-0.2, y, 0.1],
+                    [0.2, y + 0.04, 1.0],
+                    0.0,
+                    Material::Plain(Vec3::splat(0.4)),
+                );
             }
         }
         Class::Motorcycle | Class::Bicycle => {
@@ -470,14 +508,25 @@ fn shape(b: &mut Builder, class: Class, id: u32) {
             let (r, w) = if motor { (0.3f32, 0.07) } else { (0.33, 0.02) };
             let r = r.min(s.z * 0.3);
             for x in [-0.5 * s.x + r, 0.5 * s.x - r] {
-                b.parts.push((Part::Wheel(Vec3::new(x, 0.0, r), r, w), Material::Wheel));
+                b.parts
+                    .push((Part::Wheel(Vec3::new(x, 0.0, r), r, w), Material::Wheel));
             }
             if motor {
                 b.block([-0.3, -0.16, 0.26], [0.28, 0.16, 0.52], 0.08, Material::Body);
                 b.block([-0.34, -0.14, 0.5], [0.02, 0.14, 0.57], 0.03, Material::Dark);
             } else {
-                b.block([-0.26, -0.025, 0.36], [0.26, 0.025, 0.41], 0.0, Material::Plain(rgb(40, 90, 120)));
-                b.block([-0.14, -0.02, 0.3], [-0.1, 0.02, 0.62], 0.0, Material::Plain(rgb(40, 90, 120)));
+                b.block(
+                    [-0.26, -0.025, 0.36],
+                    [0.26, 0.025, 0.41],
+                    0.0,
+                    Material::Plain(rgb(40, 90, 120)),
+                );
+                b.block(
+                    [-0.14, -0.02, 0.3],
+                    [-0.1, 0.02, 0.62],
+                    0.0,
+                    Material::Plain(rgb(40, 90, 120)),
+                );
             }
             b.block([0.24, -0.4, 0.62], [0.29, 0.4, 0.66], 0.0, Material::Dark);
             b.block([0.24, -0.03, 0.3], [0.28, 0.03, 0.64], 0.0, Material::Dark);
@@ -487,7 +536,12 @@ fn shape(b: &mut Builder, class: Class, id: u32) {
         }
         Class::Pedestrian => person(b, id, [0.0; 3], 1.0),
         Class::TrafficCone => {
-            b.block([-0.5, -0.5, 0.0], [0.5, 0.5, 0.05], 0.0, Material::Plain(Vec3::splat(0.03)));
+            b.block(
+                [-0.5, -0.5, 0.0],
+                [0.5, 0.5, 0.05],
+                0.0,
+                Material::Plain(Vec3::splat(0.03)),
+            );
             let r = s.x.min(s.y) * 0.36;
             b.parts.push((
                 Part::Cone(Vec3::new(0.0, 0.0, 0.05 * s.z), 0.95 * s.z, r, r * 0.2),
@@ -522,9 +576,21 @@ fn person(b: &mut Builder, id: u32, at: [f32; 3], part: f32) {
         b.parts.push((Part::Round(centre, Vec3::from(r) * h), m));
     };
     for side in [-1.0, 1.0] {
-        put([side * stride, side * 0.055, 0.25], [0.062, 0.055, 0.27], trousers);
-        put([side * stride + 0.04, side * 0.055, 0.025], [0.075, 0.04, 0.03], Material::Dark);
-        put([-side * stride * 0.6, side * 0.148, 0.62], [0.045, 0.04, 0.19], coat);
+        put(
+            [side * stride, side * 0.055, 0.25],
+            [0.062, 0.055, 0.27],
+            trousers,
+        );
+        put(
+            [side * stride + 0.04, side * 0.055, 0.025],
+            [0.075, 0.04, 0.03],
+            Material::Dark,
+        );
+        put(
+            [-side * stride * 0.6, side * 0.148, 0.62],
+            [0.045, 0.04, 0.19],
+            coat,
+        );
     }
     put([0.0, 0.0, 0.66], [0.085, 0.125, 0.205], coat);
     put([0.0, 0.0, 0.80], [0.06, 0.11, 0.06], coat);

@@ -139,7 +139,12 @@ impl Ground {
         }
         while let Some(i) = queue.pop_front() {
             let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
-            for (nx, ny) in [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+            for (nx, ny) in [
+                (x.wrapping_sub(1), y),
+                (x + 1, y),
+                (x, y.wrapping_sub(1)),
+                (x, y + 1),
+            ] {
                 if nx < GridSpec::NX && ny < GridSpec::NY {
                     let n = nx * GridSpec::NY + ny;
                     if source[n] == u32::MAX {

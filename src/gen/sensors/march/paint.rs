@@ -165,7 +165,8 @@ impl Paint {
                 }
             }
             let corners = || {
-                [-0.25, 0.25].map(|dx| [-0.25, 0.25].map(|dy| self.crossing_at(p + DVec2::new(dx, dy)).is_some()))
+                [-0.25, 0.25]
+                    .map(|dx| [-0.25, 0.25].map(|dy| self.crossing_at(p + DVec2::new(dx, dy)).is_some()))
             };
             let bit = BevLayer::PedCrossing.bit();
             if cell & bit != 0 && !corners().as_flattened().contains(&true) {

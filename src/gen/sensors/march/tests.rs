@@ -92,7 +92,9 @@ fn boxes_replace_their_voxels_and_the_road_below_them_returns() {
     assert!((above.z - hit.t - top).abs() < 0.02, "{hit:?}");
     // Between the wheels, below the sill, one looks through to the other side or onto the ground.
     let side = b.to_ego(DVec3::new(0.0, b.size_m.y / 2.0 + 0.25, 0.0));
-    let low = scene.cast(side.truncate().extend(1.0), -DVec3::Z).expect("ground");
+    let low = scene
+        .cast(side.truncate().extend(1.0), -DVec3::Z)
+        .expect("ground");
     assert!(low.box_id.is_none() && low.t > 0.7, "{low:?}");
 }
 
@@ -127,7 +129,10 @@ fn lines_are_finer_than_voxels_and_follow_the_cells() {
             assert_eq!((id(x, y + 0.22), id(x, y - 0.22)), (11, 11));
         }
         let p = GridSpec::center(150, 60, 0);
-        assert_eq!((id(p.x, p.y), id(p.x + 0.19, p.y - 0.19), id(p.x + 0.21, p.y)), (18, 18, 11));
+        assert_eq!(
+            (id(p.x, p.y), id(p.x + 0.19, p.y - 0.19), id(p.x + 0.21, p.y)),
+            (18, 18, 11)
+        );
         let x = GridSpec::center(27, 0, 0).x;
         assert_eq!(id(x, 2.5 + x * 0.05), 11, "erased");
     }
@@ -145,7 +150,19 @@ fn row_45_march_bears_anything() {
     let world = World::random(2);
     let street = complete(&world, Vertical::Occ3d);
     let mut camera = SensorRig::default().cameras[1].clone();
-    let pick = [0.0, -0.0, 1e-300, 1.0, -1.0, 0.4, 40.0, -40.0, 1e6, f64::NAN, f64::INFINITY];
+    let pick = [
+        0.0,
+        -0.0,
+        1e-300,
+        1.0,
+        -1.0,
+        0.4,
+        40.0,
+        -40.0,
+        1e6,
+        f64::NAN,
+        f64::INFINITY,
+    ];
     for grid in [&VoxelGrid::new(), &full, &street] {
         for options in everything() {
             let scene = MarchScene::new(grid, &world.layout, &world.boxes, &options);
@@ -170,7 +187,12 @@ fn row_45_march_bears_anything() {
             }
             // A lens of 170 degrees, a camera inside a voxel, a broken pose.
             camera.focal_px = [800.0 / 2.0 / 85f64.to_radians().tan(); 2];
-            for place in [[1.5, 0.0, 1.5], [0.0, 0.0, -0.8], [f64::NAN, 0.0, 0.0], [1e9, 0.0, 1.0]] {
+            for place in [
+                [1.5, 0.0, 1.5],
+                [0.0, 0.0, -0.8],
+                [f64::NAN, 0.0, 0.0],
+                [1e9, 0.0, 1.0],
+            ] {
                 camera.translation_m = place;
                 let maps = scene.render(&camera, 61, 33).into_camera_maps("X");
                 assert_eq!(maps.semantic.len(), 61 * 33);
@@ -181,7 +203,11 @@ fn row_45_march_bears_anything() {
     }
     let inside = empty(&full, &everything()[0]).cast(DVec3::new(0.1, 0.1, 1.0), DVec3::X);
     assert_eq!(inside.expect("full").t, 0.0);
-    assert!(empty(&VoxelGrid::new(), &everything()[2]).cast(DVec3::Z, -DVec3::Z).is_none());
+    assert!(
+        empty(&VoxelGrid::new(), &everything()[2])
+            .cast(DVec3::Z, -DVec3::Z)
+            .is_none()
+    );
 }
 
 #[test]

@@ -1,0 +1,174 @@
+//! What the cameras show: classes, depths, pictures, planes or the layout, each from what suits it.
+
+use std::sync::Arc;
+
+use super::state::{CameraMode, CameraSource, UiState};
+use crate::generation::sensors::appearance::{CameraImage, Conditions, Look, Quality};
+use crate::generation::sensors::cloud::GaussianCloud;
+use crate::generation::sensors::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
+use crate::generation::sensors::march::{MarchOptions, MarchScene};
+use crate::generation::sensors::mpi::{self, RenderIds};
+use crate::generation::sensors::perspective;
+use crate::generation::sensors::splat::{self, SplatOptions};
+use crate::scene::sensor_data::Planes;
+use crate::scene::{CameraMaps, MultiPlaneImage, PerspectiveMap, Scene};
+
+/// Size of the picture that is enlarged.
+pub const LARGE_SIZE: [u32; 2] = [800, 450];
+/// Voxels below the surface that still count for a picture; see [`GaussianCloud::from_grid_shell`].
+const SHELL_LAYERS: usize = 2;
+/// Depth at which the colours begin and end, m.
+const DEPTH_M: (f32, f32) = (2.0, 60.0);
+
+/// What is asked of the sensors besides the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// What the cameras show.
+    pub mode: CameraMode,
+    /// What classes and depths are rendered from.
+    pub source: CameraSource,
+    /// Bit per camera that is not rendered.
+    pub hidden: u32,
+    /// The camera that is rendered large as well.
+    pub enlarged: Option<usize>,
+}
+
+impl Wanted {
+    /// What the window shows.
+    pub fn of(state: &UiState) -> Self {
+        let exact = matches!(state.camera_mode, CameraMode::Semantic | CameraMode::Depth);
+        Self {
+            mode: state.camera_mode,
+            source: if exact {
+                state.camera_source
+            } else {
+                CameraSource::default()
+            },
+            hidden: state.cameras_hidden,
+            enlarged: state.inspected,
+        }
+    }
+
+    /// The same, whatever is enlarged.
+    pub fn pictures(self) -> Self {
+        Self {
+            enlarged: None,
+            ..self
+        }
+    }
+}
+
+/// What one camera shows.
+#[derive(Clone, Debug)]
+pub struct CameraView {
+    /// Index of the camera in the rig.
+    pub camera: usize,
+    /// What it shows.
+    pub picture: Arc<CameraPicture>,
+}
+
+/// A picture, as data.
+#[derive(Clone, Debug)]
+pub enum CameraPicture {
+    /// Classes and depths.
+    Maps(CameraMaps),
+    /// Planes of classes.
+    Planes(MultiPlaneImage),
+    /// Boxes and lanes.
+    Layout(PerspectiveMap),
+    /// What a camera would see.
+    Picture(CameraImage),
+}
+
+impl CameraPicture {
+    /// Width, height and RGBA; `plane_m` is the depth of the plane that is shown.
+    pub fn rgba(&self, mode: CameraMode, plane_m: f64) -> ([usize; 2], Vec<u8>) {
+        match self {
+            Self::Maps(maps) => {
+                let rgba = match mode {
+                    CameraMode::Depth => depth_rgba(&maps.depth_m, DEPTH_M.0, DEPTH_M.1),
+                    _ => semantic_rgba(maps, true),
+                };
+                ([maps.width, maps.height], rgba)
+            }
+            Self::Planes(image) => {
+                let step_m = image.planes.depth_m(1) - image.planes.depth_m(0);
+                let plane = ((plane_m - image.planes.near_m) / step_m).round().max(0.0) as u16;
+                let last = image.planes.count.saturating_sub(1);
+                ([image.width, image.height], plane_rgba(image, plane.min(last)))
+            }
+            Self::Layout(map) => ([map.width, map.height], perspective_rgba(map)),
+            Self::Picture(image) => ([image.width, image.height], image.rgba.clone()),
+        }
+    }
+}
+
+/// A scene made ready for any number of cameras.
+pub enum Prepared {
+    /// Gaussians.
+    Splats(GaussianCloud),
+    /// Voxels and shapes.
+    March(Box<MarchScene>),
+    /// Classes of all voxels.
+    Ids(RenderIds),
+    /// Nothing to make ready.
+    Layout,
+    /// Materials, light and weather.
+    Look(Box<Look>),
+}
+
+impl Prepared {
+    /// Makes the current frame of a scene ready.
+    pub fn new(scene: &Scene, mode: CameraMode, source: CameraSource) -> Self {
+        let frame = scene.frame();
+        match (mode, source) {
+            (CameraMode::Semantic | CameraMode::Depth, CameraSource::Splats) => Self::Splats(
+                GaussianCloud::from_grid_shell(&frame.occupancy, frame.layout.cells(), SHELL_LAYERS),
+            ),
+            (CameraMode::Semantic | CameraMode::Depth, source) => {
+                let options = MarchOptions {
+                    boxes: source == CameraSource::Shapes,
+                    seed: scene.seed,
+                    ..MarchOptions::default()
+                };
+                let march = MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options);
+                Self::March(Box::new(march))
+            }
+            (CameraMode::Planes, _) => Self::Ids(RenderIds::new(&frame.occupancy, frame.layout.cells())),
+            (CameraMode::Layout, _) => Self::Layout,
+            (CameraMode::Picture, _) => {
+                let conditions = Conditions {
+                    seed: scene.seed,
+                    ..Conditions::from_prompt(&scene.prompt)
+                };
+                Self::Look(Box::new(Look::new(frame, &scene.rig, &conditions)))
+            }
+        }
+    }
+
+    /// What camera `camera` of the scene's rig shows. Panics if the rig has no such camera.
+    pub fn view(&self, scene: &Scene, camera: usize, [width, height]: [u32; 2], quick: bool) -> CameraView {
+        let (frame, of) = (scene.frame(), &scene.rig.cameras[camera]);
+        let picture = match self {
+            Self::Splats(cloud) => {
+                CameraPicture::Maps(splat::render(cloud, of, width, height, &SplatOptions::default()))
+            }
+            Self::March(march) => {
+                CameraPicture::Maps(march.render(of, width, height).into_camera_maps(&of.name))
+            }
+            Self::Ids(ids) => CameraPicture::Planes(mpi::render(ids, of, width, height, Planes::default())),
+            Self::Layout => {
+                let boxes = frame.boxes.values();
+                CameraPicture::Layout(perspective::render(&frame.layout, boxes, of, width, height))
+            }
+            Self::Look(look) => {
+                let quality = if quick { Quality::Preview } else { Quality::Full };
+                CameraPicture::Picture(look.render(of, width, height, quality))
+            }
+        };
+        CameraView {
+            camera,
+            picture: Arc::new(picture),
+        }
+    }
+}
