@@ -8,21 +8,34 @@ use anyhow::Context;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
+use crate::app::picture::Picture;
 use crate::app::{open, picture};
 use crate::formats::multi_plane;
+use crate::generation::sensors::appearance::{
+    Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
+};
 use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, mpi, perspective, splat};
 use crate::scene::sensor_data::Planes;
 use crate::scene::{CameraMaps, LidarSweep, Scene};
 
 /// What can be rendered.
-const KINDS: [&str; 7] = ["semantic", "depth", "perspective", "mpi", "lidar", "bev", "view"];
+const KINDS: [&str; 8] = [
+    "semantic",
+    "depth",
+    "appearance",
+    "perspective",
+    "mpi",
+    "lidar",
+    "bev",
+    "view",
+];
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Render {
     /// Scene to read.
     scene: PathBuf,
-    /// Comma-separated: semantic, depth, perspective, mpi, lidar, bev, view.
+    /// Comma-separated: semantic, depth, appearance, perspective, mpi, lidar, bev, view.
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     what: Vec<String>,
     /// JSON file with another sensor rig (as in assets/rigs).
@@ -31,6 +44,15 @@ pub struct Render {
     /// Size of camera pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
+    /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the prompt's.
+    #[arg(long, value_name = "NAME")]
+    weather: Option<Weather>,
+    /// Time of day of appearance: dawn, day, dusk, night; else the prompt's.
+    #[arg(long, value_name = "NAME")]
+    time: Option<TimeOfDay>,
+    /// One sample per pixel for appearance: several times faster, rougher edges.
+    #[arg(long)]
+    preview: bool,
     /// Folder to write into.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -74,7 +96,51 @@ fn ply(sweep: &LidarSweep) -> Vec<u8> {
     out
 }
 
+/// Pictures of all cameras in one, three to a row.
+pub fn contact_sheet(pictures: &[Picture]) -> Picture {
+    let rows: Vec<Vec<Picture>> = pictures.chunks(3).map(<[Picture]>::to_vec).collect();
+    Picture::sheet(&rows, 6)
+}
+
 impl Render {
+    /// Pictures as the cameras would take them, and a sheet of all; the paths written.
+    fn appearance(&self, scene: &Scene) -> anyhow::Result<Vec<PathBuf>> {
+        let said = Conditions::from_prompt(&scene.prompt);
+        let images = RayMarched.synthesize(&SynthesisInput {
+            frame: scene.frame(),
+            rig: &scene.rig,
+            size: self.size,
+            prompt: &scene.prompt,
+            conditions: Conditions {
+                time: self.time.unwrap_or(said.time),
+                weather: self.weather.unwrap_or(said.weather),
+                seed: scene.seed,
+            },
+            quality: if self.preview {
+                Quality::Preview
+            } else {
+                Quality::Full
+            },
+        })?;
+        let mut files = Vec::new();
+        let mut pictures = Vec::new();
+        for image in images {
+            let path = self.output.join(format!("{}_appearance.png", image.camera));
+            output::write_png(&path, image.width, image.height, &image.rgba)?;
+            files.push(path);
+            pictures.push(Picture {
+                width: image.width,
+                height: image.height,
+                rgba: image.rgba,
+            });
+        }
+        let sheet = contact_sheet(&pictures);
+        let path = self.output.join("appearance.png");
+        output::write_png(&path, sheet.width, sheet.height, &sheet.rgba)?;
+        files.push(path);
+        Ok(files)
+    }
+
     pub(super) fn run(self) -> Outcome {
         if self.what.is_empty() {
             return Err(anyhow::anyhow!("--what is empty, expected some of {}", KINDS.join(", ")).into());
@@ -119,6 +185,11 @@ impl Render {
                     files.push(path);
                 }
             }
+        }
+        if wants("appearance") {
+            let start = Instant::now();
+            files.extend(self.appearance(&scene)?);
+            wall_s.insert("appearance", start.elapsed().as_secs_f64());
         }
         if wants("perspective") {
             let start = Instant::now();

@@ -18,13 +18,15 @@ use crate::scene::{BevLayout, BoxId, Camera, CameraMaps, Class, GridSpec, SceneB
 use ground::Ground;
 pub use ground::GroundHeight;
 use paint::Paint;
-use solids::SolidIndex;
+use solids::{SolidHit, SolidIndex};
 
 /// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.
 const FOOTPRINT_MARGIN_M: f64 = 0.3;
 /// Voxels this far above a box's top or below its bottom still belong to it, m (the label smear is 0.8).
 const HEIGHT_MARGIN_M: f64 = 0.5;
 const SMEAR_M: f64 = 0.8;
+/// Pixels of a row that share a list of the boxes that may cover them.
+const PIECE: usize = 16;
 
 /// What is marched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +117,18 @@ impl MarchScene {
     /// The first surface along a ray of the ego frame. `direction` need not have unit length; `None`
     /// for NaN and infinite input and for a zero direction.
     pub fn cast(&self, origin_in_ego: DVec3, direction: DVec3) -> Option<MarchHit> {
+        self.cast_among(origin_in_ego, direction, |unit, limit_m| {
+            self.solids.cast(origin_in_ego, unit, limit_m)
+        })
+    }
+
+    #[inline]
+    fn cast_among<'a>(
+        &self,
+        origin_in_ego: DVec3,
+        direction: DVec3,
+        solids: impl FnOnce(DVec3, f64) -> Option<SolidHit<'a>>,
+    ) -> Option<MarchHit> {
         let speed = direction.length();
         if !(origin_in_ego.is_finite() && speed.is_finite() && speed > 1e-12) {
             return None;
@@ -126,7 +140,13 @@ impl MarchScene {
             let p = GridSpec::from_voxel_units(origin + unit * h.t).truncate();
             (self.road_id(h.class, h.normal, p), h.normal, None)
         });
-        // A voxel at the very distance of the ground lies in front of nothing: the ground stays.
+        if let Some(s) = solids(unit, best * GridSpec::VOXEL_M) {
+            best = s.t_m / GridSpec::VOXEL_M;
+            let id = s.solid.class.id();
+            hit = Some((id, s.solid.normal_at(origin_in_ego + unit * s.t_m), s.box_id));
+        }
+        // Last, since it is the dearest and ends at what was found. A voxel at the very distance of that
+        // lies in front of nothing.
         if let Some((t, voxel)) = self.masks.cast_in_voxels(origin, unit, best)
             && (t < best || hit.is_none())
         {
@@ -135,14 +155,8 @@ impl MarchScene {
             let p = GridSpec::from_voxel_units(origin + unit * t).truncate();
             hit = Some((self.road_id(self.label(voxel), normal, p), normal, None));
         }
-        let mut best_m = best * GridSpec::VOXEL_M;
-        if let Some(s) = self.solids.cast(origin_in_ego, unit, best_m) {
-            best_m = s.t_m;
-            let id = s.solid.class.id();
-            hit = Some((id, s.solid.normal_at(origin_in_ego + unit * s.t_m), s.box_id));
-        }
         hit.map(|(id, normal, box_id)| MarchHit {
-            t: best_m / speed,
+            t: best * GridSpec::VOXEL_M / speed,
             id,
             normal,
             box_id,
@@ -170,9 +184,18 @@ impl MarchScene {
         let mut hits = vec![None; w * h];
         if !hits.is_empty() {
             let rays = CameraRays::new(camera, width, height);
+            let boxes = self.solids.in_view(|p| rays.project(p));
             hits.par_chunks_mut(w).enumerate().for_each(|(v, row)| {
-                for (u, out) in row.iter_mut().enumerate() {
-                    *out = self.cast(rays.origin, rays.direction(u as f64 + 0.5, v as f64 + 0.5));
+                let boxes = boxes.row(v as f64 + 0.5);
+                for (i, piece) in row.chunks_mut(PIECE).enumerate() {
+                    let first = i * PIECE;
+                    let boxes = boxes.piece(first as f64, (first + PIECE) as f64);
+                    for (u, out) in piece.iter_mut().enumerate() {
+                        let direction = rays.direction((first + u) as f64 + 0.5, v as f64 + 0.5);
+                        *out = self.cast_among(rays.origin, direction, |unit, limit_m| {
+                            self.solids.cast_pixel(&boxes, rays.origin, unit, limit_m)
+                        });
+                    }
                 }
             });
         }
@@ -239,6 +262,12 @@ impl CameraRays {
     pub fn direction(&self, u: f64, v: f64) -> DVec3 {
         let at = (DVec2::new(u, v) - self.center_px) / self.focal_px;
         self.rotation * at.extend(1.0)
+    }
+
+    /// Image point in px and depth in m of a point of the ego frame.
+    pub fn project(&self, p: DVec3) -> DVec3 {
+        let q = self.rotation.conjugate() * (p - self.origin);
+        (q.truncate() / q.z * self.focal_px + self.center_px).extend(q.z)
     }
 }
 

@@ -133,8 +133,9 @@ const WEATHERS: [(&[&str], Weather); 6] = [
     (&["sunny", "clear", "sun", "bright"], Weather::Clear),
 ];
 
-/// Words that turn the next one or two around.
+/// Words that turn the next one around, articles left out.
 const NOT: [&str; 4] = ["no", "not", "without", "never"];
+const ARTICLES: [&str; 4] = ["a", "an", "any", "the"];
 
 impl Conditions {
     /// Spots words for time and weather, in any case; what is not named keeps its default (a clear
@@ -147,7 +148,8 @@ impl Conditions {
             .collect();
         let said = |names: &[&str]| {
             (0..words.len()).any(|i| {
-                let denied = words[i.saturating_sub(2)..i].iter().any(|w| NOT.contains(w));
+                let before = words[..i].iter().rev().find(|w| !ARTICLES.contains(w));
+                let denied = before.is_some_and(|w| NOT.contains(w));
                 names.contains(&words[i]) && !denied
             })
         };
@@ -176,6 +178,7 @@ mod tests {
         assert_eq!(of("sunset, heavy snowfall"), (TimeOfDay::Dusk, Weather::Snow));
         assert_eq!(of("foggy morning"), (TimeOfDay::Dawn, Weather::Fog));
         assert_eq!(of("day, no rain, cloudy"), (TimeOfDay::Day, Weather::Overcast));
+        assert_eq!(of("not a rainy night"), (TimeOfDay::Night, Weather::Clear));
         assert_eq!(of("a sandstorm at noon"), (TimeOfDay::Day, Weather::Sandstorm));
         assert_eq!(
             of("a training run; Saturday; 夜 \u{0}"),

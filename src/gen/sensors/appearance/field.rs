@@ -4,7 +4,7 @@
 
 use glam::{IVec3, Vec2, Vec3};
 
-use super::noise::{hash1, unit, value3};
+use super::noise::{floor, hash1, unit, value3};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Voxels along each axis, with a free ring around, and room above the grid.
@@ -23,6 +23,8 @@ pub const BLOCK_M: f32 = (BLOCK as f64 * GridSpec::VOXEL_M) as f32;
 const SURFACE: f32 = 0.5;
 /// A cell whose corners all stay below this cannot hold a surface, roughness of leaves included.
 const FLOOR: u8 = 40;
+/// Label of trunks: plants that carry a crown.
+pub const TRUNK: u8 = 100;
 /// Roughness of leaves, in units of the field.
 const LEAVES: f32 = 0.85;
 
@@ -84,6 +86,7 @@ impl Field {
         }
         let (structure, mut structures) = structures(&solid, seed);
         raise(&mut solid, &structure, &mut structures);
+        trunks(&mut solid);
         let weight = weights(&solid, &structure, &structures);
         let label = spread(&solid);
         let (mut mask, mut blocks) = (vec![0u64; CX * CY], vec![0u64; BLOCKS * BLOCKS]);
@@ -158,7 +161,7 @@ impl Field {
     #[inline]
     pub fn value(&self, p: Vec3) -> f32 {
         let q = to_field(p);
-        let c = q.floor();
+        let c = q.map(floor);
         if !(c.x >= 0.0 && c.y >= 0.0 && c.z >= 0.0)
             || c.x >= CX as f32
             || c.y >= CY as f32
@@ -167,6 +170,17 @@ impl Field {
             return 0.0;
         }
         self.blend(q, c)
+    }
+
+    /// The same, but 0 in cells that hold no surface.
+    #[inline]
+    pub fn dense(&self, p: Vec3) -> f32 {
+        let q = to_field(p);
+        // Written so that NaN fails too.
+        if !inside(q) || self.mask[q.x as usize * CY + q.y as usize] >> (q.z as u32) & 1 == 0 {
+            return 0.0;
+        }
+        self.blend(q, q.map(floor))
     }
 
     #[inline(always)]
@@ -183,7 +197,7 @@ impl Field {
 
     #[inline(always)]
     fn label_near(&self, q: Vec3) -> u8 {
-        let r = (q + 0.5).floor();
+        let r = q + 0.5;
         let (x, y, z) = (
             (r.x as usize).min(NX - 1),
             (r.y as usize).min(NY - 1),
@@ -197,7 +211,7 @@ impl Field {
     #[inline]
     fn rough(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> f32 {
         let q = to_field(p);
-        let value = self.blend(q, q.floor());
+        let value = self.blend(q, q.map(floor));
         if value > 0.1 && self.label_near(q) == Class::Vegetation.id() {
             return value + leaves(anchor(p)) * LEAVES;
         }
@@ -206,10 +220,11 @@ impl Field {
 
     /// Outward normal at a surface point: the field's gradient, leaves included.
     pub fn normal(&self, p: Vec3, label: u8, anchor: &impl Fn(Vec3) -> Vec3) -> Vec3 {
-        let h = if label == Class::Vegetation.id() {
-            0.06
-        } else {
-            0.2
+        let h = match label {
+            v if v == Class::Vegetation.id() => 0.06,
+            // Wide enough to see past the steps of a wall that runs across the grid.
+            v if v == Class::Manmade.id() && self.structure_at(p).is_none_or(|s| !s.thin) => 0.5,
+            _ => 0.15,
         };
         let f = |d: Vec3| {
             if label == Class::Vegetation.id() {
@@ -236,7 +251,7 @@ impl Field {
         anchor: &impl Fn(Vec3) -> Vec3,
     ) -> Option<FieldHit> {
         let z_bits = |a: f32, b: f32| {
-            let (lo, hi) = (a.min(b).floor().max(0.0), a.max(b).floor().min((NZ - 2) as f32));
+            let (lo, hi) = (floor(a.min(b)).max(0.0), floor(a.max(b)).min((NZ - 2) as f32));
             if hi < lo {
                 return 0;
             }
@@ -279,7 +294,7 @@ impl Field {
                                 self.rough(p, anchor)
                             } else {
                                 let q = to_field(p);
-                                self.blend(q, q.floor())
+                                self.blend(q, q.map(floor))
                             }
                         };
                         if inside(q) && value(p) > SURFACE {
@@ -463,6 +478,33 @@ fn raise(solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
     }
 }
 
+/// Marks the trunks: slim columns of plants from the ground up to a crown.
+fn trunks(solid: &mut [u8]) {
+    let green = Class::Vegetation.id();
+    let before = solid.to_vec();
+    let around = |x: usize, y: usize, z: usize| {
+        let near = (0..9).filter(|k| *k != 4);
+        near.filter(|k| before[at(x + k / 3 - 1, y + k % 3 - 1, z)] == green)
+            .count()
+    };
+    for x in 1..NX - 1 {
+        for y in 1..NY - 1 {
+            let Some(first) = (1..8).find(|z| before[at(x, y, *z)] == green) else {
+                continue;
+            };
+            let slim = (first..NZ - 1)
+                .take_while(|z| before[at(x, y, *z)] == green && around(x, y, *z) <= 2)
+                .count();
+            let crown = before[at(x, y, first + slim)] == green;
+            if first <= 4 && slim >= 2 && crown {
+                for z in first..first + slim {
+                    solid[at(x, y, z)] = TRUNK;
+                }
+            }
+        }
+    }
+}
+
 /// Occupancy softened: 55 % of the voxel itself and 45 % of its binomial 3x3x3 blur; a single voxel
 /// keeps a surface, poles become slim.
 fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8> {
@@ -482,6 +524,14 @@ fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8>
     let mut out: Vec<u8> = (0..n)
         .map(|i| ((u32::from(own[i]) * 55 + u32::from(blurred[i]) * 45) / 100) as u8)
         .collect();
+    for (out, label) in out.iter_mut().zip(solid) {
+        if *label == Class::Vegetation.id() {
+            // Thin plants do not fall to pieces under their leaves.
+            *out = (*out).max(205);
+        } else if *label == TRUNK {
+            *out = 186;
+        }
+    }
     for x in 1..NX - 1 {
         for y in 1..NY - 1 {
             let i = structure[x * NY + y];

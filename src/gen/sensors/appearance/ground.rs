@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use glam::{Vec2, Vec3};
 
-use super::noise::{ramp, value2};
+use super::noise::{floor, ramp, value2};
 use crate::generation::sensors::march::ground::Ground as Columns;
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
 
@@ -19,6 +19,8 @@ const BLURS: usize = 3;
 /// Shares of road, sidewalk, other flat ground and terrain, `[x][y]`, each 0..1, adding up to 1.
 pub struct Ground {
     share: Vec<[f32; 4]>,
+    /// Columns with nothing but road around: level.
+    level: Vec<bool>,
 }
 
 /// The ground at a point.
@@ -84,12 +86,26 @@ impl Ground {
                 share = blurred(&share, axis);
             }
         }
-        Self { share }
+        let level = (0..n)
+            .map(|i| {
+                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let near = |c: usize| c.saturating_sub(3)..(c + 4).min(GridSpec::NX);
+                near(x).all(|x| near(y).all(|y| share[x * GridSpec::NY + y][0] > 0.99))
+            })
+            .collect();
+        Self { share, level }
+    }
+
+    /// True if there is nothing but level road within a metre of a point.
+    #[inline]
+    pub fn is_level(&self, p: Vec2) -> bool {
+        let q = ((p + 40.0) * 2.5).clamp(Vec2::ZERO, Vec2::splat(GridSpec::NX as f32 - 0.5));
+        self.level[q.x as usize * GridSpec::NY + q.y as usize]
     }
 
     fn shares(&self, p: Vec2) -> [f32; 4] {
         let q = ((p + 40.0) * 2.5 - 0.5).clamp(Vec2::ZERO, Vec2::splat(GridSpec::NX as f32 - 1.001));
-        let c = q.floor();
+        let c = q.map(floor);
         let f = q - c;
         let i = c.x as usize * GridSpec::NY + c.y as usize;
         let (a, b) = (&self.share[i], &self.share[i + 1]);
@@ -108,7 +124,7 @@ impl Ground {
         let share = self.shares(p);
         // A blurred edge crosses one half with a slope of 1 / (sigma sqrt(2 pi)).
         let inside_road_m = (share[0] - 0.5) * 1.23;
-        let up = ramp(0.03, -0.03, inside_road_m);
+        let up = ramp(-0.008, -0.042, inside_road_m);
         let rest = (1.0 - share[0]).max(1e-3);
         let soft = share[3] / rest;
         let bumps = || 0.05 * value2(anchor * 0.35, 11) - 0.01;
@@ -135,6 +151,12 @@ impl Ground {
         if t0 > limit {
             return None;
         }
+        let span = (t1 - t0) * d.truncate().length();
+        if t0 >= 60.0
+            || span < 2.0 && self.is_level((o + d * t0).truncate()) && self.is_level((o + d * t1).truncate())
+        {
+            return (t1 < limit).then_some(t1);
+        }
         let above = |t: f32| {
             let p = o + d * t;
             p.z - self.at(p.truncate(), anchor(p).truncate()).height_m
@@ -142,29 +164,30 @@ impl Ground {
         // Far away nobody sees a kerb's height.
         let steps = ((t1 - t0) / 0.12).ceil().clamp(2.0, 14.0);
         let mut before = t0;
-        if t0 < 60.0 {
-            for i in 1..steps as usize {
-                let t = t0 + (t1 - t0) * i as f32 / steps;
-                if above(t) <= 0.0 {
-                    let (mut out, mut within) = (before, t);
-                    for _ in 0..5 {
-                        let middle = (out + within) * 0.5;
-                        if above(middle) <= 0.0 {
-                            within = middle;
-                        } else {
-                            out = middle;
-                        }
+        for i in 1..steps as usize {
+            let t = t0 + (t1 - t0) * i as f32 / steps;
+            if above(t) <= 0.0 {
+                let (mut out, mut within) = (before, t);
+                for _ in 0..5 {
+                    let middle = (out + within) * 0.5;
+                    if above(middle) <= 0.0 {
+                        within = middle;
+                    } else {
+                        out = middle;
                     }
-                    return (within < limit).then_some(within);
                 }
-                before = t;
+                return (within < limit).then_some(within);
             }
+            before = t;
         }
         (t1 < limit).then_some(t1)
     }
 
     /// Normal of the ground.
     pub fn normal(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> Vec3 {
+        if self.is_level(p.truncate()) {
+            return Vec3::Z;
+        }
         let h = 0.03;
         let height = |d: Vec3| self.at((p + d).truncate(), anchor(p + d).truncate()).height_m;
         Vec3::new(

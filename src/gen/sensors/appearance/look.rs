@@ -310,7 +310,7 @@ fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lam
         out.push(Lamp {
             at: s.top.extend(s.height_m - 0.25),
             axis: -Vec3::Z,
-            color: warm * 9.0 * air.lamps,
+            color: warm * 15.0 * air.lamps,
             beam: Beam::Street,
             range_m: 26.0,
         });
@@ -335,12 +335,12 @@ fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lam
         }
     };
     for t in things.iter().filter(|t| t.lamps) {
-        beams(t.foot, &|p| t.turn_back(p), t.size, 26.0 * air.lamps);
+        beams(t.foot, &|p| t.turn_back(p), t.size, 42.0 * air.lamps);
     }
     let size = Vec3::from(rig.ego_size_m.map(|v| v as f32));
     let mut foot = Vec3::from(rig.ego_center_m.map(|v| v as f32));
     foot.z = 0.0;
-    beams(foot, &|p| p, size, 34.0 * air.lamps);
+    beams(foot, &|p| p, size, 75.0 * air.lamps);
     out.truncate(96);
     out.retain(|l| l.at.is_finite());
     out

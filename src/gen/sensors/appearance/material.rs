@@ -3,7 +3,7 @@
 
 use glam::{IVec3, Vec2, Vec3};
 
-use super::field::Structure;
+use super::field::{Structure, TRUNK};
 use super::look::{Hit, Look, What};
 use super::noise::{fbm2, hash1, ramp, unit, unit3, value2, value3};
 use super::things::{Material, Thing, rgb};
@@ -109,7 +109,7 @@ impl Look {
         let g = self.ground.at(p2, a);
         // The edge of the road, softened over a pixel.
         let edge = (fp * 0.5).max(0.008);
-        let road = ((g.inside_road_m + 0.03) / edge * 0.5 + 0.5).clamp(0.0, 1.0);
+        let road = ((g.inside_road_m + 0.014) / edge * 0.5 + 0.5).clamp(0.0, 1.0);
         let mut s = Surface::matt(Vec3::ZERO, normal);
         if road > 0.0 {
             let r = self.road(p2, a, fp, g.inside_road_m);
@@ -143,7 +143,10 @@ impl Look {
             }
             if self.air.snow > 0.0 {
                 let lies = (0.86 + 0.4 * (value2(a * 1.3, 45) - 0.5)).clamp(0.0, 1.0) * self.air.snow;
-                let drift = 0.80 + 0.09 * value2(a * 0.8, 46) + 0.04 * value2(a * 5.0, 47) * visible(fp, 0.2);
+                let drift = 0.72
+                    + 0.13 * value2(a * 0.5, 46)
+                    + 0.06 * value2(a * 2.1, 48)
+                    + 0.07 * value2(a * 7.0, 47) * visible(fp, 0.14);
                 c = c.lerp(
                     gray(drift) * Vec3::new(0.965, 0.985, 1.02),
                     lies * ramp(0.35, 0.75, normal.z),
@@ -204,13 +207,17 @@ impl Look {
             s.normal = Vec3::new(w(62) * ripple * 2.0, w(63) * ripple * 2.0, 1.0).normalize();
         }
         if air.snow > 0.0 {
-            let clear = if lane.is_some() { 0.62 * track + 0.10 } else { 0.05 };
+            let clear = if lane.is_some() { 0.75 * track + 0.14 } else { 0.06 };
             let lies = ramp(
                 0.30,
                 0.62,
-                0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5) + 0.25 * (value2(a * 6.0, 65) - 0.5) - clear,
+                0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5)
+                    + 0.30 * (value2(a * 6.0, 65) - 0.5)
+                    + 0.26 * visible(fp, 0.12) * (value2(a * 17.0, 70) - 0.5)
+                    - clear,
             );
-            let slush = Vec3::new(0.66, 0.68, 0.72) * (0.86 + 0.22 * value2(a * 2.4, 66));
+            let slush = Vec3::new(0.50, 0.52, 0.56)
+                * (0.80 + 0.34 * value2(a * 2.4, 66) + 0.2 * (value2(a * 9.0, 69) - 0.5) * visible(fp, 0.1));
             s.albedo = (s.albedo * 0.75).lerp(slush, lies * 0.93 * air.snow);
             s.mirror = 0.02 * (1.0 - lies);
             s.gloss = 0.6;
@@ -277,7 +284,11 @@ impl Look {
         let a = self.anchor(hit.p);
         let class = Class::from_id(label).unwrap_or(Class::Others);
         let mut s = match class {
-            Class::Vegetation => self.plant(hit, a, normal, fp),
+            _ if label == TRUNK => {
+                let bark = value3(a * Vec3::new(14.0, 14.0, 3.0), 22);
+                Surface::matt(Vec3::new(0.105, 0.080, 0.058) * (0.55 + 0.9 * bark), normal)
+            }
+            Class::Vegetation => self.plant(a, normal, fp),
             Class::Manmade => self.structure(hit, a, normal, fp),
             _ => {
                 let [r, g, b] = class.color();
@@ -293,16 +304,7 @@ impl Look {
         s
     }
 
-    fn plant(&self, hit: &Hit, a: Vec3, normal: Vec3, fp: f32) -> Surface {
-        // Where little grows around, low down, it is a trunk.
-        let around = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].map(|d| self.field.value(hit.p + d * 0.75));
-        let above = self.field.value(hit.p + Vec3::Z * 1.6);
-        let lonely = around.iter().filter(|v| **v > 0.3).count() <= 1;
-        if lonely && above > 0.25 && hit.p.z < 3.2 && self.field.value(hit.p + Vec3::Z * 0.5) > 0.2 {
-            let bark = value3(a * Vec3::new(14.0, 14.0, 3.0), 22);
-            let c = Vec3::new(0.095, 0.070, 0.050) * (0.55 + 0.9 * bark);
-            return Surface::matt(c, normal);
-        }
+    fn plant(&self, a: Vec3, normal: Vec3, fp: f32) -> Surface {
         let tree = value2(a.truncate() * 0.16, 23);
         let hue = Vec3::new(0.050, 0.095, 0.022).lerp(Vec3::new(0.115, 0.135, 0.030), tree);
         let hue = hue.lerp(Vec3::new(0.030, 0.065, 0.025), value2(a.truncate() * 0.07, 24));
@@ -325,10 +327,22 @@ impl Look {
             return Surface::matt(gray(0.35), normal);
         };
         if structure.thin {
-            let metal = if structure.height_m > 3.9 { 0.14 } else { 0.26 };
-            let mut s = Surface::matt(gray(metal) * (0.85 + 0.3 * value3(a * 5.0, 20)), normal);
+            let lamp = structure.height_m > 3.9;
+            let plates = [
+                rgb(38, 72, 118),
+                rgb(120, 124, 128),
+                rgb(36, 88, 66),
+                rgb(190, 192, 192),
+            ];
+            let plate = !lamp && structure.columns > 1 && hit.p.z > structure.height_m - 1.15;
+            let paint = if plate {
+                plates[structure.id as usize % 4]
+            } else {
+                gray(if lamp { 0.11 } else { 0.24 })
+            };
+            let mut s = Surface::matt(paint * (0.9 + 0.2 * value3(a * 5.0, 20)), normal);
             (s.mirror, s.gloss) = (0.03, 0.4);
-            if self.air.lamps > 0.0 && structure.height_m > 3.9 && hit.p.z > structure.height_m - 0.55 {
+            if self.air.lamps > 0.0 && lamp && hit.p.z > structure.height_m - 0.55 {
                 s.emit = Vec3::new(1.0, 0.74, 0.42) * 3.5 * self.air.lamps;
             }
             return s;
@@ -350,7 +364,7 @@ impl Look {
             .into_iter()
             .max_by(|x, y| x.dot(flat).total_cmp(&y.dot(flat)))
             .unwrap_or(flat);
-        let snapped = wall.dot(flat) > 0.72;
+        let snapped = wall.dot(flat) > 0.62;
         if snapped {
             normal = wall.extend(0.0).lerp(normal, 0.06).normalize_or(normal);
         }
@@ -373,7 +387,7 @@ impl Look {
         let style = hash1(s.id, 1);
         let mut wall = walls[style as usize % walls.len()];
         let brick = matches!(style as usize % walls.len(), 1 | 5);
-        wall *= 0.86 + 0.2 * value3(a * 0.5, 14) + 0.12 * (value3(a * 2.5, 15) - 0.5);
+        wall *= 0.90 + 0.14 * value3(a * 0.35, 14) + 0.05 * (value3(a * 2.5, 15) - 0.5);
         wall *= 1.0 - 0.25 * ramp(0.9, 0.0, p.z) * (0.4 + 0.6 * value3(a * 1.2, 16));
         if brick {
             let row = (at.y / 0.085).floor();
@@ -394,6 +408,10 @@ impl Look {
         let bay = 1.9 + 1.3 * unit(hash1(s.id, 2));
         let floor_m = 2.9 + 0.4 * unit(hash1(s.id, 3));
         let shop = s.height_m > 5.0 && hash1(s.id, 4) % 3 == 0;
+        // A plinth below, a cornice under the roof.
+        out.albedo *= 1.0 - 0.30 * band((at.y - 0.2).abs(), 0.3, fp);
+        let cornice = band((s.height_m - 0.22 - at.y).abs(), 0.16, fp);
+        out.albedo = out.albedo.lerp(gray(0.42), 0.6 * cornice);
         let (column, row) = ((at.x / bay).floor(), ((at.y - 0.25) / floor_m).floor());
         let f = Vec2::new(at.x / bay - column - 0.5, (at.y - 0.25) / floor_m - row - 0.5)
             * Vec2::new(bay, floor_m);
@@ -549,7 +567,7 @@ impl Look {
                 if window && !post && (side || y < 0.88) {
                     out.albedo = gray(0.014);
                     (out.mirror, out.gloss) = (0.075, 0.99);
-                    out.emit = Vec3::new(1.0, 0.86, 0.62) * 0.5 * ramp(0.5, 1.0, self.air.lamps);
+                    out.emit = Vec3::new(1.0, 0.86, 0.62) * 0.16 * ramp(0.5, 1.0, self.air.lamps);
                 }
                 if z > 0.80 && z < 0.90 && n.x > 0.6 && y < 0.7 {
                     out.albedo = gray(0.01);
@@ -578,6 +596,7 @@ impl Look {
                 if n.x > 0.6 && z > 0.30 && z < 0.74 && y < 0.9 {
                     out.albedo = gray(0.014);
                     (out.mirror, out.gloss) = (0.075, 0.99);
+                    out.emit = Vec3::ZERO;
                 }
             }
             Material::Cargo => {

@@ -107,3 +107,6 @@ impl ViewSynthesizer for RayMarched {
         Ok(cameras.map(|c| look.render(c, w, h, input.quality)).collect())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -34,6 +34,13 @@ pub fn unit3(p: IVec3, seed: u32) -> f32 {
     unit(hash3(p, seed))
 }
 
+/// Rounds down; inline where the target's own instruction is not assumed. For values an i32 holds.
+#[inline(always)]
+pub fn floor(v: f32) -> f32 {
+    let whole = v as i32 as f32;
+    if whole > v { whole - 1.0 } else { whole }
+}
+
 #[inline]
 fn smooth(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
@@ -42,7 +49,7 @@ fn smooth(t: f32) -> f32 {
 /// Smooth noise in 0..1 with features of about one unit.
 #[inline]
 pub fn value3(p: Vec3, seed: u32) -> f32 {
-    let cell = p.floor();
+    let cell = p.map(floor);
     let f = p - cell;
     let (u, v, w) = (smooth(f.x), smooth(f.y), smooth(f.z));
     let c = cell.as_ivec3();
@@ -64,7 +71,7 @@ pub fn value3(p: Vec3, seed: u32) -> f32 {
 /// The same in the plane.
 #[inline]
 pub fn value2(p: Vec2, seed: u32) -> f32 {
-    let cell = p.floor();
+    let cell = p.map(floor);
     let f = p - cell;
     let (u, v) = (smooth(f.x), smooth(f.y));
     let c = cell.as_ivec2();

@@ -12,7 +12,7 @@ use crate::generation::sensors::march::CameraRays;
 use crate::scene::Camera;
 
 /// A pixel gets more samples if its tone differs from a neighbour's by more than this.
-const CONTRAST: f32 = 0.045;
+const CONTRAST: f32 = 0.10;
 
 impl Look {
     /// The picture of one camera at `width` x `height` px.
@@ -57,7 +57,7 @@ impl Look {
                     x < w && y < h && {
                         let o = &samples[y * w + x];
                         (tone(o.color) - tone(s.color)).abs() > CONTRAST
-                            || o.key != s.key && (tone(o.color) - tone(s.color)).abs() > 0.015
+                            || o.key != s.key && (tone(o.color) - tone(s.color)).abs() > 0.03
                     }
                 })
             };
@@ -111,7 +111,7 @@ impl Look {
         let radii: &[f32] = if rain {
             &[3.2, 5.0, 7.5, 11.0]
         } else {
-            &[2.6, 3.7, 5.0, 6.8, 9.0, 12.0, 16.0]
+            &[2.9, 4.0, 5.2, 6.6, 8.2, 10.0, 12.5, 15.5, 19.0]
         };
         for (layer, radius) in radii.iter().enumerate() {
             let b = o.truncate().dot(d.truncate());
@@ -129,19 +129,19 @@ impl Look {
             let px = at * pixel;
             if rain {
                 let cell = Vec2::new(0.11, 0.62);
-                let q = Vec2::new(s + p.z * 0.06, p.z) / cell;
+                let q = Vec2::new(s + p.z * (0.05 + 0.015 * layer as f32), p.z + 0.37 * layer as f32) / cell;
                 let c = q.floor().as_ivec2();
                 let h = hash3(IVec3::new(c.x, c.y, layer as i32), self.seed ^ 0x7a1);
-                if h % 100 < 34 {
+                if h % 100 < 40 {
                     let x = ((q.x - c.x as f32) - 0.2 - 0.6 * unit(h)).abs() * cell.x;
                     let y = (q.y - c.y as f32 - 0.5).abs();
                     let half = 0.0022f32.max(px * 0.55);
                     let line = ramp(half, half * 0.4, x) * ramp(0.5, 0.25, y);
-                    let share = 0.22 * (0.0022 / half).sqrt() * line;
+                    let share = 0.13 * (0.0022 / half).powf(0.7) * line;
                     color = color.lerp(air.ambient * 0.75 + air.haze * 0.4, share);
                 }
             } else {
-                let cell = 0.24 + 0.05 * layer as f32;
+                let cell = 0.22 + 0.02 * layer as f32;
                 let q = Vec2::new(s, p.z) / cell;
                 let c = q.floor().as_ivec2();
                 let h = hash3(IVec3::new(c.x, c.y, layer as i32), self.seed ^ 0x5e0);
@@ -152,7 +152,7 @@ impl Look {
                     ) * 0.7
                         + 0.15;
                     let off = (q - c.as_vec2() - middle) * cell * Vec2::new(1.0, 0.8);
-                    let radius = 0.004 + 0.006 * unit(h);
+                    let radius = 0.0035 + 0.0055 * unit(h);
                     let r = radius.max(px * 0.6);
                     let share = 0.75 * (radius / r).powi(2) * ramp(r * 1.15, r * 0.3, off.length());
                     color = color.lerp(air.ambient * 0.95 + air.haze * 0.1, share);
@@ -168,7 +168,7 @@ impl Look {
         let c = film(c.max(Vec3::ZERO) * (self.air.exposure * vignette));
         let noise =
             unit3(IVec3::new(x as i32, y as i32, 5), 99) - unit3(IVec3::new(x as i32, y as i32, 6), 99);
-        let strength = 0.008 + 0.016 * ramp(0.9, 1.0, self.air.lamps);
+        let strength = 0.006 + 0.010 * ramp(0.9, 1.0, self.air.lamps);
         let byte = |v: f32| {
             let v = if v <= 0.003_130_8 {
                 12.92 * v

@@ -80,12 +80,16 @@ impl Look {
                 continue;
             }
             // Streets that leave the grid stay open in front.
-            let share = self.ground.at(p.truncate(), p.truncate()).share[0];
-            let open = if radius < 100.0 {
-                ramp(0.15, 0.5, share)
-            } else {
-                0.0
-            };
+            let mut open = 0.0;
+            if radius < 100.0 {
+                // Lower and lower towards the gap.
+                let aside = p.truncate().perp().normalize_or_zero();
+                for k in -3..=3 {
+                    let q = p.truncate() + aside * (k as f32 * 2.6);
+                    open += ramp(0.15, 0.6, self.ground.at(q, q).share[0]) / 4.0;
+                }
+                open = f32::min(open, 1.0);
+            }
             let around = self.anchor_dir(p);
             if let Some(color) = self.air.skyline(around, radius, open) {
                 return Some(self.air.through(color, t, self.anchor_dir(d)));
@@ -157,6 +161,8 @@ impl Look {
         match hit.what {
             What::Thing(..) => hit.normal,
             What::Ground => Vec3::Z,
+            // Past the steps of a wall.
+            What::Voxel(15) => n * 12.0,
             What::Voxel(_) => n,
         }
     }
@@ -176,7 +182,7 @@ impl Look {
     /// Share of the sky's light that reaches a point, from the field around and the things near.
     fn openness(&self, hit: &Hit, n: Vec3) -> f32 {
         let p = hit.p;
-        let f = |d: Vec3| self.field.value(p + d);
+        let f = |d: Vec3| self.field.dense(p + d);
         let is_plant = matches!(hit.what, What::Voxel(16));
         let near = f(n * 0.45 + Vec3::Z * 0.1);
         let mid = f(n * 1.0 + Vec3::Z * 0.35);
@@ -224,8 +230,10 @@ impl Look {
                 Beam::Head => {
                     // Wide on the sides, cut off above the horizon.
                     let up = -l.z + lamp.axis.z * -1.0;
-                    ramp(0.80, 0.985, cos) * (0.12 + 0.88 * ramp(0.035, -0.02, up))
-                        + 0.04 * ramp(0.2, 0.9, cos)
+                    // Brightest just below the horizon, so that the road is lit evenly.
+                    let aim = (0.055 / (0.022 + (-up).max(0.0))).powf(1.25).min(2.4);
+                    ramp(0.80, 0.985, cos) * (0.07 + 0.93 * ramp(0.025, -0.02, up)) * aim
+                        + 0.02 * ramp(0.2, 0.9, cos)
                 }
                 Beam::Glow => ramp(-0.1, 0.8, cos),
             };

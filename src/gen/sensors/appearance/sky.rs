@@ -50,12 +50,12 @@ impl Air {
         let seed = (c.seed ^ c.seed >> 32) as u32;
         let (elevation_deg, sun, zenith, horizon, ambient, exposure, lamps) = match c.time {
             TimeOfDay::Day => (
-                38.0,
-                v(3.25, 3.0, 2.6),
-                v(0.16, 0.36, 0.82),
-                v(0.66, 0.80, 0.98),
-                v(0.60, 0.74, 0.98) * 0.95,
-                0.62,
+                36.0,
+                v(4.1, 3.65, 3.0),
+                v(0.13, 0.31, 0.78),
+                v(0.60, 0.76, 0.97),
+                v(0.62, 0.73, 0.92) * 0.86,
+                0.68,
                 0.0,
             ),
             TimeOfDay::Dawn => (
@@ -79,14 +79,14 @@ impl Air {
             TimeOfDay::Night => (
                 40.0,
                 v(0.022, 0.028, 0.045),
-                v(0.004, 0.007, 0.018),
-                v(0.030, 0.030, 0.042),
-                v(0.022, 0.026, 0.040),
-                2.1,
+                v(0.003, 0.006, 0.015),
+                v(0.026, 0.025, 0.032),
+                v(0.027, 0.031, 0.046),
+                2.0,
                 1.0,
             ),
         };
-        let azimuth = 2.15 + (unit(hash1(seed, 4)) - 0.5) * if seed == 0 { 0.0 } else { 5.0 };
+        let azimuth = 2.45 + (unit(hash1(seed, 4)) - 0.5) * if seed == 0 { 0.0 } else { 5.0 };
         let elevation = f32::to_radians(elevation_deg);
         let mut air = Self {
             to_sun: v(
@@ -100,7 +100,7 @@ impl Air {
             ambient,
             bounce: (sun * elevation.sin() + ambient) * 0.16,
             clouds: 0.42,
-            haze_per_m: 0.0016,
+            haze_per_m: 0.0011,
             haze: horizon * 0.95,
             wet: 0.0,
             snow: 0.0,
@@ -135,18 +135,18 @@ impl Air {
                 self.haze_per_m = 0.003;
             }
             Weather::Rain => {
-                self.cover(v(0.92, 1.0, 1.1), 0.40, 0.0);
+                self.cover(v(0.91, 1.0, 1.11), 0.36, 0.0);
                 self.haze_per_m = 0.0085;
                 self.wet = 1.0;
                 self.lamps = self.lamps.max(0.45);
                 self.exposure *= 1.22;
             }
             Weather::Snow => {
-                self.cover(v(0.97, 1.0, 1.05), 0.52, 0.0);
-                self.haze_per_m = 0.012;
+                self.cover(v(0.95, 1.0, 1.07), 0.46, 0.0);
+                self.haze_per_m = 0.010;
                 self.snow = 1.0;
                 self.lamps = self.lamps.max(0.3);
-                self.exposure *= 1.02;
+                self.exposure *= 0.86;
             }
             Weather::Fog => {
                 self.cover(v(0.98, 1.0, 1.02), 0.55, 0.0);
@@ -156,9 +156,10 @@ impl Air {
                 self.wet = 0.25;
             }
             Weather::Sandstorm => {
-                self.cover(v(1.25, 0.86, 0.47), 0.60, 0.12);
-                self.haze_per_m = 0.030;
-                self.haze = self.ambient * 0.62;
+                self.cover(v(1.30, 0.80, 0.38), 0.50, 0.10);
+                self.haze_per_m = 0.027;
+                self.haze = self.ambient * 0.56;
+                self.exposure *= 0.80;
                 self.dust = 1.0;
                 self.lamps = self.lamps.max(0.4);
             }
@@ -199,10 +200,10 @@ impl Air {
             color *= 0.86 + 0.30 * n;
         }
         if self.lamps >= 1.0 && self.clouds < 0.9 && up > 0.02 {
-            let cell = (d * 260.0).floor().as_ivec3();
+            let cell = (d * 700.0).floor().as_ivec3();
             let star = unit3(cell, 77);
-            if star > 0.9982 {
-                color += Vec3::splat(0.25 * unit3(cell, 78)) * ramp(0.02, 0.3, up);
+            if star > 0.9995 {
+                color += Vec3::splat(0.16 * unit3(cell, 78)) * ramp(0.05, 0.35, up);
             }
         }
         color
@@ -233,7 +234,7 @@ impl Air {
             if inside > 0.44 {
                 0.0
             } else {
-                (6.0 + 9.0 * unit(hash1(h, 1))) * scale.sqrt()
+                0.7 + 3.0 * (2.0 + (3.6 * unit(hash1(h, 1)) * scale.sqrt()).floor())
             }
         } else {
             0.0
@@ -247,7 +248,7 @@ impl Air {
             * (0.55 + 0.9 * value2(crown * 0.021, layer ^ 8));
         let free = 1.0 - open;
         let lit = |albedo: Vec3, sun: f32| albedo * (self.ambient * 0.62 + self.sun * sun + self.bounce);
-        if p.z < trees * free * if built { 0.45 } else { 1.0 } {
+        if p.z < trees * free * (0.35 + 0.65 * ramp(0.35, 0.65, value2(crown * 0.045, layer ^ 11))) {
             let leaf = value2(Vec2::new(s, p.z) * 1.4, layer ^ 9) * 0.6
                 + value2(Vec2::new(s, p.z) * 0.5, layer ^ 10) * 0.4;
             let albedo = v(0.055, 0.085, 0.032) * (0.55 + 0.9 * leaf);
@@ -259,7 +260,7 @@ impl Air {
             let mut emit = Vec3::ZERO;
             let cell = Vec2::new(s / 2.6, p.z / 3.0);
             let f = cell - cell.floor();
-            if f.x > 0.28 && f.x < 0.72 && f.y > 0.3 && f.y < 0.8 {
+            if f.x > 0.28 && f.x < 0.72 && f.y > 0.3 && f.y < 0.8 && p.z < height - 0.9 {
                 albedo = v(0.09, 0.11, 0.13);
                 let on = unit3(
                     IVec3::new(cell.x.floor() as i32, cell.y.floor() as i32, h as i32),

@@ -61,6 +61,8 @@ pub struct Thing {
     pub id: u32,
     /// Moving or in traffic: lamps are on at night.
     pub lamps: bool,
+    /// Square of the radius of a circle on the ground that holds it, m^2.
+    circle_m2: f32,
     /// Parts with materials.
     pub parts: Vec<(Part, Material)>,
 }
@@ -224,6 +226,7 @@ impl Thing {
             paint,
             id,
             lamps: b.class.is_vehicle() && (b.velocity_mps.length() > 0.3 || id % 3 == 0),
+            circle_m2: (size.truncate() / 2.0 + 0.05).length_squared(),
             parts: build.parts,
         })
     }
@@ -255,6 +258,11 @@ impl Thing {
 
     /// The first surface nearer than `limit` m.
     pub fn cast(&self, origin: Vec3, dir: Vec3, limit: f32) -> Option<ThingHit> {
+        // Rays that pass beside the circle around it on the ground.
+        let (to, flat) = ((self.foot - origin).truncate(), dir.truncate());
+        if to.perp_dot(flat).powi(2) > self.circle_m2 * flat.length_squared() {
+            return None;
+        }
         let (o, d) = (self.to_local(origin), self.turn(dir));
         // The box itself, a little grown, as a first test.
         let (lo, hi) = (
@@ -268,20 +276,44 @@ impl Thing {
         if near > far || far < 0.0 || near > limit {
             return None;
         }
-        let mut best: Option<ThingHit> = None;
+        let mut best: Option<(ThingHit, &Part)> = None;
         for (part, material) in &self.parts {
-            let limit = best.map_or(limit, |b| b.t);
+            let limit = best.map_or(limit, |(b, _)| b.t);
             if let Some((t, normal)) = part.cast(o, d, limit) {
-                best = Some(ThingHit {
+                let hit = ThingHit {
                     t,
                     local: o + d * t,
                     normal,
                     material: *material,
-                });
+                };
+                best = Some((hit, part));
             }
         }
-        best
+        best.map(|(mut hit, part)| {
+            if let Part::Convex(planes) = part {
+                hit.normal = rounded(
+                    planes,
+                    hit.local,
+                    hit.normal,
+                    0.028 * self.size.z.max(self.size.x * 0.5),
+                );
+            }
+            hit
+        })
     }
+}
+
+/// The normal of a body whose edges are rounded over `reach` m: a blend of the faces near the point.
+fn rounded(planes: &[Vec4], p: Vec3, normal: Vec3, reach: f32) -> Vec3 {
+    let mut sum = Vec3::ZERO;
+    for plane in planes {
+        let near = 1.0 - (plane.w - plane.truncate().dot(p)) / reach;
+        // Opposite faces of a thin part do not blend.
+        if near > 0.0 && plane.truncate().dot(normal) > -0.2 {
+            sum += plane.truncate() * (near * near);
+        }
+    }
+    sum.normalize_or(normal)
 }
 
 fn quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
@@ -559,11 +591,11 @@ fn person(b: &mut Builder, id: u32, at: [f32; 3], part: f32) {
         let palette = [
             rgb(38, 44, 62),
             rgb(60, 62, 66),
-            rgb(150, 44, 40),
-            rgb(206, 200, 186),
-            rgb(52, 84, 70),
-            rgb(178, 140, 60),
-            rgb(70, 96, 140),
+            rgb(122, 52, 48),
+            rgb(196, 190, 178),
+            rgb(62, 78, 70),
+            rgb(150, 126, 84),
+            rgb(84, 98, 122),
             rgb(24, 24, 28),
         ];
         Material::Cloth(palette[hash1(id, salt) as usize % palette.len()])
@@ -587,13 +619,13 @@ fn person(b: &mut Builder, id: u32, at: [f32; 3], part: f32) {
             Material::Dark,
         );
         put(
-            [-side * stride * 0.6, side * 0.148, 0.62],
-            [0.045, 0.04, 0.19],
+            [-side * stride * 0.6, side * 0.135, 0.63],
+            [0.036, 0.034, 0.185],
             coat,
         );
     }
-    put([0.0, 0.0, 0.66], [0.085, 0.125, 0.205], coat);
-    put([0.0, 0.0, 0.80], [0.06, 0.11, 0.06], coat);
+    put([0.0, 0.0, 0.65], [0.072, 0.108, 0.215], coat);
+    put([0.0, 0.0, 0.795], [0.055, 0.125, 0.055], coat);
     put([0.01, 0.0, 0.935], [0.056, 0.048, 0.066], Material::Skin);
     put([-0.01, 0.0, 0.955], [0.058, 0.052, 0.058], Material::Dark);
 }

@@ -93,7 +93,8 @@ pub fn top_of(bin: usize) -> f64 {
 /// Takes away the two lowest voxels of every run that hangs in the air, and what lies below the ground.
 fn unsmear(column: &mut [u8; GridSpec::NZ]) {
     let labels = *column;
-    for z in 1..GridSpec::NZ {
+    // A run from bin 1 stands on a pavement.
+    for z in SMEAR..GridSpec::NZ {
         let begins = labels[z] != Class::FREE && labels[z - 1] == Class::FREE;
         let run = labels[z..].iter().take_while(|l| **l != Class::FREE).count();
         if begins && run > SMEAR {

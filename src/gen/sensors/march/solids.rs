@@ -13,7 +13,25 @@ const HALF_M: f64 = 40.0;
 #[derive(Clone, Debug, Default)]
 pub struct SolidIndex {
     solids: Vec<(Solid, BoxId)>,
-    bins: Vec<Vec<u32>>, // [x][y]
+    groups: Vec<Group>,
+    bins: Vec<Vec<u32>>, // [x][y], indices of groups
+}
+
+/// The solids of one box, and a circle on the ground that holds them.
+#[derive(Clone, Debug)]
+struct Group {
+    solids: std::ops::Range<usize>,
+    low: DVec3,
+    high: DVec3,
+    middle: DVec2,
+    radius_m2: f64,
+}
+
+/// The boxes that a camera may see, each with the pixels that it may cover.
+#[derive(Clone, Debug, Default)]
+pub struct InView {
+    /// Group and pixel range along u and v.
+    groups: Vec<(u32, [f64; 2], [f64; 2])>,
 }
 
 /// Where a ray meets a solid.
@@ -27,19 +45,62 @@ pub struct SolidHit<'a> {
     pub box_id: Option<BoxId>,
 }
 
+impl Group {
+    /// True if a ray passes beside the circle.
+    #[inline]
+    fn beside(&self, origin: DVec3, dir: DVec3) -> bool {
+        let (to, flat) = (self.middle - origin.truncate(), dir.truncate());
+        to.perp_dot(flat).powi(2) > self.radius_m2 * flat.length_squared()
+    }
+}
+
+impl InView {
+    /// Those of a row of pixels with middles at `v`.
+    pub fn row(&self, v: f64) -> InView {
+        self.only(|_, range| (range[0]..=range[1]).contains(&v))
+    }
+
+    /// Those of a piece of a row, from `first` to `last` px.
+    pub fn piece(&self, first: f64, last: f64) -> InView {
+        self.only(|range, _| range[0] <= last && range[1] >= first)
+    }
+
+    fn only(&self, keep: impl Fn(&[f64; 2], &[f64; 2]) -> bool) -> InView {
+        let some = self.groups.iter().filter(|(_, u, v)| keep(u, v));
+        InView {
+            groups: some.copied().collect(),
+        }
+    }
+}
+
 impl SolidIndex {
     /// The solids of these boxes; boxes with a problem are left out.
     pub fn of_boxes<'a>(boxes: impl Iterator<Item = &'a SceneBox>, seed: u64) -> Self {
-        let mut solids = Vec::new();
+        let mut solids: Vec<(Solid, BoxId)> = Vec::new();
+        let mut groups = Vec::new();
         let mut some = Vec::new();
         for b in boxes.filter(|b| b.problem().is_none()) {
             objects::object(b, seed, &mut some);
+            let first = solids.len();
             solids.extend(some.drain(..).map(|s| (s, b.id)));
+            let reach = |s: &Solid| (s.center - s.reach(), s.center + s.reach());
+            let parts = || solids[first..].iter().map(|(s, _)| reach(s));
+            let low = parts().fold(DVec3::INFINITY, |m, (lo, _)| m.min(lo));
+            let high = parts().fold(DVec3::NEG_INFINITY, |m, (_, hi)| m.max(hi));
+            if first < solids.len() {
+                groups.push(Group {
+                    solids: first..solids.len(),
+                    low,
+                    high,
+                    middle: (low + high).truncate() / 2.0,
+                    radius_m2: ((high - low).truncate() / 2.0 + 1e-3).length_squared(),
+                });
+            }
         }
         let mut bins = vec![Vec::new(); BINS * BINS];
         let bin = |v: f64| ((v + HALF_M) / BIN_M).floor();
-        for (i, (s, _)) in solids.iter().enumerate() {
-            let (lo, hi) = (s.center - s.reach(), s.center + s.reach());
+        for (i, group) in groups.iter().enumerate() {
+            let (lo, hi) = (group.low, group.high);
             let last = BINS as f64 - 1.0;
             let span = |lo: f64, hi: f64| {
                 let (lo, hi) = (bin(lo).max(0.0), bin(hi).min(last));
@@ -51,7 +112,76 @@ impl SolidIndex {
                 }
             }
         }
-        Self { solids, bins }
+        Self { solids, groups, bins }
+    }
+
+    /// Boxes that may cover a pixel of a camera; `project` gives u, v in px and the depth in m.
+    pub fn in_view(&self, project: impl Fn(DVec3) -> DVec3) -> InView {
+        let mut groups = Vec::new();
+        for (i, group) in self.groups.iter().enumerate() {
+            let corners: [DVec3; 8] = std::array::from_fn(|corner| {
+                let pick = |axis: usize| {
+                    if corner >> axis & 1 == 0 {
+                        group.low[axis]
+                    } else {
+                        group.high[axis]
+                    }
+                };
+                project(DVec3::new(pick(0), pick(1), pick(2)))
+            });
+            if corners.iter().all(|c| c.z < -1e-6) {
+                continue;
+            }
+            let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            for at in corners {
+                // With a corner behind the camera it may be seen anywhere. Written so that NaN comes here too.
+                if !(at.z > 0.05 && at.is_finite()) {
+                    (lo, hi) = (DVec2::NEG_INFINITY, DVec2::INFINITY);
+                    break;
+                }
+                (lo, hi) = (lo.min(at.truncate()), hi.max(at.truncate()));
+            }
+            groups.push((i as u32, [lo.x - 1.0, hi.x + 1.0], [lo.y - 1.0, hi.y + 1.0]));
+        }
+        InView { groups }
+    }
+
+    /// The first solid along the ray through the pixel (u, v) of the camera that `view` was made for.
+    /// Unlike [`Self::cast`] it sees solids beyond the grid's border too.
+    #[inline]
+    pub fn cast_pixel(&self, view: &InView, origin: DVec3, dir: DVec3, limit_m: f64) -> Option<SolidHit<'_>> {
+        let (mut best, mut hit) = (limit_m, None);
+        for (i, _, _) in &view.groups {
+            let group = &self.groups[*i as usize];
+            if group.beside(origin, dir) {
+                continue;
+            }
+            self.enter(group, origin, dir, &mut best, &mut hit);
+        }
+        hit
+    }
+
+    #[inline]
+    fn enter<'a>(
+        &'a self,
+        group: &Group,
+        origin: DVec3,
+        dir: DVec3,
+        best: &mut f64,
+        hit: &mut Option<SolidHit<'a>>,
+    ) {
+        for (solid, id) in &self.solids[group.solids.clone()] {
+            if let Some(t) = solid.enter(origin, dir, best.min(1e9))
+                && t < *best
+            {
+                *best = t;
+                *hit = Some(SolidHit {
+                    t_m: t,
+                    solid,
+                    box_id: Some(*id),
+                });
+            }
+        }
     }
 
     /// The first solid along a ray of the ego frame nearer than `limit_m` (may be infinite). `dir` is a
@@ -84,17 +214,11 @@ impl SolidIndex {
         let mut hit = None;
         for _ in 0..2 * BINS + 2 {
             for &i in &self.bins[cell[0] * BINS + cell[1]] {
-                let (solid, id) = &self.solids[i as usize];
-                if let Some(t) = solid.enter(origin, dir, best.min(1e9))
-                    && t < best
-                {
-                    best = t;
-                    hit = Some(SolidHit {
-                        t_m: t,
-                        solid,
-                        box_id: Some(*id),
-                    });
+                let group = &self.groups[i as usize];
+                if group.beside(origin, dir) {
+                    continue;
                 }
+                self.enter(group, origin, dir, &mut best, &mut hit);
             }
             let next = |axis: usize| {
                 if d[axis] == 0.0 {

@@ -98,6 +98,26 @@ fn boxes_replace_their_voxels_and_the_road_below_them_returns() {
     assert!(low.box_id.is_none() && low.t > 0.7, "{low:?}");
 }
 
+/// The lists of boxes per piece of a row leave none out.
+#[test]
+fn pictures_equal_single_rays() {
+    let (_, scene) = of_world(6, &everything()[3]);
+    let mut rig = SensorRig::default();
+    rig.cameras[0].focal_px = [700.0 / 2.0 / 85f64.to_radians().tan(); 2];
+    rig.cameras[2].translation_m = [12.0, 3.0, 0.6];
+    let mut on_boxes = 0;
+    for camera in &rig.cameras {
+        let maps = scene.render(camera, 101, 57);
+        let rays = CameraRays::new(camera, 101, 57);
+        for (i, found) in maps.hits.iter().enumerate() {
+            let dir = rays.direction((i % 101) as f64 + 0.5, (i / 101) as f64 + 0.5);
+            assert_eq!(*found, scene.cast(rays.origin, dir));
+            on_boxes += usize::from(found.is_some_and(|h| h.box_id.is_some()));
+        }
+    }
+    assert!(on_boxes > 150, "{on_boxes}");
+}
+
 #[test]
 fn lines_are_finer_than_voxels_and_follow_the_cells() {
     let mut grid = VoxelGrid::new();

@@ -1,0 +1,284 @@
+//! Tests of the pictures: the same from every camera and on any number of threads, sound for any input.
+
+use glam::{DVec2, DVec3};
+
+use super::*;
+use crate::generation::world::World;
+use crate::generation::world::voxelize::{Vertical, complete};
+use crate::scene::{BoxId, Class, GridSpec, Pose, SceneBox, VoxelGrid};
+
+fn street(seed: u64) -> Frame {
+    let world = World::random(seed);
+    let grid = complete(&world, Vertical::Occ3d);
+    Frame::new(world.layout.clone(), world.boxes.clone(), grid)
+}
+
+fn of(time: TimeOfDay, weather: Weather) -> Conditions {
+    Conditions {
+        time,
+        weather,
+        seed: 3,
+    }
+}
+
+fn pictures(frame: &Frame, rig: &SensorRig, size: [u32; 2], conditions: Conditions) -> Vec<CameraImage> {
+    let input = SynthesisInput {
+        frame,
+        rig,
+        size,
+        prompt: "",
+        conditions,
+        quality: Quality::Full,
+    };
+    RayMarched.synthesize(&input).expect("nothing to fail")
+}
+
+/// Mean of a channel, 0..255.
+fn mean(image: &CameraImage, channel: usize) -> f64 {
+    let values = image.rgba.iter().skip(channel).step_by(4);
+    values.map(|v| f64::from(*v)).sum::<f64>() / (image.rgba.len() / 4) as f64
+}
+
+#[test]
+fn conditions_show() {
+    let (frame, mut rig) = (street(5), SensorRig::default());
+    rig.cameras.truncate(2);
+    let take = |time, weather| pictures(&frame, &rig, [96, 54], of(time, weather)).remove(1);
+    let day = take(TimeOfDay::Day, Weather::Clear);
+    let light = |i: &CameraImage| (mean(i, 0) + mean(i, 1) + mean(i, 2)) / 3.0;
+    assert!((70.0..200.0).contains(&light(&day)), "{}", light(&day));
+    let night = take(TimeOfDay::Night, Weather::Clear);
+    assert!(light(&night) < 0.5 * light(&day) && light(&night) > 4.0);
+    let dusk = take(TimeOfDay::Dusk, Weather::Clear);
+    assert!(mean(&dusk, 0) / mean(&dusk, 2) > mean(&day, 0) / mean(&day, 2) + 0.1);
+    let sand = take(TimeOfDay::Day, Weather::Sandstorm);
+    assert!(mean(&sand, 0) > mean(&sand, 2) + 30.0);
+    // Snow whitens the lower half, fog takes contrast away.
+    let lower = |i: &CameraImage| {
+        let half = i.rgba.len() / 2;
+        i.rgba[half..].iter().map(|v| f64::from(*v)).sum::<f64>() / half as f64
+    };
+    assert!(lower(&take(TimeOfDay::Day, Weather::Snow)) > lower(&day) + 25.0);
+    let spread = |i: &CameraImage| {
+        let m = mean(i, 1);
+        let sum: f64 = i
+            .rgba
+            .iter()
+            .skip(1)
+            .step_by(4)
+            .map(|v| (f64::from(*v) - m).powi(2))
+            .sum();
+        (sum / (i.rgba.len() / 4) as f64).sqrt()
+    };
+    assert!(spread(&take(TimeOfDay::Day, Weather::Fog)) < 0.6 * spread(&day));
+    assert_ne!(
+        take(TimeOfDay::Day, Weather::Rain).rgba,
+        take(TimeOfDay::Day, Weather::Overcast).rgba
+    );
+}
+
+#[test]
+fn threads_do_not_matter_and_the_seed_does() {
+    let (frame, mut rig) = (street(4), SensorRig::default());
+    rig.cameras.truncate(2);
+    let on = |threads, conditions| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
+        pool.install(|| pictures(&frame, &rig, [80, 45], conditions))
+    };
+    let rain = of(TimeOfDay::Dusk, Weather::Rain);
+    let one = on(1, rain);
+    assert_eq!(one, on(3, rain));
+    assert_eq!(
+        (one[0].camera.as_str(), one[0].rgba.len()),
+        (rig.cameras[0].name.as_str(), 80 * 45 * 4)
+    );
+    assert_ne!(one, on(2, Conditions { seed: 4, ..rain }));
+}
+
+/// Matt ground has one colour, whichever camera looks at it, and keeps it when the ego drives on.
+#[test]
+fn places_look_the_same_from_everywhere() {
+    let mut grid = VoxelGrid::new();
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            let class = if y > 105 {
+                Class::Sidewalk
+            } else {
+                Class::DriveableSurface
+            };
+            grid.set(x, y, 0, class.id());
+        }
+    }
+    let frame = Frame::new(crate::scene::BevLayout::default(), Default::default(), grid);
+    let mut ahead = frame.clone();
+    ahead.world_from_ego = Pose::planar(4.0, 0.0, 0.0);
+    let rig = SensorRig::default();
+    let conditions = of(TimeOfDay::Day, Weather::Clear);
+    let (now, then) = (
+        Look::new(&frame, &rig, &conditions),
+        Look::new(&ahead, &rig, &conditions),
+    );
+    // The light of a place of the world seen from an eye of the ego frame.
+    let light = |look: &Look, place: DVec3, eye: DVec3| {
+        let d = place - eye;
+        let sample = look.light_along(eye.as_vec3(), d.normalize().as_vec3(), 0.0015);
+        assert!(
+            (f64::from(sample.t) - d.length()).abs() < 0.02,
+            "{place}: {} {}",
+            sample.t,
+            d.length()
+        );
+        sample.color
+    };
+    for i in 0..60 {
+        let place = DVec3::new(9.0 + 0.1 * f64::from(i), 0.37 - 0.05 * f64::from(i), 0.0);
+        let a = light(&now, place, DVec3::new(1.7, 0.0, 1.5));
+        let b = light(&now, place, DVec3::new(1.5, -0.5, 1.5));
+        let c = light(&then, place - DVec3::X * 4.0, DVec3::new(-2.3, 0.0, 1.5));
+        // Haze, footprint and the sun's sheen differ a little with the eye.
+        assert!((a - b).abs().max_element() < 0.03 * a.max_element(), "{a} {b}");
+        assert!((a - c).abs().max_element() < 0.004 * a.max_element(), "{a} {c}");
+    }
+}
+
+#[test]
+fn things_cast_shadows_and_keep_their_colour_by_id() {
+    let car = |id| SceneBox {
+        id: BoxId(id),
+        class: Class::Car,
+        center_m: DVec3::new(10.0, 0.0, 0.85),
+        size_m: DVec3::new(4.6, 1.95, 1.7),
+        yaw_rad: 0.3,
+        velocity_mps: DVec2::ZERO,
+    };
+    let mut grid = VoxelGrid::new();
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            grid.set(x, y, 0, Class::DriveableSurface.id());
+        }
+    }
+    let rig = SensorRig::default();
+    let with = |boxes: &[SceneBox]| {
+        let boxes = boxes.iter().map(|b| (b.id, *b)).collect();
+        Frame::new(crate::scene::BevLayout::default(), boxes, grid.clone())
+    };
+    let conditions = of(TimeOfDay::Day, Weather::Clear);
+    let (empty, full) = (
+        Look::new(&with(&[]), &rig, &conditions),
+        Look::new(&with(&[car(1)]), &rig, &conditions),
+    );
+    let beside = glam::Vec3::new(10.0, 0.0, 0.0) - full.to_sun().truncate().normalize().extend(0.0) * 2.0;
+    let eye = glam::Vec3::new(beside.x, beside.y, 9.0);
+    let down = |look: &Look| look.light_along(eye, -glam::Vec3::Z, 0.001).color.element_sum();
+    assert!(
+        down(&full) < 0.6 * down(&empty),
+        "{} {}",
+        down(&full),
+        down(&empty)
+    );
+    let roof = |id| {
+        let look = Look::new(&with(&[car(id)]), &rig, &conditions);
+        look.light_along(glam::Vec3::new(9.6, 0.0, 9.0), -glam::Vec3::Z, 0.001)
+    };
+    assert!((roof(1).t - 7.3).abs() < 0.1, "{}", roof(1).t);
+    assert_eq!(roof(1).color, roof(1).color);
+    let others = (2..9)
+        .filter(|id| (roof(*id).color - roof(1).color).length() > 0.05)
+        .count();
+    assert!(others >= 4, "{others}");
+}
+
+#[test]
+fn bears_anything() {
+    let mut full = VoxelGrid::new();
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            full.column_mut(x, y)
+                .fill([15, 16, 0, 4, 200][(x / 9 + y / 7) % 5]);
+        }
+    }
+    let world = World::random(9);
+    let mut boxes = world.boxes.clone();
+    for (i, (class, size)) in Class::OBJECTS
+        .into_iter()
+        .zip([1e-6, 0.01, 0.3, 50.0, 900.0].into_iter().cycle())
+        .enumerate()
+    {
+        let id = BoxId(9000 + i as u32);
+        let b = SceneBox {
+            id,
+            class,
+            center_m: DVec3::new(i as f64 * 3.0 - 20.0, 900.0 * f64::from(u8::from(i == 3)), 1.0),
+            size_m: DVec3::splat(size),
+            yaw_rad: 1e9,
+            velocity_mps: DVec2::ONE,
+        };
+        boxes.insert(id, b);
+    }
+    boxes.insert(
+        BoxId(9999),
+        SceneBox {
+            center_m: DVec3::NAN,
+            ..*world.boxes.values().next().expect("traffic")
+        },
+    );
+    let mut rig = SensorRig::default();
+    rig.cameras.truncate(4);
+    rig.cameras[0].focal_px = [800.0 / 2.0 / 85f64.to_radians().tan(); 2];
+    rig.cameras[1].translation_m = [f64::NAN, 0.0, 1.0];
+    rig.cameras[2].translation_m = [3.0, 1.0, -0.9];
+    rig.cameras[3].translation_m = [1e7, -1e7, 1e3];
+    for grid in [VoxelGrid::new(), full] {
+        let mut frame = Frame::new(world.layout.clone(), boxes.clone(), grid);
+        for pose in [
+            Pose::IDENTITY,
+            Pose::planar(1e9, -1e9, 7.0),
+            Pose::planar(f64::NAN, 0.0, 0.0),
+        ] {
+            frame.world_from_ego = pose;
+            for (i, (_, weather)) in Weather::ALL.into_iter().enumerate() {
+                let time = TimeOfDay::ALL[i % 4].1;
+                for image in pictures(&frame, &rig, [23, 17], of(time, weather)) {
+                    assert_eq!(image.rgba.len(), 23 * 17 * 4);
+                    assert!(image.rgba.chunks(4).all(|p| p[3] == 255));
+                }
+            }
+        }
+        for size in [[0, 0], [0, 7], [1, 1], [3, 1], [1, 9]] {
+            let all = pictures(&frame, &rig, size, Conditions::default());
+            assert!(
+                all.iter()
+                    .all(|i| i.rgba.len() == (size[0] * size[1] * 4) as usize)
+            );
+        }
+    }
+    let frame = street(1);
+    let huge = SynthesisInput {
+        frame: &frame,
+        rig: &rig,
+        size: [u32::MAX; 2],
+        prompt: "",
+        conditions: Conditions::default(),
+        quality: Quality::Preview,
+    };
+    assert!(matches!(
+        RayMarched.synthesize(&huge),
+        Err(SynthesisError::Input(_))
+    ));
+    // Rays along axes and through edges.
+    let look = Look::new(&street(1), &SensorRig::default(), &Conditions::default());
+    let pick = [0.0f32, -0.0, 1.0, -1.0, 1e-30, 0.2, f32::NAN, f32::INFINITY];
+    for (i, x) in pick.iter().enumerate() {
+        for (k, y) in pick.iter().enumerate() {
+            let d = glam::Vec3::new(*x, *y, pick[(i + 2 * k) % 6]).normalize_or_zero();
+            let o = glam::Vec3::new(-40.2 + 3.2 * i as f32, 0.2 * k as f32, 0.1 * k as f32);
+            if d != glam::Vec3::ZERO {
+                let sample = look.light_along(o, d, 0.001);
+                assert!(!sample.color.is_nan(), "{o} {d} {:?}", sample);
+            }
+        }
+    }
+}
