@@ -12,6 +12,7 @@ pub mod pose;
 pub mod raster;
 pub mod rig;
 pub mod sensor_data;
+pub mod splats;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

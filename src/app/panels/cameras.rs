@@ -314,6 +314,8 @@ mod tests {
             height: 1,
             semantic: vec![4, 0],
             depth_m: vec![12.34, -1.0],
+            expected_m: vec![12.34, 0.0],
+            median_m: vec![12.34, -1.0],
             coverage: vec![1.0, 0.0],
         };
         assert_eq!(pixel_text(&maps, vec2(0.1, 0.5)), "0, 0  ·  car  ·  12.3 m");
