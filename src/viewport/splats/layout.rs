@@ -59,7 +59,8 @@ impl GpuView {
         let eye = ego_from_camera.translation_m;
         let limit = |axis: usize, size: u32| {
             let half = 0.5 * f64::from(size) / camera.focal_px[axis];
-            (options.jacobian_clamp * half).clamp(0.0, 1e9) as f32
+            // As on the processor: NaN holds everything at the axis.
+            (options.jacobian_clamp * half).max(0.0).min(1e9) as f32
         };
         let row = |i: usize| {
             let r = camera_from_ego.row(i).as_vec3();
@@ -89,16 +90,26 @@ impl GpuView {
 
 /// Nearest depth, held to where f32 can go.
 fn near_m(options: &SplatOptions) -> f32 {
-    options.near_m.max(0.0).min(f64::from(FAR_AWAY_M)) as f32
+    rounded_down(options.near_m.max(0.0).min(FAR_AWAY_M.into()))
 }
 
 /// Farthest depth; -1 where an option is not a number, since then nothing can be said to be drawn.
 fn far_m(options: &SplatOptions) -> f32 {
     let drawn = options.low_pass_px2.is_finite() && !options.alpha_min.is_nan() && !options.t_stop.is_nan();
-    if drawn && !options.far_m.is_nan() {
-        options.far_m.clamp(-1.0, f64::from(FAR_AWAY_M)) as f32
+    if drawn && options.far_m >= 0.0 {
+        rounded_down(options.far_m.min(FAR_AWAY_M.into()))
     } else {
         -1.0
+    }
+}
+
+/// The largest f32 that is not above `limit` (0 or more): an f32 is above the one if it is above the other.
+fn rounded_down(limit: f64) -> f32 {
+    let near = limit as f32;
+    if f64::from(near) > limit {
+        near.next_down()
+    } else {
+        near
     }
 }
 
@@ -183,7 +194,16 @@ mod tests {
         assert_eq!(bits(5.0, 5.0), 0);
         assert_eq!(bits(5.0, 1.0), 0);
         assert_eq!(bits(0.2, f64::NAN), 0);
-        assert_eq!(bits(f64::NAN, 1e-45), 1);
+        assert_eq!(bits(f64::NAN, 1.5e-45), 1);
+    }
+
+    #[test]
+    fn planes_are_not_moved_by_rounding() {
+        assert!(0.2f32 > rounded_down(0.2) && rounded_down(0.2).next_up() == 0.2f32);
+        assert_eq!(
+            (rounded_down(0.0), rounded_down(200.0), rounded_down(1e-60)),
+            (0.0, 200.0, 0.0)
+        );
     }
 
     #[test]
