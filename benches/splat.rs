@@ -1,9 +1,11 @@
-//! Time of the camera maps of a street of some 60,000 voxels: six cameras, shown and preview size.
+//! Time of the camera maps of a street of some 60,000 voxels: six cameras, shown, preview and issue
+//! size; on the processor, and on the graphics adapter there is (a software one is slow).
 //! Run: `cargo bench --bench splat`.
 
 use sceneloom::generation::sensors::cloud::GaussianCloud;
 use sceneloom::generation::sensors::splat::{PREVIEW_SIZE, SplatOptions, VIEW_SIZE, render_rig};
 use sceneloom::scene::SensorRig;
+use sceneloom::viewport::{SplatRenderer, headless_device};
 
 #[path = "../tests/sensor_scene/mod.rs"]
 mod sensor_scene;
@@ -28,6 +30,48 @@ fn main() {
                     .map(|m| m.semantic.iter().filter(|&&s| s > 0).count())
                     .sum()
             });
+        }
+    }
+    let (info, device, queue) = match headless_device() {
+        Ok(device) => device,
+        Err(e) => return println!("{e}"),
+    };
+    println!("{} ({:?}, {:?})", info.name, info.device_type, info.backend);
+    let mut gpu = match SplatRenderer::new(&device, &queue) {
+        Ok(gpu) => gpu,
+        Err(e) => return println!("{e}"),
+    };
+    let repeats = if info.device_type == wgpu::DeviceType::Cpu {
+        3
+    } else {
+        101
+    };
+    for (name, cloud) in &clouds {
+        timing::time(&format!("{name}: upload"), repeats, || {
+            gpu.set_cloud(cloud.gaussians()).expect("room");
+            cloud.len()
+        });
+        for size in [VIEW_SIZE, [800, 450]] {
+            let [w, h] = size;
+            let options = SplatOptions::default();
+            timing::time(
+                &format!("{name}: six cameras {w}x{h}, left there"),
+                repeats,
+                || {
+                    gpu.draw(&rig.cameras, size, &options).expect("drawn");
+                    rig.cameras.len()
+                },
+            );
+            timing::time(
+                &format!("{name}: six cameras {w}x{h}, read back"),
+                repeats,
+                || {
+                    let maps = gpu.render_rig(&rig, size, &options).expect("maps");
+                    maps.iter()
+                        .map(|m| m.semantic.iter().filter(|&&s| s > 0).count())
+                        .sum()
+                },
+            );
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use sceneloom::viewport::FRAME_UNIFORM_BYTES;
-use sceneloom::viewport::shaders::SHADERS;
+use sceneloom::viewport::shaders::{COMPUTE_SHADERS, SHADERS, Shader};
+use sceneloom::viewport::{FRAME_UNIFORM_BYTES, SPLAT_UNIFORM_BYTES};
 
 #[test]
 fn every_shader_file_is_listed_and_validates() {
@@ -17,10 +17,11 @@ fn every_shader_file_is_listed_and_validates() {
         })
         .collect();
     files.sort();
-    let listed: Vec<&str> = SHADERS.iter().map(|s| s.name).collect();
+    let mut listed: Vec<&str> = all().map(|s| s.name).collect();
+    listed.sort_unstable();
     assert_eq!(files, listed);
 
-    for shader in SHADERS {
+    for shader in all() {
         let module = naga::front::wgsl::parse_str(shader.source)
             .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(shader.source)));
         // No capability beyond the core: it must run on every backend.
@@ -29,29 +30,62 @@ fn every_shader_file_is_listed_and_validates() {
             panic!("{}: {}", shader.name, e.emit_to_string(shader.source));
         }
         let entries: Vec<&str> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-        assert!(
-            entries.contains(&"vs_main") && entries.contains(&"fs_main"),
-            "{}",
-            shader.name
-        );
+        if COMPUTE_SHADERS.iter().any(|s| s.name == shader.name) {
+            let compute = |e: &naga::EntryPoint| e.stage == naga::ShaderStage::Compute;
+            assert!(!entries.is_empty() && module.entry_points.iter().all(compute));
+            downlevel(shader, &module);
+        } else {
+            assert!(
+                entries.contains(&"vs_main") && entries.contains(&"fs_main"),
+                "{}",
+                shader.name
+            );
+        }
+    }
+}
+
+fn all() -> impl Iterator<Item = &'static Shader> {
+    SHADERS.iter().chain(COMPUTE_SHADERS)
+}
+
+/// A compute shader keeps to what the smallest devices offer, entry point by entry point: four
+/// storage buffers, 256 invocations, 16,352 bytes for a workgroup.
+fn downlevel(shader: &Shader, module: &naga::Module) {
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(module).expect("checked by the caller");
+    let mut layouter = Layouter::default();
+    layouter.update(module.to_ctx()).expect("sized types");
+    for (index, entry) in module.entry_points.iter().enumerate() {
+        let uses = info.get_entry_point(index);
+        let of = |wanted: fn(naga::AddressSpace) -> bool| {
+            let used = module.global_variables.iter();
+            used.filter(move |(handle, v)| wanted(v.space) && !uses[*handle].is_empty())
+        };
+        let buffers = of(|s| matches!(s, naga::AddressSpace::Storage { .. })).count();
+        let bytes: u32 = of(|s| s == naga::AddressSpace::WorkGroup)
+            .map(|(_, v)| layouter[v.ty].size)
+            .sum();
+        let invocations: u32 = entry.workgroup_size.iter().product();
+        println!("{} {}: {buffers} buffers, {bytes} bytes", shader.name, entry.name);
+        assert!((1..=4).contains(&buffers) && bytes <= 16_352 && invocations <= 256);
     }
 }
 
 #[test]
 fn uniforms_are_as_large_here_as_there() {
-    for shader in SHADERS {
+    for shader in all() {
         let module = naga::front::wgsl::parse_str(shader.source).expect("checked above");
         let mut layouter = Layouter::default();
         layouter.update(module.to_ctx()).expect("sized types");
+        let (name, bytes) = match COMPUTE_SHADERS.iter().any(|s| s.name == shader.name) {
+            true => ("Batch", SPLAT_UNIFORM_BYTES),
+            false => ("Frame", FRAME_UNIFORM_BYTES),
+        };
         let (handle, _) = module
             .types
             .iter()
-            .find(|(_, t)| t.name.as_deref() == Some("Frame"))
-            .expect("the shared part declares Frame");
-        assert_eq!(
-            layouter[handle].size as usize, FRAME_UNIFORM_BYTES,
-            "{}",
-            shader.name
-        );
+            .find(|(_, t)| t.name.as_deref() == Some(name))
+            .expect("the shared part declares it");
+        assert_eq!(layouter[handle].size as usize, bytes, "{}", shader.name);
     }
 }

@@ -13,6 +13,7 @@ pub mod raster;
 pub mod rig;
 pub mod rig_presets;
 pub mod sensor_data;
+pub mod splats;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

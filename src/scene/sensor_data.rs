@@ -19,7 +19,14 @@ pub struct CameraMaps {
     /// Most visible render id; 0 where nothing was drawn.
     pub semantic: Vec<RenderId>,
     /// Depth along the optical axis in m, normalised by coverage; -1 where coverage is below 1e-3.
+    /// Between two surfaces where both are seen.
     pub depth_m: Vec<f32>,
+    /// Sum of weight times depth in m, not normalised (UniScene's depth map, equation 17): falls
+    /// with coverage; 0 where nothing was drawn.
+    pub expected_m: Vec<f32>,
+    /// Depth in m of the first splat after which less than half the light is left, so always that of a
+    /// surface; -1 where more is left.
+    pub median_m: Vec<f32>,
     /// Sum of blending weights, 0 to 1.
     pub coverage: Vec<f32>,
 }

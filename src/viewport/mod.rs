@@ -20,6 +20,7 @@ pub mod meshing;
 mod points;
 pub mod shaders;
 mod shared;
+pub mod splats;
 mod target;
 mod voxels;
 
@@ -31,6 +32,7 @@ pub use error::ViewportError;
 pub use image::MAX_SUPERSAMPLE;
 pub use points::{LidarColorMode, lidar_colors};
 pub use shared::{COLOR_FORMAT, FRAME_UNIFORM_BYTES, FrameUniforms};
+pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};
 
 use crate::scene::{BoxId, GridSpec, LidarSweep, SceneBox, SensorRig, VoxelGrid};
 use marks::Marks;

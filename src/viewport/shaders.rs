@@ -1,27 +1,30 @@
-//! The shaders as text, each with the shared part in front.
+//! The shaders as text, each with the part it shares in front.
 
 /// A shader as it is given to the device.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
     /// Name of its file in `shaders/`, without the ending.
     pub name: &'static str,
-    /// WGSL, with `shaders/shared/frame.wgsl` in front.
+    /// WGSL, with `shaders/shared/frame.wgsl` or `splat.wgsl` in front.
     pub source: &'static str,
 }
 
 macro_rules! shader {
     ($name:literal) => {
+        shader!($name, "frame")
+    };
+    ($name:literal, $shared:literal) => {
         Shader {
             name: $name,
             source: concat!(
-                include_str!("../../shaders/shared/frame.wgsl"),
+                include_str!(concat!("../../shaders/shared/", $shared, ".wgsl")),
                 include_str!(concat!("../../shaders/", $name, ".wgsl"))
             ),
         }
     };
 }
 
-/// Every shader of the viewport.
+/// Every shader that draws.
 pub const SHADERS: &[Shader] = &[
     shader!("background"),
     shader!("ego"),
@@ -30,4 +33,12 @@ pub const SHADERS: &[Shader] = &[
     shader!("lines"),
     shader!("points"),
     shader!("voxels"),
+];
+
+/// Every shader that computes: the splat renderer's.
+pub const COMPUTE_SHADERS: &[Shader] = &[
+    shader!("splat_blend", "splat"),
+    shader!("splat_project", "splat"),
+    shader!("splat_sort", "splat"),
+    shader!("splat_tiles", "splat"),
 ];

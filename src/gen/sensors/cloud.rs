@@ -2,6 +2,7 @@
 
 use super::raycast::ColumnMasks;
 use crate::scene::sensor_data::RenderId;
+pub use crate::scene::splats::Gaussian;
 use crate::scene::{BevLayer, Class, GridSpec, VoxelGrid};
 
 /// Standard deviation of a voxel's Gaussian: half a voxel (UniScene; X-Scene uses 0.135 m).
@@ -13,19 +14,6 @@ const LINES: [(BevLayer, RenderId); 3] = [
     (BevLayer::RoadDivider, 18),
     (BevLayer::LaneDivider, 19),
 ];
-
-/// An isotropic Gaussian with a label.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaussian {
-    /// Centre in the ego frame, m.
-    pub position_m: [f32; 3],
-    /// Standard deviation, m.
-    pub std_m: f32,
-    /// Alpha at the centre; held to 0..1, NaN draws nothing.
-    pub opacity: f32,
-    /// What it shows; ids from 20 on draw nothing.
-    pub id: RenderId,
-}
 
 /// What the splat renderer draws.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -200,6 +200,8 @@ mod tests {
             height: 2,
             semantic: vec![0, 4, 4, 11, 19, 255, 1, 2],
             depth_m: vec![-1.0, 5.0, 5.1, f32::NAN, 0.0, 1e9, f32::INFINITY, 1e-20],
+            expected_m: vec![0.0; 8],
+            median_m: vec![-1.0; 8],
             coverage: vec![1.0; 8],
         };
         let flat = semantic_rgba(&maps, false);

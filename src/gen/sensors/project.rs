@@ -51,7 +51,8 @@ impl View {
     pub fn new(camera: &Camera, width: u32, height: u32, jacobian_clamp: f64) -> View {
         let camera = camera.resized(width, height);
         let camera_from_ego = camera.ego_from_camera().inverse();
-        let limit = |size: u32, focal: f64| jacobian_clamp * 0.5 * f64::from(size) / focal;
+        // Not below 0, nor NaN, which cannot hold anything.
+        let limit = |size: u32, focal: f64| (jacobian_clamp * 0.5 * f64::from(size) / focal).max(0.0);
         View {
             camera_from_ego: DMat3::from_quat(camera_from_ego.rotation),
             ego_in_camera: camera_from_ego.translation_m,

@@ -4,82 +4,19 @@
 use rayon::prelude::*;
 
 pub use super::cloud::{Gaussian, GaussianCloud};
+pub use crate::scene::splats::{RawMaps, SplatOptions};
+
 use super::order::depth_order;
 use super::project::{Conic, View};
 use super::tile::{Limits, Placed, Splat, TILE, Tile};
 use crate::scene::sensor_data::RENDER_IDS;
+use crate::scene::splats::MIN_DEPTH_COVERAGE;
 use crate::scene::{Camera, CameraMaps, SensorRig};
 
 /// Size at which the editor shows a camera: a quarter of the nuScenes images.
 pub const VIEW_SIZE: [u32; 2] = [400, 225];
 /// Size while the user drags.
 pub const PREVIEW_SIZE: [u32; 2] = [240, 135];
-
-/// Constants of the renderer; the default is the papers' (and the reference data's).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SplatOptions {
-    /// Gaussians whose centre is not beyond this depth are dropped, m. The rasteriser behind the
-    /// papers uses 0.2 whatever its caller asks for.
-    pub near_m: f64,
-    /// Gaussians beyond this depth are dropped, m.
-    pub far_m: f64,
-    /// Added to the variance along both image axes, px^2.
-    pub low_pass_px2: f64,
-    /// Largest alpha of one splat, at most 0.999.
-    pub alpha_max: f32,
-    /// Alphas below this are skipped.
-    pub alpha_min: f32,
-    /// A pixel with less light left takes no more splats.
-    pub t_stop: f32,
-    /// How far off the axis the Jacobian is taken, in units of half the image.
-    pub jacobian_clamp: f64,
-    /// Multiply opacity by sqrt(det / det'), see [`Conic::compensation`].
-    pub compensate_opacity: bool,
-    /// [`CameraMaps::semantic`] is 0 where coverage is below this. 0.10 in the paper.
-    pub min_coverage: f32,
-}
-
-impl Default for SplatOptions {
-    fn default() -> Self {
-        Self {
-            near_m: 0.2,
-            far_m: 200.0,
-            low_pass_px2: 0.3,
-            alpha_max: 0.99,
-            alpha_min: 1.0 / 255.0,
-            t_stop: 1e-4,
-            jacobian_clamp: 1.3,
-            compensate_opacity: false,
-            min_coverage: 0.10,
-        }
-    }
-}
-
-/// Everything the renderer knows about the pixels of one camera, row-major, `height * width` each.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RawMaps {
-    /// Pixels per row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Sum of weights, 0 to 1.
-    pub coverage: Vec<f32>,
-    /// Sum of weight times depth in m, not normalised (equation 17).
-    pub expected_m: Vec<f32>,
-    /// Expected depth over coverage in m; -1 where coverage is below 1e-3.
-    pub normalised_m: Vec<f32>,
-    /// Depth in m of the first Gaussian after which less than half the light is left; -1 if none.
-    pub median_m: Vec<f32>,
-    /// Heaviest render id (equation 18), the lowest on a tie; -1 where nothing was drawn.
-    pub label: Vec<i16>,
-    /// Weight of the heaviest id minus that of the second.
-    pub margin: Vec<f32>,
-    /// Light that was left.
-    pub transmittance: Vec<f32>,
-}
-
-/// Below this coverage a normalised depth says nothing.
-const MIN_DEPTH_COVERAGE: f32 = 1e-3;
 
 /// Renders one camera at `width` x `height` pixels (0 gives empty maps).
 pub fn render(
@@ -90,21 +27,7 @@ pub fn render(
     options: &SplatOptions,
 ) -> CameraMaps {
     let raw = render_raw(cloud, camera, width, height, options);
-    let visible = |(&label, &coverage): (&i16, &f32)| {
-        if coverage < options.min_coverage {
-            0
-        } else {
-            label.max(0) as u8
-        }
-    };
-    CameraMaps {
-        camera: camera.name.clone(),
-        width: raw.width,
-        height: raw.height,
-        semantic: raw.label.iter().zip(&raw.coverage).map(visible).collect(),
-        depth_m: raw.normalised_m,
-        coverage: raw.coverage,
-    }
+    raw.into_camera_maps(&camera.name, options)
 }
 
 /// Renders every camera of a rig, in the rig's order.
@@ -184,24 +107,6 @@ pub fn render_raw(
         },
     );
     maps
-}
-
-impl RawMaps {
-    /// Maps on which nothing was drawn.
-    fn empty(width: usize, height: usize) -> Self {
-        let n = width * height;
-        RawMaps {
-            width,
-            height,
-            coverage: vec![0.0; n],
-            expected_m: vec![0.0; n],
-            normalised_m: vec![-1.0; n],
-            median_m: vec![-1.0; n],
-            label: vec![-1; n],
-            margin: vec![0.0; n],
-            transmittance: vec![1.0; n],
-        }
-    }
 }
 
 /// Splats that may touch the image, near to far, equal depths in the cloud's order.
