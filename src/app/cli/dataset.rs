@@ -78,8 +78,7 @@ impl Dataset {
             true
         };
         let report = if self.kind == "lidar" {
-            let make =
-                |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+            let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
             dataset::write(&self.output, frames, make, step)
         } else {
             dataset::write(&self.output, frames, make, step)

@@ -85,8 +85,16 @@ impl Shard for LidarFrame {
             (0..9).map(move |i| columns[i % 3][i / 3])
         };
         vec![
-            (Dtype::U8, VOXELS.to_vec(), voxels(frames.iter().map(|f| &f.dense))),
-            (Dtype::U8, VOXELS.to_vec(), voxels(frames.iter().map(|f| &f.labels))),
+            (
+                Dtype::U8,
+                VOXELS.to_vec(),
+                voxels(frames.iter().map(|f| &f.dense)),
+            ),
+            (
+                Dtype::U8,
+                VOXELS.to_vec(),
+                voxels(frames.iter().map(|f| &f.labels)),
+            ),
             (Dtype::U16, vec![beams, columns], range.collect()),
             bytes(|r| r.intensity),
             bytes(|r| r.echo as u8),
@@ -96,7 +104,9 @@ impl Shard for LidarFrame {
             floats(&[3, 3], &mut frames.iter().flat_map(rows)),
             floats(
                 &[beams],
-                &mut frames.iter().flat_map(|f| f.pattern.elevations_deg.iter().copied()),
+                &mut frames
+                    .iter()
+                    .flat_map(|f| f.pattern.elevations_deg.iter().copied()),
             ),
         ]
     }

@@ -5,6 +5,7 @@
 
 pub mod cloud;
 pub mod color;
+pub mod learned;
 pub mod lidar;
 pub mod order;
 pub mod project;

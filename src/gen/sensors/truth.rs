@@ -64,8 +64,7 @@ pub fn sweep(world: &World, pattern: &LidarPattern, seed: u64) -> Vec<TruthRay> 
     let beam = |(ring, elevation): (usize, &f64)| -> Vec<TruthRay> {
         let mut draw = Draw::new(hash(seed ^ hash(ring as u64)), "pulses");
         let column = |c| {
-            let direction =
-                ego_from_sensor.rotation * direction_in_sensor(*elevation, c, pattern.columns);
+            let direction = ego_from_sensor.rotation * direction_in_sensor(*elevation, c, pattern.columns);
             materials.pulse(origin, direction, pattern.max_range_m, &mut draw)
         };
         (0..pattern.columns).map(column).collect()
@@ -128,7 +127,8 @@ impl<'a> Materials<'a> {
             let weak = 1.0 / (1.0 + (0.6 * signal + 4.1).exp());
             let lost = material.lost + (1.0 - material.lost) * weak;
             let range = hit.range_m + range_noise * range_sigma_m(hit.class, hit.range_m);
-            let strength = material.strength * (0.75 + 0.25 * cosine) * (material.spread * strength_noise).exp();
+            let strength =
+                material.strength * (0.75 + 0.25 * cosine) * (material.spread * strength_noise).exp();
             ray = TruthRay {
                 range_m: ((range / RANGE_STEP_M).round() * RANGE_STEP_M) as f32,
                 class: hit.class,
@@ -174,7 +174,8 @@ impl<'a> Materials<'a> {
             Class::Manmade => {
                 // Windows every three metres along and up a facade: mirrors at a slant, else half transparent.
                 let along = p.x * surface.normal.y - p.y * surface.normal.x;
-                let tall = solid.is_some_and(|s| s.reach().z > 1.8 && s.reach().truncate().max_element() > 2.5);
+                let tall =
+                    solid.is_some_and(|s| s.reach().z > 1.8 && s.reach().truncate().max_element() > 2.5);
                 let window = (along / 3.0).rem_euclid(1.0) < 0.4 && (p.z / 3.0 - 0.3).rem_euclid(1.0) < 0.45;
                 if tall && window && surface.normal.z.abs() < 0.3 {
                     of(4.0, 0.5, 0.3)
@@ -196,9 +197,11 @@ impl<'a> Materials<'a> {
                     _ => of(paint, 0.35, 0.02),
                 }
             }
-            Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => {
-                of(27.0 * (0.25 * tone).exp(), 0.25, if class == Class::Bus { 0.12 } else { 0.02 })
-            }
+            Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => of(
+                27.0 * (0.25 * tone).exp(),
+                0.25,
+                if class == Class::Bus { 0.12 } else { 0.02 },
+            ),
             Class::Pedestrian => of(20.0 * (0.5 * tone).exp(), 0.4, 0.05),
             Class::TrafficCone if detail < 0.2 => of(180.0, 0.2, 0.02), // its collar
             Class::TrafficCone => of(17.0, 0.5, 0.03),
@@ -251,19 +254,27 @@ mod tests {
     #[test]
     fn sweeps_are_like_real_ones() {
         let pattern = &SensorRig::default().lidars[0];
-        let rays: Vec<TruthRay> = (40..52).flat_map(|s| sweep(&World::random(s), pattern, s)).collect();
+        let rays: Vec<TruthRay> = (40..52)
+            .flat_map(|s| sweep(&World::random(s), pattern, s))
+            .collect();
         let share = |test: &dyn Fn(&TruthRay) -> bool| {
             rays.iter().filter(|r| test(r)).count() as f64 / rays.len() as f64
         };
         let returned = |r: &TruthRay| r.echo == Echo::Return;
         let none = |r: &TruthRay| matches!(r.echo, Echo::Lost | Echo::Nothing);
         let own = share(&|r| r.echo == Echo::OwnBody);
-        println!("return {:.3} none {:.3} own {own:.3}", share(&returned), share(&none));
+        println!(
+            "return {:.3} none {:.3} own {own:.3}",
+            share(&returned),
+            share(&none)
+        );
         assert!((0.5..0.82).contains(&share(&returned)));
         assert!((0.1..0.37).contains(&share(&none)));
         assert!((0.09..0.125).contains(&own), "{own}");
         let of = |class: Option<Class>, value: fn(&TruthRay) -> f64| -> Vec<f64> {
-            let wanted = rays.iter().filter(|r| returned(r) && class.is_none_or(|c| c == r.class));
+            let wanted = rays
+                .iter()
+                .filter(|r| returned(r) && class.is_none_or(|c| c == r.class));
             wanted.map(value).collect()
         };
         let range_p50 = quantile(&mut of(None, |r| f64::from(r.range_m)), 0.5);

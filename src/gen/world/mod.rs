@@ -50,7 +50,7 @@ pub struct World {
     pub boxes: BTreeMap<BoxId, SceneBox>,
     solids: Vec<Solid>,
     owners: Vec<(u32, u8)>, // instance and part of each solid
-    bins: Vec<Vec<u32>>, // [x][y] of 4 m, indices of solids that reach in
+    bins: Vec<Vec<u32>>,    // [x][y] of 4 m, indices of solids that reach in
     ground: Vec<Class>,
     seed: u64,
 }
@@ -62,7 +62,11 @@ impl World {
         for b in boxes.values() {
             objects::object(b, seed, &mut solids);
             let instance = 1 + b.id.0;
-            owners.extend((owners.len()..solids.len()).enumerate().map(|(part, _)| (instance, part as u8)));
+            owners.extend(
+                (owners.len()..solids.len())
+                    .enumerate()
+                    .map(|(part, _)| (instance, part as u8)),
+            );
         }
         scenery::scenery(&layout, &boxes, seed, &mut solids);
         // Beyond any box's id, so that a bush never shares a number with a car.
@@ -109,7 +113,9 @@ impl World {
 
     /// The surface at a point that [`cast`](Self::cast) found.
     pub fn surface(&self, hit: &Hit, p: DVec3) -> Surface {
-        let solid = hit.solid.and_then(|i| self.solids.get(i as usize).zip(self.owners.get(i as usize)));
+        let solid = hit
+            .solid
+            .and_then(|i| self.solids.get(i as usize).zip(self.owners.get(i as usize)));
         match solid {
             Some((solid, &(instance, part))) => Surface {
                 normal: solid.normal(p),

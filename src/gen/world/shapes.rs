@@ -367,7 +367,10 @@ mod tests {
                         hits += 1;
                         assert!((t - m).abs() < 3e-3, "{solid:?} {t} {m}");
                         let (p, n) = (origin + dir * t, solid.normal(origin + dir * t));
-                        assert!((n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6, "{solid:?} {n}");
+                        assert!(
+                            (n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6,
+                            "{solid:?} {n}"
+                        );
                         assert!(!solid.contains(p + n * 1e-3) && solid.contains(p - n * 2e-3 + dir * 1e-3));
                     }
                     (None, None) => {}

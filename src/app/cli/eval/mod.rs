@@ -5,6 +5,7 @@ mod editing;
 mod edits;
 mod fidelity;
 mod generation;
+mod lidar;
 mod vae;
 mod world;
 
@@ -29,7 +30,7 @@ const TEST_SEED: u64 = 3;
 #[derive(clap::Args)]
 pub struct Eval {
     /// What is measured.
-    #[arg(value_parser = ["world", "vae", "generation", "editing"])]
+    #[arg(value_parser = ["world", "vae", "generation", "editing", "lidar"])]
     suite: String,
     /// Number of held-out worlds, or of frames of --data.
     #[arg(long, value_name = "N", default_value_t = 24)]
@@ -77,6 +78,8 @@ impl Eval {
         let progress = Progress::new(&self.common);
         let (mut report, bars) = if self.suite == "world" {
             self.world(&progress)?
+        } else if self.suite == "lidar" {
+            self.lidar(&progress)?
         } else {
             let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
             let (mut report, bars) = match self.suite.as_str() {
