@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use safetensors::{Dtype, SafeTensors};
+use sceneloom::generation::model::lidar::field::Ray;
+use sceneloom::generation::model::lidar::{LearnedRay, LidarNet};
 use sceneloom::generation::model::{
     CELLS, CHANNELS, DitCondition, KeysValues, LATENT, ModelError, OccModels, OccVae, fine_vae, tokens_of,
 };
@@ -434,4 +437,71 @@ fn weights_from_a_folder() {
     );
     std::fs::write(folder.path().join("occ_vae.safetensors"), &vae[..vae.len() / 2]).expect("written");
     assert!(refusal().starts_with("occ_vae.safetensors: not a usable safetensors file"));
+}
+
+#[test]
+fn lidar_agrees_with_python() {
+    let golden = Golden::open("parity_lidar.safetensors");
+    let net = LidarNet::bundled().expect("the shipped weights");
+    let keys: Vec<u32> = golden.i32("keys").into_iter().map(|k| k as u32).collect();
+    let field = net
+        .field_of(keys, golden.bytes("classes", Dtype::U8))
+        .expect("a finite field");
+    let rows = field.hidden.iter().zip(&field.planes);
+    let geometry = rows.flat_map(|(hidden, plane)| hidden.iter().chain(plane).copied());
+    assert_close(
+        "geometry",
+        geometry.step_by(97),
+        &golden.f32("every_97th_geometry"),
+    );
+    let appearance = field.appearance.iter().flatten().copied();
+    assert_close(
+        "appearance",
+        appearance.step_by(97),
+        &golden.f32("every_97th_appearance"),
+    );
+    let (t, d, origin) = (golden.f32("t"), golden.f32("directions"), golden.f32("origin"));
+    let vector = |v: &[f32]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+    let samples = t.len() / (d.len() / 3);
+    let (mut sdf, mut met) = (Vec::new(), Vec::new());
+    for (t, d) in t.chunks_exact(samples).zip(d.chunks_exact(3)) {
+        let ray = Ray {
+            origin: vector(&origin),
+            direction: vector(d),
+            range_m: [1.0, 100.0],
+        };
+        let (f, answer) = net.probe(&field, &ray, t);
+        sdf.extend(f);
+        met.push(answer);
+    }
+    assert_close("signed distance", sdf, &golden.f32("sdf"));
+    let of = |value: fn(&LearnedRay) -> f32| met.iter().map(value);
+    assert_close(
+        "ln of what passes",
+        of(|r| r.met.log_pass.max(-30.0)),
+        &golden.f32("log_pass"),
+    );
+    // A ray that meets nothing has no depth, and no strength to speak of.
+    let seen: Vec<bool> = golden.f32("log_pass").iter().map(|p| *p < -0.01).collect();
+    assert!(seen.iter().filter(|s| **s).count() > 20);
+    let only = |values: Vec<f32>| -> Vec<f32> {
+        values
+            .into_iter()
+            .zip(&seen)
+            .filter(|(_, s)| **s)
+            .map(|(v, _)| v)
+            .collect()
+    };
+    let depth = only(golden.f32("depth"));
+    assert_close("depth", only(of(|r| r.met.mean_m).collect()), &depth);
+    assert_close(
+        "drop logit",
+        only(of(|r| r.drop_logit).collect()),
+        &only(golden.f32("drop")),
+    );
+    let strength = only(golden.f32("strength"))
+        .into_iter()
+        .map(|v| v.clamp(0.0, 1.0).powi(2))
+        .collect::<Vec<_>>();
+    assert_close("strength", only(of(|r| r.intensity / 255.0).collect()), &strength);
 }

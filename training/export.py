@@ -144,6 +144,10 @@ def main():
     if not args.fine and "occ_vae_fine" in kept:
         card["occ_vae_fine"] = kept["occ_vae_fine"]
         kinds.append("occ_vae_fine")
+    for kind in ("lidar", "lidar_flat"):  # export_lidar.py writes these
+        if kind in kept:
+            card[kind] = kept[kind]
+            kinds.append(kind)
     (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
     lines = ["# Weights", "", "Trained on this project's own procedural worlds; no frame of a data set went in. With `--roads` a third of the",
              "layouts are places on public OpenDRIVE files (MIT, MPL-2.0), which are not part of this repository.", "",

@@ -434,6 +434,8 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
             ring: 0,
             azimuth: 0,
             class: Class::Free,
+            intensity: f32::NAN,
+            drop_probability: f32::NAN,
         }],
         rays: 1,
     };

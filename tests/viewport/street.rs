@@ -237,6 +237,8 @@ fn sweep(grid: &VoxelGrid) -> LidarSweep {
                         ring,
                         azimuth,
                         class,
+                        intensity: 0.0,
+                        drop_probability: 0.0,
                     });
                     break;
                 }

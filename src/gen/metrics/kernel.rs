@@ -51,6 +51,22 @@ fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
+/// Squared maximum mean discrepancy as a biased V-statistic, every pair counted, at least 0: LidarDM's definition.
+pub fn mmd2_biased(kernel: Kernel, x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, MetricError> {
+    let (wide, found) = (check(x, "x")?, check(y, "y")?);
+    if wide != found {
+        return Err(MetricError::Width {
+            found,
+            expected: wide,
+        });
+    }
+    let mean = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+        let sums = a.iter().map(|a| b.iter().map(|b| kernel.of(a, b)).sum::<f64>());
+        sums.sum::<f64>() / (a.len() * b.len()) as f64
+    };
+    Ok((mean(x, x) + mean(y, y) - 2.0 * mean(x, y)).max(0.0))
+}
+
 /// Squared maximum mean discrepancy, unbiased.
 pub fn mmd2(kernel: Kernel, x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, MetricError> {
     let (wide, found) = (check(x, "x")?, check(y, "y")?);
@@ -118,6 +134,16 @@ mod tests {
                     case["name"]
                 );
             }
+        }
+        for case in Reference::open().array("mmd") {
+            let (x, y) = (rows(&case["x"]), rows(&case["y"]));
+            let found = mmd2_biased(Kernel::Gaussian { bandwidth: 0.5 }, &x, &y).expect("sound samples");
+            let truth = case["rbf_0.5"]["v"].as_f64().expect("a number");
+            assert!(
+                (found - truth).abs() < 1e-12,
+                "{}: {found}, expected {truth}",
+                case["name"]
+            );
         }
         let one = vec![vec![0.0]];
         assert_eq!(

@@ -93,6 +93,8 @@ macro_rules! vectorised {
     };
 }
 
+pub(crate) use vectorised;
+
 vectorised! {
     /// GELU of a whole slice.
     pub fn gelu_all(values: &mut [f32]) {

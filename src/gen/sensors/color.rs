@@ -28,11 +28,14 @@ pub fn semantic_rgba(maps: &CameraMaps, shaded: bool) -> Vec<u8> {
     let palette: [[u8; 3]; RENDER_IDS] = std::array::from_fn(|id| render_id_color(id as u8));
     let mut out = Vec::with_capacity(maps.semantic.len() * 4);
     for (at, &id) in maps.semantic.iter().enumerate() {
-        let rgb = palette
-            .get(id as usize)
-            .copied()
-            .unwrap_or_else(|| render_id_color(id));
-        let tone = if shaded && id != 0 { tone(maps, at) } else { 1.0 };
+        // Id 0 is both nothing and the class "others": a surface that covers the pixel is the latter.
+        let surface = id != 0 || (maps.coverage[at] > 0.5 && maps.depth_m[at] > 0.0);
+        let rgb = match (surface, palette.get(usize::from(id))) {
+            (false, _) => SKY,
+            (true, Some(rgb)) if id != 0 => *rgb,
+            _ => opaque_color(id),
+        };
+        let tone = if shaded && surface { tone(maps, at) } else { 1.0 };
         out.extend(rgb.map(|c| (f32::from(c) * tone).min(255.0) as u8));
         out.push(255);
     }

@@ -229,6 +229,8 @@ impl MarchMaps {
             height: self.height,
             semantic: self.hits.iter().map(|h| h.as_ref().map_or(0, |h| h.id)).collect(),
             coverage: depth_m.iter().map(|d| f32::from(*d >= 0.0)).collect(),
+            expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
+            median_m: depth_m.clone(),
             depth_m,
         }
     }

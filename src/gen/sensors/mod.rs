@@ -7,6 +7,7 @@ pub mod appearance;
 pub mod caster;
 pub mod cloud;
 pub mod color;
+pub mod learned;
 pub mod lidar;
 pub mod march;
 pub mod mpi;

@@ -348,7 +348,7 @@ mod tests {
             Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
         ];
         let mut draw = Draw::new(3, "rays");
-        let mut hits = 0;
+        let (mut hits, mut under) = (0, 0);
         for solid in solids {
             for _ in 0..2000 {
                 let origin = DVec3::new(
@@ -373,6 +373,13 @@ mod tests {
                     (Some(t), Some(m)) => {
                         hits += 1;
                         assert!((t - m).abs() < 3e-3, "{solid:?} {t} {m}");
+                        let (p, n) = (origin + dir * t, solid.normal(origin + dir * t));
+                        assert!(
+                            (n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6,
+                            "{solid:?} {n}"
+                        );
+                        assert!(!solid.contains(p + n * 1e-3), "{solid:?} {n}");
+                        under += usize::from(solid.contains(p - n * 2e-3));
                     }
                     (None, None) => {}
                     // A graze shorter than the march's step.
@@ -382,6 +389,8 @@ mod tests {
             }
         }
         assert!(hits > 2000, "{hits} hits");
+        // Below the surface is inside, but for points right at an edge.
+        assert!(under * 100 > hits * 97, "{under} of {hits}");
     }
 
     /// Towards the normal lies the outside, against it the inside.

@@ -5,6 +5,7 @@ mod editing;
 mod edits;
 mod fidelity;
 mod generation;
+mod lidar;
 mod splat;
 mod vae;
 mod world;
@@ -30,7 +31,7 @@ const TEST_SEED: u64 = 3;
 #[derive(clap::Args)]
 pub struct Eval {
     /// What is measured.
-    #[arg(value_parser = ["world", "splat", "vae", "generation", "editing"])]
+    #[arg(value_parser = ["world", "splat", "vae", "generation", "editing", "lidar"])]
     suite: String,
     /// Number of held-out worlds, or of frames of --data.
     #[arg(long, value_name = "N", default_value_t = 24)]
@@ -80,6 +81,8 @@ impl Eval {
             self.world(&progress)?
         } else if self.suite == "splat" {
             self.splat(&progress)?
+        } else if self.suite == "lidar" {
+            self.lidar(&progress)?
         } else {
             let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
             let (mut report, bars) = match self.suite.as_str() {

@@ -1,0 +1,239 @@
+//! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes.
+
+use glam::DVec3;
+
+use super::lidar::{EgoBox, Rays};
+use crate::generation::model::ModelError;
+use crate::generation::model::lidar::field::{Field, Ray, Sampling};
+use crate::generation::model::lidar::{LearnedRay, LidarNet};
+use crate::generation::world::draw::{Draw, hash};
+use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+
+/// What happens to echoes that a real sensor may lose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drops {
+    /// All stay; their probability stands in the points.
+    Keep,
+    /// Those more likely lost than not go.
+    Likely,
+    /// Each goes with its probability; the draw depends on the seed, beam and column.
+    Drawn(u64),
+}
+
+/// True if the echo is lost; a logit of exactly 0 (one half) is, NaN is not.
+pub fn is_dropped(drop_logit: f32) -> bool {
+    drop_logit >= 0.0
+}
+
+/// The field of a scene as the network sees it, without the voxels of the own vehicle.
+pub fn field(net: &LidarNet, grid: &VoxelGrid, exclude: Option<EgoBox>) -> Result<Field, ModelError> {
+    let Some(ego) = exclude else {
+        return net.field(grid);
+    };
+    let mut seen = grid.clone();
+    for (x, y, z, class) in grid.iter_set() {
+        let near = (GridSpec::center(x, y, z) - ego.center_m)
+            .abs()
+            .cmple(ego.size_m / 2.0);
+        if near.all() && !class_is_ground(class) {
+            seen.set(x, y, z, Class::FREE);
+        }
+    }
+    net.field(&seen)
+}
+
+fn class_is_ground(label: impl Into<u8>) -> bool {
+    Class::from_id(label.into()).is_some_and(Class::is_ground)
+}
+
+/// The rays of a pattern, beam-major; see [`Rays::new`].
+pub fn rays(pattern: &LidarPattern, ego_speed_mps: f64) -> Vec<Ray> {
+    let rays = Rays::new(pattern, ego_speed_mps);
+    let ray = |i| {
+        let (origin, direction) = rays.get(i);
+        Ray {
+            origin,
+            direction,
+            range_m: [pattern.min_range_m, pattern.max_range_m],
+        }
+    };
+    (0..rays.directions.len()).map(ray).collect()
+}
+
+/// Casts the pattern, beam-major; only what was met and not dropped becomes a point.
+pub fn sweep(net: &LidarNet, field: &Field, pattern: &LidarPattern, drops: Drops) -> LidarSweep {
+    let rays = rays(pattern, 0.0);
+    let answers = net.shoot(field, &rays, Sampling::Prior);
+    points(&rays, &answers, pattern.columns_in_sector(), drops)
+}
+
+/// The points of answered rays.
+pub fn points(rays: &[Ray], answers: &[LearnedRay], columns: u32, drops: Drops) -> LidarSweep {
+    let columns = columns.max(1) as usize;
+    let mut points = Vec::with_capacity(rays.len());
+    for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+        let range_m = answer.met.median_m;
+        let lost = match drops {
+            Drops::Keep => false,
+            Drops::Likely => is_dropped(answer.drop_logit),
+            Drops::Drawn(seed) => {
+                Draw::new(hash(seed ^ i as u64), "lost echo").chance(f64::from(answer.drop_probability()))
+            }
+        };
+        if lost || !answer.is_hit() || !range_m.is_finite() {
+            continue;
+        }
+        let position: DVec3 = ray.origin + ray.direction * f64::from(range_m);
+        points.push(LidarPoint {
+            position_in_ego: position.as_vec3().to_array(),
+            range_m,
+            ring: (i / columns) as u16,
+            azimuth: (i % columns) as u16,
+            class: Class::from_id(answer.met.class).unwrap_or(Class::Others),
+            intensity: answer.intensity,
+            drop_probability: answer.drop_probability(),
+        });
+    }
+    LidarSweep {
+        points,
+        rays: rays.len(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::model::lidar::drop_probability;
+    use crate::generation::world::World;
+    use crate::generation::world::voxelize::{Vertical, complete};
+    use crate::scene::SensorRig;
+
+    /// Row 51 of the extremes table: extreme logits, exactly one half, NaN; the same answer every time.
+    #[test]
+    fn row_51_drops() {
+        for (logit, dropped, probability) in [
+            (1e4f32, true, 1.0f32),
+            (-1e4, false, 0.0),
+            (0.0, true, 0.5),
+            (-0.0, true, 0.5),
+            (-1e-30, false, 0.5),
+            (f32::INFINITY, true, 1.0),
+            (f32::NEG_INFINITY, false, 0.0),
+            (f32::NAN, false, 0.5),
+        ] {
+            assert_eq!(
+                (is_dropped(logit), drop_probability(logit)),
+                (dropped, probability),
+                "{logit}"
+            );
+        }
+        let near: Vec<f32> = (-2000..2000).map(|i| drop_probability(i as f32 * 0.01)).collect();
+        assert!(near.is_sorted() && near.iter().all(|p| p.is_finite()));
+    }
+
+    #[test]
+    fn a_sweep_is_repeatable_on_any_number_of_threads() {
+        let net = LidarNet::bundled().expect("the shipped weights");
+        let grid = complete(&World::random(11), Vertical::Occ3d);
+        let pattern = &SensorRig::default().lidars[0];
+        let made = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("a pool");
+            pool.install(|| {
+                let field = field(&net, &grid, None).expect("a finite field");
+                sweep(&net, &field, pattern, Drops::Drawn(4))
+            })
+        };
+        let found = made(1);
+        assert!(
+            found == made(2) && found.points.len() > 15_000,
+            "{}",
+            found.points.len()
+        );
+        assert!(found.points.iter().all(|p| p.range_m.is_finite()
+            && (0.0..=255.0).contains(&p.intensity)
+            && (0.0..=1.0).contains(&p.drop_probability)));
+    }
+
+    /// Nothing, one voxel in a corner, everything, damaged labels, an own vehicle of any size; rays along the axes,
+    /// through edges, from far away and NaN: no panic, nothing but finite points.
+    #[test]
+    fn extremes_are_survived() {
+        let net = LidarNet::bundled().expect("the shipped weights");
+        let mut grids = vec![VoxelGrid::new(); 3];
+        grids[1].set(199, 0, 15, 4);
+        for k in 0..GridSpec::VOXELS {
+            grids[2].set(k / 3200, k / 16 % 200, k % 16, if k % 97 == 0 { 200 } else { 15 });
+        }
+        let ego = EgoBox {
+            center_m: DVec3::ZERO,
+            size_m: DVec3::splat(1e6),
+        };
+        let mut pattern = SensorRig::default().lidars[0].clone();
+        pattern.columns = 8;
+        pattern.elevations_deg = vec![-90.0, -45.0, 0.0, 45.0, 90.0];
+        for grid in &grids {
+            for exclude in [None, Some(ego)] {
+                let field = field(&net, grid, exclude).expect("a finite field");
+                for place in [
+                    [0.0; 3],
+                    [0.2, 0.2, 0.2],
+                    [-40.0, 40.0, 5.4],
+                    [1e6, 0.0, 1.0],
+                    [f64::NAN; 3],
+                ] {
+                    pattern.translation_m = place;
+                    pattern.rotation_wxyz = [1.0, 0.0, 0.0, 0.0];
+                    let found = sweep(&net, &field, &pattern, Drops::Keep);
+                    assert_eq!(found.rays, 40);
+                    assert!(
+                        found
+                            .points
+                            .iter()
+                            .all(|p| p.range_m.is_finite() && p.intensity.is_finite())
+                    );
+                    let empty = grid.count_set() == 0;
+                    assert!(!empty || found.points.is_empty());
+                }
+            }
+        }
+    }
+
+    /// Row 53: features move with the scene (by multiples of the coarsest stride) and one voxel alone is no exception.
+    #[test]
+    fn row_53_the_field_moves_with_the_scene() {
+        let net = LidarNet::bundled().expect("the shipped weights");
+        let key = |x: usize, y: usize, z: usize| ((x * GridSpec::NY + y) * GridSpec::NZ + z) as u32;
+        let shapes: [Vec<[usize; 3]>; 2] = [
+            vec![[20, 20, 5]],
+            (0..400)
+                .map(|i| [20 + i * 7 % 31, 24 + i * 11 % 29, i * 5 % 16])
+                .collect(),
+        ];
+        for shape in shapes {
+            let field = |dx: usize, dy: usize| {
+                let mut keys: Vec<u32> = shape.iter().map(|[x, y, z]| key(x + dx, y + dy, *z)).collect();
+                keys.sort_unstable();
+                keys.dedup();
+                let classes = vec![Class::Car.id(); keys.len()];
+                net.field_of(keys, classes).expect("finite")
+            };
+            let (here, there) = (field(0, 0), field(96, 40));
+            assert!(!here.planes.is_empty());
+            for (a, b) in here.hidden.iter().flatten().zip(there.hidden.iter().flatten()) {
+                assert!((a - b).abs() <= 1e-5 * a.abs().max(1.0), "{a} {b}");
+            }
+            assert!(
+                here.planes == there.planes
+                    || here
+                        .planes
+                        .iter()
+                        .flatten()
+                        .zip(there.planes.iter().flatten())
+                        .all(|(a, b)| (a - b).abs() < 1e-5)
+            );
+        }
+    }
+}
