@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
-use super::state::{CameraMode, CameraSource, UiState};
+use super::state::{CameraMode, CameraSource, LidarModel, UiState};
 use crate::generation::sensors::appearance::{CameraImage, Conditions, Look, Quality};
 use crate::generation::sensors::cloud::GaussianCloud;
 use crate::generation::sensors::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
+use crate::generation::sensors::march::ground::GroundHeight;
 use crate::generation::sensors::march::{MarchOptions, MarchScene};
 use crate::generation::sensors::mpi::{self, RenderIds};
 use crate::generation::sensors::perspective;
 use crate::generation::sensors::splat::{self, SplatOptions};
 use crate::scene::sensor_data::Planes;
 use crate::scene::{CameraMaps, MultiPlaneImage, PerspectiveMap, Scene};
+use crate::viewport::LidarColorMode;
 
 /// Size of the picture that is enlarged.
 pub const LARGE_SIZE: [u32; 2] = [800, 450];
@@ -31,6 +33,10 @@ pub struct Wanted {
     pub hidden: u32,
     /// The camera that is rendered large as well.
     pub enlarged: Option<usize>,
+    /// How the LiDAR sweep comes about.
+    pub lidar: LidarModel,
+    /// Echoes that a real sensor would rather lose are in the learned sweep.
+    pub lost_echoes: bool,
 }
 
 impl Wanted {
@@ -46,16 +52,32 @@ impl Wanted {
             },
             hidden: state.cameras_hidden,
             enlarged: state.inspected,
+            lidar: state.lidar_model,
+            lost_echoes: state.lidar_colors == LidarColorMode::Drop,
         }
     }
 
-    /// The same, whatever is enlarged.
-    pub fn pictures(self) -> Self {
-        Self {
-            enlarged: None,
-            ..self
-        }
+    /// What decides the strip of pictures.
+    pub fn pictures(self) -> (CameraMode, CameraSource, u32) {
+        (self.mode, self.source, self.hidden)
     }
+}
+
+/// The current frame for exact rays. Shapes of boxes stand on the road as it really lies; voxels alone are taken as
+/// they are labelled, the road two bins lower.
+pub fn march(scene: &Scene, shapes: bool) -> MarchScene {
+    let frame = scene.frame();
+    let options = MarchOptions {
+        ground: if shapes {
+            GroundHeight::Physical
+        } else {
+            GroundHeight::AsLabelled
+        },
+        boxes: shapes,
+        lines: true,
+        seed: scene.seed,
+    };
+    MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options)
 }
 
 /// What one camera shows.
@@ -126,13 +148,7 @@ impl Prepared {
                 GaussianCloud::from_grid_shell(&frame.occupancy, frame.layout.cells(), SHELL_LAYERS),
             ),
             (CameraMode::Semantic | CameraMode::Depth, source) => {
-                let options = MarchOptions {
-                    boxes: source == CameraSource::Shapes,
-                    seed: scene.seed,
-                    ..MarchOptions::default()
-                };
-                let march = MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options);
-                Self::March(Box::new(march))
+                Self::March(Box::new(march(scene, source == CameraSource::Shapes)))
             }
             (CameraMode::Planes, _) => Self::Ids(RenderIds::new(&frame.occupancy, frame.layout.cells())),
             (CameraMode::Layout, _) => Self::Layout,

@@ -7,8 +7,10 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::camera_views::{CameraView, LARGE_SIZE, Prepared, Wanted};
-use super::state::CameraMode;
+use super::state::{CameraMode, LidarModel};
+use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
+use crate::generation::sensors::learned::{self, Drops};
 use crate::generation::sensors::lidar::EgoBox;
 use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
@@ -127,10 +129,10 @@ impl Drop for Sensing {
 }
 
 fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn()) {
-    let mut lidar = None;
+    let mut kept = Kept::default();
     while let Ok(first) = requests.recv() {
         let newest = requests.try_iter().last().unwrap_or(first);
-        sense(&newest, requests, &mut lidar, |piece| {
+        sense(&newest, requests, &mut kept, |piece| {
             // The receiver lives as long as the thread, except at the very end.
             let _ = news.send(piece);
             wake();
@@ -138,29 +140,71 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
     }
 }
 
-/// The sweep that is kept between requests, and the rig that it belongs to.
-type KeptLidar = Option<(Arc<SensorRig>, Caster)>;
+/// What is kept between requests: the exact sweep and the rig that it belongs to, the network once it was asked for.
+#[derive(Default)]
+struct Kept {
+    lidar: Option<(Arc<SensorRig>, Caster)>,
+    net: Option<Arc<LidarNet>>,
+    cameras: Option<(SceneRev, Wanted, bool)>,
+    swept: Option<(SceneRev, LidarModel, bool)>,
+}
 
-fn sense(request: &Request, requests: &Receiver<Request>, lidar: &mut KeptLidar, tell: impl Fn(News)) {
+impl Kept {
+    fn sweep(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
+        if wanted.lidar == LidarModel::Learned
+            && let Some(sweep) = self.learned(scene, wanted.lost_echoes)
+        {
+            return sweep;
+        }
+        let (frame, rig) = (scene.frame(), &scene.rig);
+        match &mut self.lidar {
+            Some((of, caster)) if of == rig => caster.update(&frame.occupancy),
+            lidar => {
+                let ego = Some(EgoBox::of_rig(rig));
+                let cast = |pattern| Caster::new(&frame.occupancy, pattern, rig.ego_speed_mps, ego);
+                *lidar = rig.lidars.first().map(|pattern| (rig.clone(), cast(pattern)));
+            }
+        }
+        self.lidar
+            .as_ref()
+            .map(|(_, caster)| caster.sweep())
+            .unwrap_or_default()
+    }
+
+    /// `None` where the network cannot be had; the exact sweep takes its place.
+    fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
+        let (rig, drops) = (&scene.rig, if lost_echoes { Drops::Keep } else { Drops::Likely });
+        if self.net.is_none() {
+            self.net = LidarNet::bundled().ok();
+        }
+        learned::rig_sweep(self.net.as_ref()?, &scene.frame().occupancy, rig, drops).ok()
+    }
+}
+
+fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell: impl Fn(News)) {
     let Request {
         scene,
         wanted,
         preview,
     } = request;
-    let (frame, rig) = (scene.frame(), &scene.rig);
-    match lidar {
-        Some((of, caster)) if of == rig => caster.update(&frame.occupancy),
-        _ => {
-            let caster = |pattern| {
-                let ego = Some(EgoBox::of_rig(rig));
-                Caster::new(&frame.occupancy, pattern, rig.ego_speed_mps, ego)
-            };
-            *lidar = rig.lidars.first().map(|pattern| (rig.clone(), caster(pattern)));
-        }
+    let rig = &scene.rig;
+    let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
+    if kept.swept != Some(swept) {
+        tell(News::Lidar(scene.rev, kept.sweep(scene, wanted)));
+        kept.swept = Some(swept);
     }
-    let sweep = lidar.as_ref().map(|(_, caster)| caster.sweep());
-    tell(News::Lidar(scene.rev, sweep.unwrap_or_default()));
-
+    let pictures = (
+        scene.rev,
+        Wanted {
+            lidar: LidarModel::default(),
+            lost_echoes: false,
+            ..*wanted
+        },
+        *preview,
+    );
+    if kept.cameras == Some(pictures) {
+        return;
+    }
     let prepared = Prepared::new(scene, wanted.mode, wanted.source);
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let render = |quick: bool| -> Option<Vec<CameraView>> {
@@ -183,9 +227,11 @@ fn sense(request: &Request, requests: &Receiver<Request>, lidar: &mut KeptLidar,
         tell(News::Cameras(scene.rev, *wanted, views));
     }
     if *preview {
+        kept.cameras = Some(pictures);
         return;
     }
     let Some(mut views) = render(false) else { return };
+    kept.cameras = Some(pictures);
     tell(News::Cameras(scene.rev, *wanted, views.clone()));
     let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
     if let Some(view) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))

@@ -11,9 +11,11 @@ use super::{Common, Outcome, output};
 use crate::app::picture::Picture;
 use crate::app::{open, picture};
 use crate::formats::multi_plane;
+use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::appearance::{
     Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
 };
+use crate::generation::sensors::learned::{self, Drops};
 use crate::generation::sensors::{cloud::GaussianCloud, color, lidar, mpi, perspective, splat};
 use crate::scene::sensor_data::Planes;
 use crate::scene::{CameraMaps, LidarSweep, Scene};
@@ -53,6 +55,9 @@ pub struct Render {
     /// One sample per pixel for appearance: several times faster, rougher edges.
     #[arg(long)]
     preview: bool,
+    /// How the LiDAR sweep comes about.
+    #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
+    lidar: String,
     /// Folder to write into.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -78,16 +83,21 @@ pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, Lida
     (maps, sweep)
 }
 
-/// Points as a binary little-endian PLY: x, y, z in the ego frame, range, ring, class.
+/// Points as a binary little-endian PLY: x, y, z in the ego frame, range, intensity, drop probability, ring, class.
 fn ply(sweep: &LidarSweep) -> Vec<u8> {
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
-         property float range_m\nproperty ushort ring\nproperty uchar class\nend_header\n",
+         property float range_m\nproperty float intensity\nproperty float drop_probability\nproperty ushort ring\n\
+         property uchar class\nend_header\n",
         sweep.points.len()
     )
     .into_bytes();
     for p in &sweep.points {
-        for v in p.position_in_ego.iter().chain([&p.range_m]) {
+        for v in p
+            .position_in_ego
+            .iter()
+            .chain([&p.range_m, &p.intensity, &p.drop_probability])
+        {
             out.extend(v.to_le_bytes());
         }
         out.extend(p.ring.to_le_bytes());
@@ -223,8 +233,15 @@ impl Render {
         }
         if wants("lidar") {
             let start = Instant::now();
-            let Some(sweep) = lidar::rig_sweep(&frame.occupancy, &scene.rig) else {
+            if scene.rig.lidars.is_empty() {
                 return Err(anyhow::anyhow!("the rig {:?} has no lidar", scene.rig.name).into());
+            }
+            let sweep = if self.lidar == "learned" {
+                let net = LidarNet::bundled().context("the LiDAR network")?;
+                learned::rig_sweep(&net, &frame.occupancy, &scene.rig, Drops::Likely)
+                    .context("the LiDAR network")?
+            } else {
+                lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default()
             };
             wall_s.insert("lidar", start.elapsed().as_secs_f64());
             let returns = sweep.points.len();

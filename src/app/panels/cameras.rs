@@ -10,11 +10,11 @@ use egui::{
 use glam::DVec3;
 
 use super::camera_header::header;
-use crate::app::camera_views::CameraView;
+use crate::app::camera_views::{CameraView, march};
 use crate::app::command::Command;
 use crate::app::state::{CameraMode, UiState};
 use crate::app::theme;
-use crate::generation::sensors::march::{MarchOptions, MarchScene};
+use crate::generation::sensors::march::MarchScene;
 use crate::scene::{Camera, Class, Scene, SceneRev};
 
 /// Textures of the pictures.
@@ -123,13 +123,7 @@ impl CameraStrip {
     /// across the picture.
     fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
         if self.probe.as_ref().is_none_or(|(rev, _)| *rev != scene.rev) {
-            let frame = scene.frame();
-            let options = MarchOptions {
-                seed: scene.seed,
-                ..MarchOptions::default()
-            };
-            let march = MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options);
-            self.probe = Some((scene.rev, march));
+            self.probe = Some((scene.rev, march(scene, true)));
         }
         let (_, march) = self.probe.as_ref().expect("just made");
         let size = [camera.width, camera.height].map(f64::from);

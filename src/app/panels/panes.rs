@@ -4,7 +4,7 @@ use egui::{Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon};
-use crate::app::state::{UiState, Underlay};
+use crate::app::state::{LidarModel, UiState, Underlay};
 use crate::app::theme;
 use crate::viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 
@@ -110,6 +110,19 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
         );
     }
     ui.separator();
+    ui.label(egui::RichText::new("LiDAR").small().color(theme::TEXT_WEAK));
+    icons::segments(
+        ui,
+        &mut state.lidar_model,
+        &[
+            (LidarModel::Exact, "Exact", "every ray to the first voxel"),
+            (
+                LidarModel::Learned,
+                "Learned",
+                "ranges within voxels, echo strength, lost echoes",
+            ),
+        ],
+    );
     ui.label(
         egui::RichText::new("LiDAR colour")
             .small()

@@ -7,7 +7,7 @@ use crate::generation::model::ModelError;
 use crate::generation::model::lidar::field::{Field, Ray, Sampling};
 use crate::generation::model::lidar::{LearnedRay, LidarNet};
 use crate::generation::world::draw::{Draw, hash};
-use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 
 /// What happens to echoes that a real sensor may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,22 @@ pub fn sweep(net: &LidarNet, field: &Field, pattern: &LidarPattern, drops: Drops
     points(&rays, &answers, pattern.columns_in_sector(), drops)
 }
 
+/// The sweep of the first LiDAR of a rig on its moving vehicle; empty if it has none.
+pub fn rig_sweep(
+    net: &LidarNet,
+    grid: &VoxelGrid,
+    rig: &SensorRig,
+    drops: Drops,
+) -> Result<LidarSweep, ModelError> {
+    let Some(pattern) = rig.lidars.first() else {
+        return Ok(LidarSweep::default());
+    };
+    let field = field(net, grid, Some(EgoBox::of_rig(rig)))?;
+    let rays = rays(pattern, rig.ego_speed_mps);
+    let answers = net.shoot(&field, &rays, Sampling::Prior);
+    Ok(points(&rays, &answers, pattern.columns_in_sector(), drops))
+}
+
 /// The points of answered rays.
 pub fn points(rays: &[Ray], answers: &[LearnedRay], columns: u32, drops: Drops) -> LidarSweep {
     let columns = columns.max(1) as usize;
@@ -106,7 +122,6 @@ mod tests {
     use crate::generation::model::lidar::drop_probability;
     use crate::generation::world::World;
     use crate::generation::world::voxelize::{Vertical, complete};
-    use crate::scene::SensorRig;
 
     /// Row 51 of the extremes table: extreme logits, exactly one half, NaN; the same answer every time.
     #[test]
