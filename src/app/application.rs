@@ -185,6 +185,11 @@ impl SceneloomApp {
         self.path.as_deref()
     }
 
+    /// What the sensors returned last.
+    pub fn sensing(&self) -> &Sensing {
+        &self.sensing
+    }
+
     /// True if LiDAR and cameras show the state on screen.
     pub fn sensors_are_current(&self) -> bool {
         let rev = self.document.scene().rev;

@@ -331,6 +331,7 @@ fn texture<K: PartialEq>(
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![super::state::position_text(p_m)];
     let frame = scene.frame();
+    parts.push(format!("{:.1} m away", p_m.length()));
     let Some([x, y]) = GridSpec::column_at(p_m.x, p_m.y) else {
         parts.push("outside the grid".into());
         return parts.join("  ·  ");

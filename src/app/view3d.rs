@@ -454,7 +454,10 @@ pub(super) fn point_of(hit: &Hit, ray: &Ray) -> DVec3 {
 
 fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
     let p = point_of(hit, ray);
-    let mut parts = vec![format!("{}  z {:.1}", position_text(p.truncate()), p.z + 0.0)];
+    let mut parts = vec![
+        format!("{}  z {:.1}", position_text(p.truncate()), p.z + 0.0),
+        format!("{:.1} m away", p.length()),
+    ];
     match hit {
         Hit::Box { id, .. } => {
             if let Some(b) = scene.frame().boxes.get(id) {

@@ -16,7 +16,11 @@ const MODES: [(CameraMode, &str, &str); 5] = [
     (CameraMode::Depth, "Depth", "2 m warm to 60 m cold"),
     (CameraMode::Picture, "Picture", "what a camera would see"),
     (CameraMode::Planes, "Planes", "one plane of the multi-plane image"),
-    (CameraMode::Layout, "Layout", "boxes and lanes, hidden or not"),
+    (
+        CameraMode::Layout,
+        "Boxes, lanes",
+        "in perspective, hidden or not",
+    ),
 ];
 
 const SOURCES: [(CameraSource, &str, &str); 3] = [
