@@ -448,6 +448,8 @@ impl SceneloomApp {
             .frame(theme::bar_frame())
             .show_separator_line(false)
             .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
+        // The status bar has shown what the last frame found under the pointer.
+        self.state.readout.clear();
         let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
         let (strip, state) = (&mut self.strip, &mut self.state);
         egui::Panel::bottom("cameras")
@@ -478,7 +480,6 @@ impl SceneloomApp {
 
     fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
         self.state.hovered_pane = None;
-        self.state.readout.clear();
         let (first, second) = match self.state.swapped {
             false => (Pane::Bev, Pane::View3d),
             true => (Pane::View3d, Pane::Bev),

@@ -202,6 +202,7 @@ impl Edit {
                     return Err(EditError::BadRig(problem));
                 }
                 if *scene.rig != **rig {
+                    scene.rev = crate::scene::SceneRev::fresh();
                     scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }
