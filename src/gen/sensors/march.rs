@@ -97,7 +97,7 @@ impl MarchScene {
         let (mut grid, mut ground) = ground::split(occupancy, options.ground);
         let drawn: Vec<&SceneBox> = boxes.values().filter(|_| options.boxes).collect();
         for b in &drawn {
-            remove_voxels(&mut grid, &mut ground, b, options.ground);
+            remove_voxels(&mut grid, &mut ground, b, options.ground, FOOTPRINT_MARGIN_M);
         }
         ground.fill_wanted();
         let paint = if options.lines {
@@ -228,6 +228,9 @@ impl MarchMaps {
             width: self.width,
             height: self.height,
             semantic: self.hits.iter().map(|h| h.as_ref().map_or(0, |h| h.id)).collect(),
+            // One surface with all the weight: its depth in every sense.
+            expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
+            median_m: depth_m.clone(),
             coverage: depth_m.iter().map(|d| f32::from(*d >= 0.0)).collect(),
             expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
             median_m: depth_m.clone(),
@@ -273,8 +276,14 @@ impl CameraRays {
     }
 }
 
-/// Takes the voxels out that a box's solids stand for.
-pub(crate) fn remove_voxels(grid: &mut VoxelGrid, ground: &mut Ground, b: &SceneBox, height: GroundHeight) {
+/// Takes the voxels out that a box's solids stand for, up to `margin_m` outside its footprint.
+pub(crate) fn remove_voxels(
+    grid: &mut VoxelGrid,
+    ground: &mut Ground,
+    b: &SceneBox,
+    height: GroundHeight,
+    margin_m: f64,
+) {
     if b.problem().is_some() {
         return;
     }
@@ -287,7 +296,7 @@ pub(crate) fn remove_voxels(grid: &mut VoxelGrid, ground: &mut Ground, b: &Scene
         GroundHeight::AsLabelled => bottom,
         GroundHeight::Physical => bottom - SMEAR_M - HEIGHT_MARGIN_M,
     };
-    box_cells(b, FOOTPRINT_MARGIN_M, |x, y| {
+    box_cells(b, margin_m, |x, y| {
         for z in 0..GridSpec::NZ {
             let middle = GridSpec::center(x, y, z).z;
             if (bottom..top).contains(&middle) && grid.get(x, y, z) == b.class.id() {

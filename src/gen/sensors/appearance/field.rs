@@ -223,7 +223,11 @@ impl Field {
         let h = match label {
             v if v == Class::Vegetation.id() => 0.06,
             // Wide enough to see past the steps of a wall that runs across the grid.
-            v if v == Class::Manmade.id() && self.structure_at(p).is_none_or(|s| !s.thin) => 0.5,
+            v if v == Class::Manmade.id()
+                && self.structure_at(p).is_some_and(|s| !s.thin && s.height_m > 2.6) =>
+            {
+                0.5
+            }
             _ => 0.15,
         };
         let f = |d: Vec3| {
@@ -493,7 +497,7 @@ fn trunks(solid: &mut [u8]) {
                 continue;
             };
             let slim = (first..NZ - 1)
-                .take_while(|z| before[at(x, y, *z)] == green && around(x, y, *z) <= 2)
+                .take_while(|z| before[at(x, y, *z)] == green && around(x, y, *z) <= 4)
                 .count();
             let crown = before[at(x, y, first + slim)] == green;
             if first <= 4 && slim >= 2 && crown {

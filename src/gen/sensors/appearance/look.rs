@@ -13,6 +13,8 @@ use crate::scene::{Frame, SceneBox, SensorRig};
 
 /// Corner of the blocks, m: half a voxel and the ring outside the grid.
 const BLOCKS_FROM_M: f32 = -40.2;
+/// Voxels of an object's class this far outside its box are strays of the labels, m.
+const STRAY_M: f64 = 0.7;
 /// Things are listed this far around, m, for their contact shadows.
 const NEAR_M: f32 = 0.6;
 
@@ -90,7 +92,7 @@ impl Look {
         let (mut grid, mut columns) = ground::split(&frame.occupancy, GroundHeight::Physical);
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
         for b in &boxes {
-            remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical);
+            remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
         let field = Field::new(&grid, seed);
         let ground = Ground::new(&columns, &frame.layout);
