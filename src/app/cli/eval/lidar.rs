@@ -85,6 +85,7 @@ impl Method {
             "mmd_1e-4": mmd(&truth.maps, &self.maps)? * 1e4,
             "points_per_sweep": self.points / self.maps.len().max(1),
             "wall_s": median(&self.wall_s),
+            "wall_least_s": self.wall_s.iter().copied().fold(f64::INFINITY, f64::min),
         }))
     }
 }

@@ -191,18 +191,17 @@ impl Field {
         class
     }
 
-    /// What a ray meets whose samples lie at `t` (m, rising) with these signed distances. Twin of `Lidar.render`.
+    /// What a ray meets whose samples lie at `t` (m, rising) with signed distances `f` and `logs` of what NeuS makes of
+    /// them, ln sigmoid(s f). Twin of `Lidar.render`.
     #[inline(always)]
     pub fn render(
         &self,
-        head: &SdfHead,
         origin: [f32; 3],
         direction: [f32; 3],
-        t: &[f32],
-        f: &[f32],
+        [t, f, logs]: [&[f32]; 3],
         weights: &mut Vec<f32>,
     ) -> Met {
-        let log_pass = neus::weights(head.s, f, weights);
+        let log_pass = neus::weights_of_logs(logs, weights);
         let total: f32 = weights.iter().sum();
         let at = |i: usize| neus::crossing(t[i], t[i + 1], f[i], f[i + 1]);
         let mut met = Met {
@@ -240,18 +239,19 @@ impl Field {
 
     #[inline(always)]
     fn shoot(&self, head: &SdfHead, ray: &Ray, sampling: Sampling, room: &mut Room) -> Met {
-        let (t, f) = (&mut room.t, &mut room.f);
+        let (t, f, logs) = (&mut room.t, &mut room.f, &mut room.logs);
         t.clear();
         f.clear();
+        logs.clear();
         let [origin, direction] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
         let mut log_pass = 0.0f32;
         let mut take = |position: f32| -> bool {
             let value = self.sdf(head, along(origin, direction, position));
-            if let Some(before) = f.last() {
-                log_pass += neus::log_pass(head.s, *before, value);
-            }
+            let log = neus::log_sigmoid(head.s * value);
+            log_pass += logs.last().map_or(0.0, |before| (log - before).min(0.0));
             t.push(position);
             f.push(value);
+            logs.push(log);
             log_pass > OPAQUE && t.len() < MOST_SAMPLES
         };
         match sampling {
@@ -268,7 +268,12 @@ impl Field {
         if sampling == Sampling::Prior {
             self.refine(head, origin, direction, room);
         }
-        self.render(head, origin, direction, &room.t, &room.f, &mut room.weights)
+        self.render(
+            origin,
+            direction,
+            [&room.t, &room.f, &room.logs],
+            &mut room.weights,
+        )
     }
 
     /// Divides the heaviest interval where it is crossed, twice: the importance step of NeuS, at the one place where it
@@ -276,7 +281,7 @@ impl Field {
     #[inline(always)]
     fn refine(&self, head: &SdfHead, origin: [f32; 3], direction: [f32; 3], room: &mut Room) {
         for _ in 0..2 {
-            neus::weights(head.s, &room.f, &mut room.weights);
+            neus::weights_of_logs(&room.logs, &mut room.weights);
             let (mut heaviest, mut weight) = (0, 0.1);
             for (i, w) in room.weights.iter().enumerate() {
                 if *w > weight {
@@ -293,6 +298,7 @@ impl Field {
             let value = self.sdf(head, along(origin, direction, position));
             room.t.insert(heaviest + 1, position);
             room.f.insert(heaviest + 1, value);
+            room.logs.insert(heaviest + 1, neus::log_sigmoid(head.s * value));
         }
     }
 }
@@ -313,6 +319,7 @@ pub struct Ray {
 pub struct Room {
     t: Vec<f32>,
     f: Vec<f32>,
+    logs: Vec<f32>,
     weights: Vec<f32>,
 }
 

@@ -248,7 +248,8 @@ impl LidarNet {
             .iter()
             .map(|t| field.sdf(&self.head, std::array::from_fn(|a| o[a] + d[a] * t)))
             .collect();
-        let met = field.render(&self.head, o, d, t, &f, &mut Vec::new());
+        let logs: Vec<f32> = f.iter().map(|f| neus::log_sigmoid(self.head.s * f)).collect();
+        let met = field.render(o, d, [t, &f, &logs], &mut Vec::new());
         (f, self.heads(&[met])[0])
     }
 

@@ -6,7 +6,14 @@ use crate::generation::model::kernels::exp;
 /// ln sigmoid(x).
 #[inline(always)]
 pub fn log_sigmoid(x: f32) -> f32 {
-    x.min(0.0) - (-x.abs()).exp().ln_1p()
+    let small = exp(-x.abs());
+    // Most samples are far from any surface: two terms of the series are exact there.
+    let tail = if small < 1e-3 {
+        small * (1.0 - 0.5 * small)
+    } else {
+        small.ln_1p()
+    };
+    x.min(0.0) - tail
 }
 
 /// ln(1 - alpha) of an interval from signed distance `f0` to `f1`, never above 0; NaN inputs give 0, an interval that
@@ -26,11 +33,21 @@ pub fn alpha(s: f32, f0: f32, f1: f32) -> f32 {
 
 /// Weight of each interval between consecutive samples; returns the logarithm of what passes them all.
 pub fn weights(s: f32, f: &[f32], out: &mut Vec<f32>) -> f32 {
+    let logs: Vec<f32> = f.iter().map(|f| log_sigmoid(s * f)).collect();
+    weights_of_logs(&logs, out)
+}
+
+/// The same from ln sigmoid(s f) of each sample, which a ray computes once.
+#[inline(always)]
+pub fn weights_of_logs(logs: &[f32], out: &mut Vec<f32>) -> f32 {
     out.clear();
     let mut passed = 0.0f32;
-    for pair in f.windows(2) {
-        let change = log_pass(s, pair[0], pair[1]);
-        out.push(-change.exp_m1() * exp(passed));
+    for pair in logs.windows(2) {
+        let change = pair[1] - pair[0];
+        let change = if change < 0.0 { change } else { 0.0 };
+        // -expm1 of very little is that little, to half its square.
+        let alpha = if change > -1e-4 { -change } else { -change.exp_m1() };
+        out.push(alpha * exp(passed));
         passed += change;
     }
     passed
