@@ -229,8 +229,6 @@ impl MarchMaps {
             height: self.height,
             semantic: self.hits.iter().map(|h| h.as_ref().map_or(0, |h| h.id)).collect(),
             // One surface with all the weight: its depth in every sense.
-            expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
-            median_m: depth_m.clone(),
             coverage: depth_m.iter().map(|d| f32::from(*d >= 0.0)).collect(),
             expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
             median_m: depth_m.clone(),
