@@ -309,7 +309,8 @@ mod tests {
         let mut surfaces = 0;
         for (i, ray) in rays.iter().enumerate().step_by(7) {
             let (ring, column) = (i / 1084, (i % 1084) as u32);
-            let d = pose.rotation * direction_in_sensor(pattern.elevations_deg[ring], pattern.azimuth_rad(column));
+            let d = pose.rotation
+                * direction_in_sensor(pattern.elevations_deg[ring], pattern.azimuth_rad(column));
             let hit = world.cast(pose.translation_m, d, pattern.max_range_m);
             assert_eq!(hit.map_or(Class::Free, |h| h.class), ray.class);
             if let Some(hit) = hit {
