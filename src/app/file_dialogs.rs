@@ -241,7 +241,7 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
 }
 
 fn problem(path: &Path, field: &mut Field) -> Option<String> {
-    if field.purpose == Purpose::Open {
+    if !field.purpose.is_save() {
         return (!path.is_file()).then(|| format!("There is no file {}", path.display()));
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());

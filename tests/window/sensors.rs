@@ -126,6 +126,7 @@ fn sensors_go_out_to_a_file_and_come_back() {
     bench.click("Camera CAM_FRONT");
     bench.click("Remove sensor");
     assert_ne!(bench.rig(), before);
+    assert_eq!(sceneloom::app::open::rig(&path).expect("a rig"), before);
     bench.click("Import…");
     bench.give_path(&path, "Import file");
     assert_eq!(bench.rig(), before);
