@@ -77,6 +77,7 @@ def main():
     p.add_argument("--resume", action="store_true")
     p.add_argument("--no-unet", action="store_true", help="the ablation: features of a voxel know only its class and height")
     p.add_argument("--seed", type=int, default=0)
+    p.add_argument("--optimizer", choices=["adamw"], default="adamw")
     p.add_argument("--threads", type=int, default=1)
     p.add_argument("--lr", type=float, default=3e-3)
     p.add_argument("--wedge", type=float, default=100.0, help="degrees of a sweep per step")

@@ -156,4 +156,6 @@ pub struct LidarSweep {
     pub points: Vec<LidarPoint>,
     /// Rays that were cast.
     pub rays: usize,
+    /// The ground is where it really lies, and not two bins lower as in the labels.
+    pub physical: bool,
 }

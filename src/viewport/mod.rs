@@ -372,7 +372,8 @@ impl Viewport {
         let lidar = scene.lidar.filter(|_| options.lidar);
         let points = lidar.map_or(0, fingerprint_of_points);
         if self.uploaded.points != Some(points) {
-            let (sweep, colors) = lidar.map_or((&[][..], &[][..]), |l| (&l.sweep.points[..], l.colors));
+            let nothing = LidarSweep::default();
+            let (sweep, colors) = lidar.map_or((&nothing, &[][..]), |l| (l.sweep, l.colors));
             self.points.write(device, queue, sweep, colors);
             self.uploaded.points = Some(points);
             changed = true;
@@ -458,7 +459,7 @@ fn fingerprint_of_words(words: &[u32]) -> u64 {
 
 fn fingerprint_of_points(lidar: LidarView<'_>) -> u64 {
     let mut hasher = DefaultHasher::new();
-    lidar.sweep.points.len().hash(&mut hasher);
+    (lidar.sweep.points.len(), lidar.sweep.physical).hash(&mut hasher);
     for p in &lidar.sweep.points {
         hasher.write(bytemuck::cast_slice(&p.position_in_ego));
     }

@@ -96,16 +96,24 @@ impl Points {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        points: &[LidarPoint],
+        sweep: &LidarSweep,
         colors: &[[u8; 4]],
     ) {
-        let vertices: Vec<PointVertex> = points
+        // The ground is drawn where the labels have it; so is what was measured on the physical one.
+        let lift_m = if sweep.physical {
+            super::GROUND_TOP_M as f32
+        } else {
+            0.0
+        };
+        let at = |[x, y, z]: [f32; 3]| [x, y, z + lift_m];
+        let vertices: Vec<PointVertex> = sweep
+            .points
             .iter()
             .enumerate()
             .filter(|(_, p)| p.position_in_ego.iter().all(|v| v.is_finite()))
             .flat_map(|(i, p)| {
                 [PointVertex {
-                    position_m: p.position_in_ego,
+                    position_m: at(p.position_in_ego),
                     color: colors.get(i).copied().unwrap_or([255; 4]),
                 }; 3]
             })
@@ -140,6 +148,7 @@ mod tests {
                 point(f32::NAN, 5, Class::Bus),
             ],
             rays: 3,
+            physical: false,
         };
         for mode in [LidarColorMode::Range, LidarColorMode::Class, LidarColorMode::Ring] {
             let colors = lidar_colors(&sweep, mode);

@@ -438,6 +438,7 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
             drop_probability: f32::NAN,
         }],
         rays: 1,
+        physical: false,
     };
     let scene = ViewScene {
         boxes: &[&b],

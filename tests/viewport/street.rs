@@ -249,5 +249,6 @@ fn sweep(grid: &VoxelGrid) -> LidarSweep {
     LidarSweep {
         points,
         rays: 32 * 1084,
+        physical: false,
     }
 }

@@ -107,6 +107,7 @@ impl Caster {
         LidarSweep {
             points: self.found.iter().filter_map(|(_, point)| *point).collect(),
             rays: self.found.len(),
+            physical: false,
         }
     }
 

@@ -113,6 +113,7 @@ pub fn points(rays: &[Ray], answers: &[LearnedRay], columns: u32, drops: Drops) 
     LidarSweep {
         points,
         rays: rays.len(),
+        physical: true,
     }
 }
 
