@@ -92,11 +92,11 @@ impl Work {
         let sort_blocks = items.max(room).div_ceil(SORT_BLOCK.into());
         let sums = (sort_blocks << DIGIT_BITS).max(items.div_ceil(GROUP.into()));
         let ledger = self.ledger.at_least(device, LEDGER_BYTES + sums * 4);
-        let items = self.items.each_mut().map(|b| &*b.at_least(device, items * 8));
+        let items = self.items.each_mut().map(|b| b.at_least(device, items * 8));
         let pairs = self
             .pairs
             .each_mut()
-            .map(|b| &*b.at_least(device, room * PAIR_BYTES));
+            .map(|b| b.at_least(device, room * PAIR_BYTES));
         let splats = self
             .splats
             .at_least(device, u64::from(shape.items()) * SPLAT_BYTES);
@@ -257,7 +257,7 @@ mod tests {
             let mut buffers = [(); 2].map(|()| Growing::new("items", usage));
             let buffers = buffers
                 .each_mut()
-                .map(|b| &*b.at_least(&device, items.len() as u64 * 8));
+                .map(|b| b.at_least(&device, items.len() as u64 * 8));
             let mut ledger = Growing::new("ledger", usage);
             let blocks = u64::from(n.div_ceil(SORT_BLOCK));
             let ledger = ledger.at_least(&device, LEDGER_BYTES + (blocks << DIGIT_BITS) * 4);

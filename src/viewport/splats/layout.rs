@@ -59,8 +59,9 @@ impl GpuView {
         let eye = ego_from_camera.translation_m;
         let limit = |axis: usize, size: u32| {
             let half = 0.5 * f64::from(size) / camera.focal_px[axis];
+            let limit = options.jacobian_clamp * half;
             // As on the processor: NaN holds everything at the axis.
-            (options.jacobian_clamp * half).max(0.0).min(1e9) as f32
+            if limit > 0.0 { limit.min(1e9) as f32 } else { 0.0 }
         };
         let row = |i: usize| {
             let r = camera_from_ego.row(i).as_vec3();

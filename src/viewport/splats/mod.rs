@@ -283,7 +283,7 @@ impl SplatRenderer {
                 encoder.copy_buffer_to_buffer(data.maps, 0, staging, LEDGER_BYTES, bytes);
             }
             queue.submit([encoder.finish()]);
-            &*staging
+            staging
         })?;
         let words_per_camera = (drawn.bytes_per_camera / 4) as usize;
         let touches = read::mapped(device, staging, staged, |words| {
@@ -322,6 +322,6 @@ impl SplatRenderer {
 
 /// Bytes that one storage buffer can have.
 fn max_bytes(limits: &wgpu::Limits) -> u64 {
-    let binding: u64 = limits.max_storage_buffer_binding_size.into();
+    let binding: u64 = limits.max_storage_buffer_binding_size;
     binding.min(limits.max_buffer_size)
 }

@@ -150,9 +150,9 @@ impl Field {
             return FREE_SDF_M;
         }
         let mut next = head.first_bias;
-        for i in 0..HIDDEN {
-            let h = (blended[i] + there * head.support[i]).max(0.0);
-            for (n, w) in next.iter_mut().zip(&head.first[i]) {
+        for ((b, support), weights) in blended.iter().zip(&head.support).zip(&head.first) {
+            let h = (b + there * support).max(0.0);
+            for (n, w) in next.iter_mut().zip(weights) {
                 *n += h * w;
             }
         }

@@ -91,8 +91,9 @@ impl Cells {
             enter = enter.max(a.min(b));
             leave = leave.min(a.max(b));
         }
-        // A direction of zero leaves `leave` at the far end: there is no ray.
-        if !(enter < leave) || !leave.is_finite() || direction == DVec3::ZERO {
+        // A direction of zero leaves `leave` at the far end: there is no ray. NaN is no ray either.
+        let inside = enter < leave;
+        if !inside || !leave.is_finite() || direction == DVec3::ZERO {
             return;
         }
         let mut cell = [0usize; 3];
@@ -197,7 +198,8 @@ impl Cells {
         });
         let total: f64 = segments.iter().map(Segment::mass).sum();
         let mut out = Vec::with_capacity(n);
-        if !(total > 0.0) {
+        let some = total > 0.0; // not so for NaN
+        if !some {
             return out;
         }
         let (mut at, mut before) = (0, 0.0);

@@ -36,10 +36,10 @@ pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
             }
             below += 1;
         }
-        for z in 0..GridSpec::NZ {
+        for (z, &label) in from.iter().enumerate() {
             let raised = (z + RAISE).min(GridSpec::NZ - 1);
-            if is_ground(from[z]) && to[raised] == Class::FREE {
-                to[raised] = from[z];
+            if is_ground(label) && to[raised] == Class::FREE {
+                to[raised] = label;
             }
         }
     }

@@ -243,7 +243,8 @@ impl Look {
             (t0, t1) = (t0.max(a.min(b)), t1.min(a.max(b)));
         }
         // Written so that NaN ends here too.
-        if !(t0 < t1) {
+        let inside = t0 < t1;
+        if !inside {
             return;
         }
         let q = (o.truncate() - BLOCKS_FROM_M) / BLOCK_M;

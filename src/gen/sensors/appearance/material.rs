@@ -407,7 +407,7 @@ impl Look {
         }
         let bay = 1.9 + 1.3 * unit(hash1(s.id, 2));
         let floor_m = 2.9 + 0.4 * unit(hash1(s.id, 3));
-        let shop = s.height_m > 5.0 && hash1(s.id, 4) % 3 == 0;
+        let shop = s.height_m > 5.0 && hash1(s.id, 4).is_multiple_of(3);
         // A plinth below, a cornice under the roof.
         out.albedo *= 1.0 - 0.30 * band((at.y - 0.2).abs(), 0.3, fp);
         let cornice = band((s.height_m - 0.22 - at.y).abs(), 0.16, fp);
@@ -632,7 +632,7 @@ impl Look {
                     if let (Some(q), true) = (near, t.class == Class::Car) {
                         let d = q.length() / r;
                         let spoke = (q.to_angle() * 5.0 / std::f32::consts::TAU).fract().abs();
-                        if d < 0.70 && (d < 0.2 || d > 0.62 || (spoke - 0.5).abs() < 0.30) {
+                        if d < 0.70 && (!(0.2..=0.62).contains(&d) || (spoke - 0.5).abs() < 0.30) {
                             out.albedo = gray(0.34);
                             (out.mirror, out.gloss) = (0.10, 0.8);
                         }

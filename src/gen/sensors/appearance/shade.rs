@@ -229,7 +229,7 @@ impl Look {
                 Beam::Street => ramp(-0.15, 0.6, cos),
                 Beam::Head => {
                     // Wide on the sides, cut off above the horizon.
-                    let up = -l.z + lamp.axis.z * -1.0;
+                    let up = -l.z - lamp.axis.z;
                     // Brightest just below the horizon, so that the road is lit evenly.
                     let aim = (0.055 / (0.022 + (-up).max(0.0))).powf(1.25).min(2.4);
                     ramp(0.80, 0.985, cos) * (0.07 + 0.93 * ramp(0.025, -0.02, up)) * aim

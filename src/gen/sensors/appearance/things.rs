@@ -225,7 +225,7 @@ impl Thing {
             size,
             paint,
             id,
-            lamps: b.class.is_vehicle() && (b.velocity_mps.length() > 0.3 || id % 3 == 0),
+            lamps: b.class.is_vehicle() && (b.velocity_mps.length() > 0.3 || id.is_multiple_of(3)),
             circle_m2: (size.truncate() / 2.0 + 0.05).length_squared(),
             parts: build.parts,
         })

@@ -155,9 +155,9 @@ impl Ground {
                 }
             }
         }
-        for i in 0..source.len() {
-            if self.wanted[i] && self.top[i].is_nan() && source[i] != u32::MAX {
-                let from = source[i] as usize;
+        for (i, &nearest) in source.iter().enumerate() {
+            if self.wanted[i] && self.top[i].is_nan() && nearest != u32::MAX {
+                let from = nearest as usize;
                 self.set(i, self.top[from], self.class[from]);
             }
         }
@@ -190,7 +190,8 @@ impl Ground {
             t1 = f64::min(t1, a.max(b));
         }
         // Written so that NaN ends here too.
-        if !(t0 <= t1) {
+        let inside = t0 <= t1;
+        if !inside {
             return None;
         }
         let n = [GridSpec::NX, GridSpec::NY];

@@ -205,7 +205,8 @@ impl SolidIndex {
             let (a, b) = (-o[axis] / d[axis], (BINS as f64 - o[axis]) / d[axis]);
             (t0, t1) = (t0.max(a.min(b)), t1.min(a.max(b)));
         }
-        if !(t0 <= t1) {
+        let inside = t0 <= t1; // not so for NaN
+        if !inside {
             return None;
         }
         let start = |axis: usize| ((o[axis] + d[axis] * t0).max(0.0) as usize).min(BINS - 1);
