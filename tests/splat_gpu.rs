@@ -406,7 +406,8 @@ fn row_42_semantics() {
     assert_eq!(of(&[]), (-1, 0.0));
     assert_eq!(of(&[sheet(5.0, 1.0, 20), sheet(6.0, 1.0, 255)]), (-1, 0.0));
     for id in 0..20 {
-        assert_eq!(of(&[sheet(5.0, 0.5, id)]), (i16::from(id), 0.5));
+        let (label, margin) = of(&[sheet(5.0, 0.5, id)]);
+        assert!(label == id.into() && (margin - 0.5).abs() < 1e-6, "{label} {margin}");
     }
     // The order in which Gaussians are listed changes nothing.
     let wide = camera(64, 48, 70.0);
@@ -620,8 +621,8 @@ fn row_63_device() {
     );
     // It goes on with what it had.
     gpu.set_cloud(&layers).expect("room");
-    let again = gpu.render_raw(&cameras, [400, 225], &options).expect("maps");
-    assert!(again.iter().all(|m| *m == got));
+    let again = gpu.render_raw(&cameras[..1], [400, 225], &options);
+    assert!(again.expect("maps") == [got]);
 }
 
 /// Six cameras as both draw them (processor above graphics card, then where labels differ), to look

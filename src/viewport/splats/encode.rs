@@ -259,7 +259,7 @@ mod tests {
                 .each_mut()
                 .map(|b| b.at_least(&device, items.len() as u64 * 8));
             let mut ledger = Growing::new("ledger", usage);
-            let blocks = u64::from(n.div_ceil(SORT_BLOCK));
+            let blocks = u64::from(n.div_ceil(SORT_BLOCK)).max(1);
             let ledger = ledger.at_least(&device, LEDGER_BYTES + (blocks << DIGIT_BITS) * 4);
             let mut staging = Growing::new("staging", U::COPY_DST | U::MAP_READ);
             let staging = staging.at_least(&device, LEDGER_BYTES + items.len() as u64 * 8);
