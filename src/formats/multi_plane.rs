@@ -3,8 +3,9 @@
 use super::npz::{Array, to_bytes};
 use crate::scene::MultiPlaneImage;
 
-/// `starts` u4 [pixels + 1]; `first`, `end` u2 and `id` u1 [runs]; `depth_m` f4 [planes]; `size` u4 [width, height].
-/// Pixel p (row-major) holds the runs starts[p] to starts[p + 1]; a run shows class `id` on planes first to end - 1.
+/// Arrays `starts` (u4, one more than there are pixels), `first`, `end` (u2) and `id` (u1, one per run), `depth_m` (f4, one
+/// per plane), `size` (u4: width, height). Pixel p (row-major) holds the runs from start p up to start p + 1; a run shows
+/// class `id` on planes `first` to `end` - 1.
 pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
     let runs = [image.runs.len()];
     let of_u16 = |value: fn(&crate::scene::sensor_data::PlaneRun) -> u16| -> Vec<u8> {
