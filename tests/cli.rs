@@ -161,7 +161,8 @@ fn sensors_and_views_render() {
         "render", &scene, "--what", what, "--size", "160x90", "-o", &out, "--json",
     ]));
     let files = report["files"].as_array().expect("a list");
-    assert_eq!(files.len(), 6 + 12 + 2 + 2 + 1, "{files:?}");
+    // Per camera a semantic picture, two of depth and the arrays; two each of the LiDAR and from above, the view.
+    assert_eq!(files.len(), 6 + 12 + 6 + 2 + 2 + 1, "{files:?}");
     assert!(report["lidar"]["returns"].as_u64() > Some(10_000));
     let front = image::open(Path::new(&out).join("CAM_FRONT_semantic.png"))
         .expect("a picture")
@@ -169,6 +170,29 @@ fn sensors_and_views_render() {
     assert_eq!(front.dimensions(), (160, 90));
     let colors: std::collections::HashSet<_> = front.pixels().collect();
     assert!(colors.len() > 8, "{} colours", colors.len());
+    let more = json(&sceneloom(&[
+        "render",
+        &scene,
+        "--what",
+        "semantic,appearance,perspective,mpi,lidar",
+        "--source",
+        "shapes",
+        "--lidar",
+        "learned",
+        "--weather",
+        "snow",
+        "--time",
+        "dusk",
+        "--preview",
+        "--size",
+        "96x54",
+        "-o",
+        &out,
+        "--json",
+    ]));
+    // Appearance comes with a sheet of all cameras.
+    assert_eq!(more["files"].as_array().map(Vec::len), Some(12 + 7 + 12 + 12 + 2));
+    assert!(more["lidar"]["returns"].as_u64() > Some(10_000));
     let shot = dir.path("shot.png");
     json(&sceneloom(&[
         "shot",
