@@ -23,6 +23,9 @@ pub struct Caster {
     exclude: Option<EgoBox>,
     rays: Rays,
     columns: usize,
+    /// Origin of each column and 1 / direction of each ray, in voxel units, for the test against changed boxes.
+    origins: Vec<DVec3>,
+    inverses: Vec<DVec3>,
     grid: VoxelGrid,
     masks: ColumnMasks,
     /// Per ray: how far it is free, m, and what it returns.
@@ -51,6 +54,16 @@ impl Caster {
             pattern: pattern.clone(),
             exclude,
             columns: rays.origins.len(),
+            origins: rays
+                .origins
+                .iter()
+                .map(|o| GridSpec::to_voxel_units(*o))
+                .collect(),
+            inverses: rays
+                .directions
+                .iter()
+                .map(|d| d.to_array().map(inverse).into())
+                .collect(),
             found: vec![(0.0, None); rays.directions.len()],
             rays,
             grid: grid.clone(),
@@ -80,17 +93,21 @@ impl Caster {
             self.cast_all();
             return;
         }
-        let (rays, found) = (&self.rays, &self.found);
-        let again: Vec<usize> = (0..found.len())
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .filter(|&ray| {
-                let (origin, direction) = rays.get(ray);
-                let origin = GridSpec::to_voxel_units(origin);
-                let reach = f64::from(found[ray].0) / GridSpec::VOXEL_M;
-                changed.iter().any(|c| c.is_met(origin, direction, reach))
+        let (kept, changed) = (&*self, &changed);
+        let found = &kept.found;
+        let beam = |beam: usize| {
+            (0..kept.columns).filter_map(move |column| {
+                let ray = beam * kept.columns + column;
+                let reach = f64::from(kept.found[ray].0) / GridSpec::VOXEL_M;
+                let (origin, inverse) = (kept.origins[column], kept.inverses[ray]);
+                changed
+                    .iter()
+                    .any(|c| c.is_met(origin, inverse, reach))
+                    .then_some(ray)
             })
-            .collect();
+        };
+        let beams = found.len() / self.columns.max(1);
+        let again: Vec<usize> = (0..beams).into_par_iter().flat_map_iter(beam).collect();
         let new: Vec<_> = again
             .par_iter()
             .with_min_len(CHUNK / 4)
@@ -186,24 +203,18 @@ fn changed_in(before: &VoxelGrid, after: &VoxelGrid, brick: usize) -> Option<Cha
     })
 }
 
+/// 1 / d; of an axis at rest a number so large that only what lies on its way counts, and no NaN comes of it.
+fn inverse(d: f64) -> f64 {
+    if d == 0.0 { 1e300 } else { 1.0 / d }
+}
+
 impl Changed {
     /// True if a ray meets the box at most `reach` from its origin (slab test).
     #[inline]
-    fn is_met(&self, origin: DVec3, direction: DVec3, reach: f64) -> bool {
-        let (mut enter, mut leave) = (0.0f64, reach + 2.0 * MARGIN);
-        for axis in 0..3 {
-            let (o, d) = (origin[axis], direction[axis]);
-            if d == 0.0 {
-                if o < self.low[axis] || o > self.high[axis] {
-                    return false;
-                }
-                continue;
-            }
-            let (a, b) = ((self.low[axis] - o) / d, (self.high[axis] - o) / d);
-            enter = enter.max(a.min(b));
-            leave = leave.min(a.max(b));
-        }
-        enter <= leave
+    fn is_met(&self, origin: DVec3, inverse: DVec3, reach: f64) -> bool {
+        let (a, b) = ((self.low - origin) * inverse, (self.high - origin) * inverse);
+        let (near, far) = (a.min(b), a.max(b));
+        near.max_element().max(0.0) <= far.min_element().min(reach + 2.0 * MARGIN)
     }
 }
 
