@@ -39,12 +39,20 @@ pub struct Wanted {
     pub lost_echoes: bool,
 }
 
+/// What decides the strip of pictures: kind, source, cameras that are not rendered.
+pub type Pictures = (CameraMode, CameraSource, u32);
+
 impl Wanted {
     /// What the window shows.
     pub fn of(state: &UiState) -> Self {
         let exact = matches!(state.camera_mode, CameraMode::Semantic | CameraMode::Depth);
         Self {
-            mode: state.camera_mode,
+            // One rendering holds classes and depths.
+            mode: if exact {
+                CameraMode::Semantic
+            } else {
+                state.camera_mode
+            },
             source: if exact {
                 state.camera_source
             } else {
@@ -58,7 +66,7 @@ impl Wanted {
     }
 
     /// What decides the strip of pictures.
-    pub fn pictures(self) -> (CameraMode, CameraSource, u32) {
+    pub fn pictures(self) -> Pictures {
         (self.mode, self.source, self.hidden)
     }
 }

@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use super::camera_views::{CameraView, LARGE_SIZE, Prepared, Wanted};
+use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
 use super::state::{CameraMode, LidarModel};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
@@ -140,12 +140,13 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
     }
 }
 
-/// What is kept between requests: the exact sweep and the rig that it belongs to, the network once it was asked for.
+/// What is kept between requests: the exact sweep and the rig that it belongs to, the network once it was asked for,
+/// the last full pictures.
 #[derive(Default)]
 struct Kept {
     lidar: Option<(Arc<SensorRig>, Caster)>,
     net: Option<Arc<LidarNet>>,
-    cameras: Option<(SceneRev, Wanted, bool)>,
+    views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
 }
 
@@ -193,21 +194,14 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
         tell(News::Lidar(scene.rev, kept.sweep(scene, wanted)));
         kept.swept = Some(swept);
     }
-    let pictures = (
-        scene.rev,
-        Wanted {
-            lidar: LidarModel::default(),
-            lost_echoes: false,
-            ..*wanted
-        },
-        *preview,
-    );
-    if kept.cameras == Some(pictures) {
-        return;
-    }
-    let prepared = Prepared::new(scene, wanted.mode, wanted.source);
+    let key = (scene.rev, wanted.pictures());
+    let mut prepared = None;
+    let mut view = |camera, size, quick| {
+        let prepared = prepared.get_or_insert_with(|| Prepared::new(scene, wanted.mode, wanted.source));
+        prepared.view(scene, camera, size, quick)
+    };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
-    let render = |quick: bool| -> Option<Vec<CameraView>> {
+    let mut render = |quick: bool| -> Option<Vec<CameraView>> {
         let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
         let mut views = Vec::with_capacity(rig.cameras.len());
         for i in (0..rig.cameras.len()).filter(shown) {
@@ -216,28 +210,35 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
             if !quick && !requests.is_empty() {
                 return None;
             }
-            views.push(prepared.view(scene, i, size, quick));
+            views.push(view(i, size, quick));
         }
         Some(views)
     };
-    // Camera pictures take their time: a coarse one comes first.
-    if (*preview || wanted.mode == CameraMode::Picture)
-        && let Some(views) = render(true)
-    {
-        tell(News::Cameras(scene.rev, *wanted, views));
-    }
-    if *preview {
-        kept.cameras = Some(pictures);
-        return;
-    }
-    let Some(mut views) = render(false) else { return };
-    kept.cameras = Some(pictures);
+    // What is there already is not rendered again because another camera is enlarged.
+    let kept_views = kept.views.as_ref().filter(|(of, _)| *of == key);
+    let mut views = match kept_views.map(|(_, views)| views.clone()) {
+        Some(views) => views,
+        None => {
+            // Camera pictures take their time: a coarse one comes first.
+            if (*preview || wanted.mode == CameraMode::Picture)
+                && let Some(views) = render(true)
+            {
+                tell(News::Cameras(scene.rev, *wanted, views));
+            }
+            if *preview {
+                return;
+            }
+            let Some(views) = render(false) else { return };
+            kept.views = Some((key, views.clone()));
+            views
+        }
+    };
     tell(News::Cameras(scene.rev, *wanted, views.clone()));
     let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
-    if let Some(view) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
+    if let Some(large) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
         && requests.is_empty()
     {
-        *view = prepared.view(scene, view.camera, LARGE_SIZE, false);
+        *large = view(large.camera, LARGE_SIZE, false);
         tell(News::Cameras(scene.rev, *wanted, views));
     }
 }
