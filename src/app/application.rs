@@ -18,19 +18,28 @@ use crate::scene::{Scene, SceneRev};
 use super::camera_views::Wanted;
 use super::canvas::{Canvas, CanvasInput};
 use super::command::Command;
+use super::dock::Dock;
 use super::file_dialogs::FileDialogs;
+use super::keymap::Keymap;
 use super::keys;
 use super::live::{Advice, Live, Purpose};
+use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::layers::layers_ui;
+use super::panels::lidar_sweep::SweepPane;
 use super::panels::objects::objects_ui;
+use super::panels::palette::Palette;
 use super::panels::panes;
 use super::panels::sensors::sensors_ui;
+use super::panels::settings::settings_ui;
+use super::panels::shortcuts::Shortcuts;
+use super::panels::start::start_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
 use super::sensing::Sensing;
+use super::settings::Settings;
 use super::state::{Pane, UiState};
 use super::theme;
 use super::view3d::{View3d, View3dInput};
@@ -66,6 +75,8 @@ pub struct AppConfig {
     pub new_scene: NewScene,
     /// Ask the system for file dialogs; false: only the path field.
     pub native_dialogs: bool,
+    /// Where settings are kept; none: standard ones, kept nowhere.
+    pub settings_file: Option<PathBuf>,
 }
 
 /// [`GenWorker`] wants a type; this is one for whatever the configuration makes.
@@ -81,6 +92,7 @@ impl Pipeline for AnyPipeline {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Next {
     New,
+    NewFrom(&'static str),
     AskOpen,
     Open(PathBuf),
     Quit,
@@ -125,11 +137,22 @@ pub struct SceneloomApp {
     gate: UpdateGate,
     sensing: Sensing,
     strip: CameraStrip,
-    finished: Option<Arc<GenResult>>, // came during a drag
+    sweep: SweepPane,
+    box_views: BoxViewsPane,
+    pub(super) dock: Dock,
+    pub(super) palette: Palette,
+    /// What is kept between sessions.
+    pub settings: Settings,
+    /// What each chord calls for.
+    pub keymap: Keymap,
+    shortcuts: Shortcuts,
+    kept: (Option<PathBuf>, Settings, f64), // file of the settings, what it holds, when it was compared, s
+    finished: Option<Arc<GenResult>>,       // came during a drag
     preview: Option<(SceneRev, Arc<Scene>)>,
     title: String,
     center: Rect,
     passes: u32,
+    ctx: egui::Context,
     unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
 }
 
@@ -140,7 +163,24 @@ impl SceneloomApp {
         render_state: Option<egui_wgpu::RenderState>,
         ctx: &egui::Context,
     ) -> std::io::Result<Self> {
-        theme::apply(ctx);
+        let (settings, complaint) = match config.settings_file.as_deref().map(Settings::load) {
+            Some(Ok(settings)) => (settings, None),
+            Some(Err(error)) => (Settings::default(), Some(one_line(&error))),
+            None => (Settings::default(), None),
+        };
+        theme::apply(ctx, settings.look);
+        settings.classes.make_current();
+        if settings.ui_scale != 1.0 {
+            ctx.set_zoom_factor(settings.ui_scale);
+        }
+        let mut toasts = Toasts::default();
+        if let Some(text) = complaint {
+            toasts.push(Level::Error, format!("Standard settings are used: {text}"), 0.0);
+        }
+        let state = UiState {
+            start_open: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
+            ..UiState::default()
+        };
         // On a software rasteriser a frame costs the time of a step of generation: fewer of them then.
         let view3d = View3d::new(render_state);
         let wake = waker(ctx, if view3d.is_software() { 0.15 } else { 0.015 });
@@ -148,12 +188,12 @@ impl SceneloomApp {
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         Ok(Self {
             document: Document::new(config.scene),
-            state: UiState::default(),
+            state,
             canvas: Canvas::default(),
             view3d,
             live: Live::new(config.params, config.full_params, config.warm_up),
             receipt: None,
-            toasts: Toasts::default(),
+            toasts,
             path: config.path,
             worker,
             dialogs: FileDialogs::new(config.native_dialogs),
@@ -166,11 +206,24 @@ impl SceneloomApp {
             gate: UpdateGate::default(),
             sensing: Sensing::spawn(wake)?,
             strip: CameraStrip::default(),
+            sweep: SweepPane::default(),
+            box_views: BoxViewsPane::default(),
+            dock: settings
+                .dock
+                .clone()
+                .and_then(Dock::from_kept)
+                .unwrap_or_default(),
+            keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
+            palette: Palette::default(),
+            shortcuts: Shortcuts::default(),
+            kept: (config.settings_file, settings.clone(), 0.0),
+            settings,
             finished: None,
             preview: None,
             title: String::new(),
             center: Rect::NOTHING,
             passes: 0,
+            ctx: ctx.clone(),
             unsettled: None,
         })
     }
@@ -227,6 +280,44 @@ impl SceneloomApp {
             self.schedule(ctx);
         }
         self.set_title(ctx);
+        self.keep_settings(ctx);
+    }
+
+    /// Puts changed settings to use, and writes them two seconds later at most.
+    fn keep_settings(&mut self, ctx: &egui::Context) {
+        const EVERY_S: f64 = 2.0;
+        if self.settings.look != self.kept.1.look || self.settings.classes != self.kept.1.classes {
+            theme::apply(ctx, self.settings.look);
+            self.settings.classes.make_current();
+            self.canvas.forget_pictures();
+            self.strip = CameraStrip::default();
+            self.view3d.forget_pictures();
+            (self.kept.1.look, self.kept.1.classes) = (self.settings.look, self.settings.classes);
+            self.kept.2 = f64::NEG_INFINITY;
+        }
+        if self.now_s() - self.kept.2 >= EVERY_S {
+            self.write_settings(ctx);
+        }
+    }
+
+    fn write_settings(&mut self, ctx: &egui::Context) {
+        self.settings.ui_scale = ctx.zoom_factor();
+        self.settings.dock = Some(self.dock.tree().clone());
+        self.settings.key_preset.clone_from(&self.keymap.preset);
+        self.settings.keys.clone_from(&self.keymap.own);
+        let now_s = self.now_s();
+        let (file, kept, at_s) = &mut self.kept;
+        let forced = *at_s == f64::NEG_INFINITY;
+        *at_s = now_s;
+        let Some(path) = file.as_deref() else { return };
+        if (forced || *kept != self.settings)
+            && let Err(error) = self.settings.save(path)
+        {
+            let text = format!("Settings are not kept: {}", one_line(&error));
+            self.toasts.push(Level::Error, text, now_s);
+            *file = None; // said once
+        }
+        self.kept.1 = self.settings.clone();
     }
 
     fn schedule(&mut self, ctx: &egui::Context) {
@@ -358,6 +449,9 @@ impl SceneloomApp {
                     self.toasts.log(format!("Opened {}", scene.name), now_s);
                 }
                 self.document = Document::new(scene);
+                if let Some(path) = &opening.path {
+                    self.settings.remember(path);
+                }
                 self.path = opening.path;
                 self.state.selected = None;
                 self.state.correcting = false;
@@ -387,15 +481,18 @@ impl SceneloomApp {
         self.take_window_events(ui.ctx(), &mut commands);
         let scene = self.shown_scene();
         self.bars(ui, &scene, &mut commands);
-        self.side_panels(ui, &mut commands);
         self.views(ui, &scene, &mut commands);
         // Asked before: the key that closes a dialog is no shortcut.
-        let dialog = self.unsaved.is_some() || self.dialogs.is_open() || self.state.keys_open;
+        let dialog = self.unsaved.is_some()
+            || self.dialogs.is_open()
+            || self.state.keys_open
+            || self.state.start_open
+            || self.palette.open;
         self.overlays(ui, &scene, &mut commands);
         if !dialog {
             let flying =
                 ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
-            keys::commands(ui.ctx(), &mut self.state, flying, &mut commands);
+            keys::commands(ui.ctx(), &self.keymap, &mut self.state, flying, &mut commands);
         }
         if !commands.is_empty() || self.passes < 3 {
             ui.ctx().request_repaint();
@@ -423,6 +520,7 @@ impl SceneloomApp {
             live: self.live.on,
             busy: self.live.running.is_some(),
             has_paint: scene.frame().painted.count_set() > 0,
+            workspace: self.settings.workspace,
         };
         egui::Panel::top("toolbar")
             .exact_size(42.0)
@@ -450,80 +548,85 @@ impl SceneloomApp {
             .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
         // The status bar has shown what the last frame found under the pointer.
         self.state.readout.clear();
-        let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
-        let (strip, state) = (&mut self.strip, &mut self.state);
-        egui::Panel::bottom("cameras")
-            .resizable(true)
-            .default_size(190.0)
-            .size_range(92.0..=420.0)
-            .frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)))
-            .show(ui, |ui| {
-                strip.show(ui, &cameras, state, commands);
-                ui.take_available_space();
-            });
-    }
-
-    fn side_panels(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let frame = self.document.scene().frame();
-        egui::Panel::left("tools")
-            .default_size(226.0)
-            .size_range(200.0..=340.0)
-            .frame(theme::panel_frame())
-            .show(ui, |ui| layers_ui(ui, frame, &mut self.state, commands));
-        egui::Panel::right("objects")
-            .default_size(262.0)
-            .size_range(230.0..=380.0)
-            .frame(theme::panel_frame())
-            .show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
-        self.live.named = self.state.named;
     }
 
     fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
         self.state.hovered_pane = None;
-        let (first, second) = match self.state.swapped {
-            false => (Pane::Bev, Pane::View3d),
-            true => (Pane::View3d, Pane::Bev),
-        };
-        let half = ui.available_width() * 0.5;
-        let center = ui.available_rect_before_wrap();
-        egui::Panel::right("second view")
-            .resizable(true)
-            .default_size(half)
-            .size_range(180.0..=(center.width() - 180.0).max(181.0))
-            .frame(egui::Frame::new())
-            .show(ui, |ui| self.pane(ui, second, scene, commands));
-        egui::CentralPanel::no_frame()
-            .frame(egui::Frame::new())
-            .show(ui, |ui| self.pane(ui, first, scene, commands));
-        self.center = center;
+        self.center = ui.available_rect_before_wrap();
+        self.dock_ui(ui, scene, commands);
+        self.live.named = self.state.named;
     }
 
-    fn pane(&mut self, ui: &mut Ui, pane: Pane, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let response = match pane {
+    /// What the header of a pane offers, from right to left.
+    pub(super) fn pane_controls(
+        &mut self,
+        ui: &mut Ui,
+        pane: Pane,
+        scene: &Arc<Scene>,
+        commands: &mut Vec<Command>,
+    ) {
+        match pane {
+            Pane::Bev => panes::bev_controls(ui, &mut self.state),
+            Pane::View3d => panes::view3d_controls(ui, &mut self.view3d.options, &mut self.state, commands),
+            Pane::Lidar => panes::lidar_controls(ui, &mut self.state),
+            Pane::Cameras => {
+                let rev = self.document.scene().rev;
+                let cameras = cameras_input(scene, rev, &self.sensing);
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    self.strip.controls(ui, &cameras, &mut self.state, commands);
+                });
+            }
+            Pane::Camera(_) => panes::camera_controls(ui, &mut self.state),
+            _ => {}
+        }
+    }
+
+    /// Draws a pane below its header.
+    pub(super) fn pane(&mut self, ui: &mut Ui, pane: Pane, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
+        let area = ui.available_rect_before_wrap();
+        let rev = self.document.scene().rev;
+        match pane {
             Pane::Bev => {
-                panes::bev_header(ui, &mut self.state, commands);
-                ui.spacing_mut().item_spacing.y = 0.0;
                 let input = CanvasInput {
                     scene,
                     lidar: self.sensing.lidar().map(|l| &**l),
                     unsettled: self.unsettled,
                     generating: self.live.running.is_some(),
                 };
-                self.canvas.show(ui, &input, &mut self.state, commands)
+                self.canvas.show(ui, &input, &mut self.state, commands);
             }
             Pane::View3d => {
-                panes::view3d_header(ui, &mut self.view3d.options, &mut self.state, commands);
                 let input = View3dInput {
                     scene,
                     settled: self.document.settled_scene(),
                     lidar: self.sensing.lidar(),
                     dragging: self.document.is_dragging(),
                 };
-                self.view3d.show(ui, &input, &mut self.state, commands)
+                self.view3d.show(ui, &input, &mut self.state, commands);
             }
-        };
-        if response.contains_pointer() {
+            Pane::Cameras | Pane::Camera(_) => {
+                let cameras = cameras_input(scene, rev, &self.sensing);
+                egui::Frame::new()
+                    .inner_margin(egui::Margin::symmetric(8, 2))
+                    .show(ui, |ui| match pane {
+                        Pane::Camera(i) => self.strip.single(ui, i, &cameras, &mut self.state, commands),
+                        _ => self.strip.show(ui, &cameras, &mut self.state, commands),
+                    });
+            }
+            Pane::Lidar => self.sweep.show(ui, scene, self.sensing.lidar(), &mut self.state),
+            Pane::BoxViews => {
+                let sweep = self.sensing.lidar().map(|l| &**l);
+                self.box_views.show(ui, scene, sweep, &self.state, commands);
+            }
+            Pane::Tools => {
+                let frame = self.document.scene().frame();
+                theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, &mut self.state, commands));
+            }
+            Pane::Objects => {
+                theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
+            }
+        }
+        if ui.rect_contains_pointer(area) {
             self.state.hovered_pane = Some(pane);
         }
     }
@@ -537,9 +640,13 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
-        if self.state.keys_open {
-            dialogs::keys_sheet(ui, &mut self.state.keys_open);
-        }
+        let recent = &self.settings.recent;
+        self.palette
+            .show(ui, &self.keymap, recent, &mut self.state, commands);
+        self.shortcuts
+            .show(ui, &mut self.keymap, &mut self.state.keys_open);
+        settings_ui(ui, &mut self.settings, &mut self.state.settings_open);
+        start_ui(ui, &mut self.settings, &mut self.state.start_open, commands);
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
@@ -606,7 +713,7 @@ fn drop_hint(ui: &Ui, over: Rect) {
         egui::Align2::CENTER_CENTER,
         "Drop to open",
         font,
-        theme::TEXT_STRONG,
+        theme::ON_CANVAS,
     );
 }
 
@@ -628,8 +735,14 @@ impl eframe::App for SceneloomApp {
         self.draw(ui);
     }
 
+    fn on_exit(&mut self) {
+        self.kept.2 = f64::NEG_INFINITY;
+        let ctx = self.ctx.clone();
+        self.write_settings(&ctx);
+    }
+
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
+        theme::panel().to_normalized_gamma_f32()
     }
 
     fn persist_egui_memory(&self) -> bool {

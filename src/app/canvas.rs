@@ -144,6 +144,11 @@ impl Canvas {
         self.scale = self.scale.max(14.0);
     }
 
+    /// Forgets pictures made with other colours.
+    pub fn forget_pictures(&mut self) {
+        (self.layers, self.occupancy, self.unobserved) = (None, None, None);
+    }
+
     /// Fits the grid again into the pane drawn last.
     pub fn frame_all_again(&mut self) {
         if let Some(map) = self.map {
@@ -197,7 +202,7 @@ impl Canvas {
         let painter = ui.painter();
         let grid = map.rect_of(DVec2::splat(-HALF_M), DVec2::splat(HALF_M));
         for strip in around(grid, map.rect) {
-            painter.rect_filled(strip, 0.0, theme::BACKGROUND);
+            painter.rect_filled(strip, 0.0, theme::CANVAS);
         }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let scene = input.scene;
@@ -273,8 +278,8 @@ impl Canvas {
                 let radius = (state.brush_m / 2.0 * map.scale) as f32;
                 let layer = state.layer.color();
                 let (color, fill) = match erase {
-                    true => (theme::BAD, theme::BAD.gamma_multiply(0.12)),
-                    false => (theme::TEXT_STRONG, theme::rgba(layer, 0.35)),
+                    true => (theme::bad(), theme::bad().gamma_multiply(0.12)),
+                    false => (theme::ON_CANVAS, theme::rgba(layer, 0.35)),
                 };
                 painter.circle_filled(pointer, radius, fill);
                 painter.circle_stroke(pointer, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));

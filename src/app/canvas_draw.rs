@@ -189,14 +189,14 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     let front = map.to_screen(b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0));
     let knob = map.to_screen(pick::rotate_knob(b));
     painter.line_segment([front, knob], Stroke::new(1.0, Color32::from_white_alpha(150)));
-    painter.circle(knob, 5.0, theme::ACCENT, Stroke::new(1.5, Color32::WHITE));
+    painter.circle(knob, 5.0, theme::accent(), Stroke::new(1.5, Color32::WHITE));
     for corner in b.footprint() {
         let square = Rect::from_center_size(map.to_screen(corner), egui::Vec2::splat(6.0));
         painter.rect(
             square,
             1.0,
             Color32::WHITE,
-            Stroke::new(1.0, theme::BACKGROUND),
+            Stroke::new(1.0, theme::CANVAS),
             StrokeKind::Outside,
         );
     }
@@ -208,9 +208,9 @@ pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) 
         return;
     };
     let color = if input.generating {
-        theme::ACCENT
+        theme::accent()
     } else {
-        theme::WARN
+        theme::warn()
     };
     let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
@@ -248,7 +248,7 @@ pub(super) fn draw_scale_bar(ui: &Ui, map: &ScreenMap) {
         Align2::CENTER_BOTTOM,
         format!("{length_m} m"),
         font,
-        theme::TEXT,
+        theme::ON_CANVAS,
     );
 }
 

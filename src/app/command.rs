@@ -7,7 +7,8 @@ use crate::editor::Edit;
 use crate::scene::{BoxId, Class};
 use crate::viewport::ViewPreset;
 
-use super::state::{Tool, VoxelVerb};
+use super::dock::Workspace;
+use super::state::{Pane, Tool, VoxelVerb};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,10 +103,26 @@ pub enum Command {
     Inspect(Option<usize>),
     /// Swaps the bird's-eye view and the 3D view.
     SwapPanes,
+    /// Brings a pane to the front, or opens it.
+    ShowPane(Pane),
+    /// Shows the pane under the pointer alone, or all of them again.
+    MaximizePane,
+    /// Arranges the panes for one kind of work.
+    Workspace(Workspace),
     /// Shows or hides the 10 m grid.
     ToggleGrid,
     /// Shows or hides the log.
     ToggleLog,
+    /// Takes the tool that places boxes, with this class.
+    PlaceClass(Class),
+    /// Starts from a ready-made road.
+    NewFrom(&'static str),
+    /// Shows or hides the command palette.
+    TogglePalette,
+    /// Shows or hides the settings.
+    ToggleSettings,
+    /// Shows or hides the start screen.
+    ToggleStart,
     /// Shows or hides the sheet of keys.
     ToggleKeys,
 }

@@ -11,6 +11,7 @@ use crate::scene::SceneBox;
 use super::application::{Next, Opening, SceneloomApp, one_line};
 use super::canvas_tools::new_box;
 use super::command::Command;
+use super::dock::Dock;
 use super::file_dialogs::Purpose;
 use super::open;
 use super::panels::objects::neighbour;
@@ -105,7 +106,7 @@ impl SceneloomApp {
             Command::FrameAll => match self.state.hovered_pane {
                 Some(Pane::View3d) => self.view3d.camera.focus_all(),
                 Some(Pane::Bev) => self.canvas.frame_all_again(),
-                None => {
+                _ => {
                     self.view3d.camera.focus_all();
                     self.canvas.frame_all_again();
                 }
@@ -113,7 +114,25 @@ impl SceneloomApp {
             Command::View(preset) => self.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
-            Command::SwapPanes => self.state.swapped = !self.state.swapped,
+            Command::SwapPanes => self.dock.swap(Pane::Bev, Pane::View3d),
+            Command::ShowPane(pane) => self.dock.open(pane),
+            Command::MaximizePane => {
+                if let Some(tile) = self.state.hovered_pane.and_then(|pane| self.dock.find(pane)) {
+                    self.dock.toggle_maximized(tile);
+                }
+            }
+            Command::Workspace(workspace) => {
+                self.settings.workspace = workspace;
+                self.dock = Dock::workspace(workspace);
+            }
+            Command::PlaceClass(class) => {
+                self.state.tool = Tool::AddBox;
+                self.state.box_class = class;
+            }
+            Command::TogglePalette => self.palette.toggle(),
+            Command::ToggleSettings => self.state.settings_open = !self.state.settings_open,
+            Command::ToggleStart => self.state.start_open = !self.state.start_open,
+            Command::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
             Command::ToggleGrid => self.state.show_grid = !self.state.show_grid,
             Command::ToggleSensors => self.state.sensors_open = !self.state.sensors_open,
             Command::ImportRig => {
@@ -279,6 +298,16 @@ impl SceneloomApp {
                 let make = self.io.2.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());
             }
+            Next::NewFrom(name) => {
+                let seed = std::time::SystemTime::now()
+                    .duration_since(std::time::UNIX_EPOCH)
+                    .map_or(1, |d| u64::from(d.subsec_nanos()) % 100_000);
+                let make = move || {
+                    open::from_template(name, seed)
+                        .ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))
+                };
+                self.load("New scene".into(), None, false, ctx, make);
+            }
             Next::Open(path) => {
                 let (open, file) = (self.io.0.clone(), path.clone());
                 let what = format!("Opening {}", path.display());
@@ -359,6 +388,7 @@ impl SceneloomApp {
                 let now_s = self.now_s();
                 self.toasts
                     .push(Level::Info, format!("Saved {}", path.display()), now_s);
+                self.settings.remember(&path);
                 self.path = Some(path);
                 if let Some(next) = next {
                     self.go_on(next, ctx);

@@ -216,7 +216,7 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
     }
     let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     if let Some(error) = &field.error {
-        ui.colored_label(theme::WARN, error);
+        ui.colored_label(theme::warn(), error);
     }
     ui.add_space(theme::GAP);
     let mut choice = if enter { Choice::Done } else { Choice::Nothing };
@@ -226,7 +226,7 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
         } else {
             field.purpose.button()
         };
-        let primary = egui::Button::new(name).fill(theme::ACCENT_FILL);
+        let primary = egui::Button::new(name).fill(theme::accent_fill());
         let enabled = !field.text.trim().is_empty();
         if ui.add_enabled(enabled, primary).clicked() {
             choice = Choice::Done;

@@ -36,8 +36,6 @@ pub enum Icon {
     Copy,
     /// Frame with corners.
     Focus,
-    /// Two arrows past each other.
-    Swap,
     /// Cross.
     Close,
     /// Camera.
@@ -163,12 +161,6 @@ impl Icon {
                 }
                 painter.circle_filled(at(8.0, 8.0), 1.6 * scale, color);
             }
-            Icon::Swap => {
-                line(&[(2.5, 5.2), (13.0, 5.2)]);
-                line(&[(10.4, 2.6), (13.2, 5.2), (10.4, 7.8)]);
-                line(&[(13.5, 10.8), (3.0, 10.8)]);
-                line(&[(5.6, 8.2), (2.8, 10.8), (5.6, 13.4)]);
-            }
             Icon::Close => {
                 line(&[(4.0, 4.0), (12.0, 12.0)]);
                 line(&[(12.0, 4.0), (4.0, 12.0)]);
@@ -198,20 +190,20 @@ pub fn button(ui: &mut Ui, icon: Icon, name: &str, hint: &str, selected: bool, e
     response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, selected, name));
     let hovered = enabled && response.hovered();
     let fill = if selected {
-        theme::ACCENT_FILL
+        theme::accent_fill()
     } else if response.is_pointer_button_down_on() && enabled {
-        theme::FIELD_ACTIVE
+        theme::field_active()
     } else if hovered {
-        theme::FIELD_HOVER
+        theme::field_hover()
     } else {
         Color32::TRANSPARENT
     };
     let color = if !enabled {
-        theme::TEXT_WEAK.gamma_multiply(0.45)
+        theme::text_weak().gamma_multiply(0.45)
     } else if selected || hovered {
-        theme::TEXT_STRONG
+        theme::text_strong()
     } else {
-        theme::TEXT
+        theme::text()
     };
     ui.painter().rect_filled(rect, theme::RADIUS, fill);
     icon.paint(ui, rect.shrink(5.5), color);
@@ -232,7 +224,7 @@ pub fn tip(ui: &mut Ui, name: &str, hint: &str) {
 /// The ring around what has the keyboard's focus.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect) {
     if response.has_focus() {
-        let stroke = Stroke::new(1.0, theme::ACCENT);
+        let stroke = Stroke::new(1.0, theme::accent());
         ui.painter()
             .rect_stroke(rect, theme::RADIUS, stroke, egui::StrokeKind::Inside);
     }
@@ -256,13 +248,17 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
         return response;
     }
     let fill = match (selected, response.hovered()) {
-        (true, _) => theme::ACCENT_FILL,
-        (false, true) => theme::FIELD,
+        (true, _) => theme::accent_fill(),
+        (false, true) => theme::field(),
         (false, false) => Color32::TRANSPARENT,
     };
     ui.painter().rect_filled(rect, theme::RADIUS, fill);
     swatch(ui, pos2(rect.left() + 14.0, rect.center().y), 12.0, color);
-    let text = if selected { theme::TEXT_STRONG } else { theme::TEXT };
+    let text = if selected {
+        theme::text_strong()
+    } else {
+        theme::text()
+    };
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());
     let name_at = pos2(rect.left() + 28.0, rect.center().y);
@@ -274,7 +270,7 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
         egui::Align2::RIGHT_CENTER,
         right,
         small,
-        theme::TEXT_WEAK,
+        theme::text_weak(),
     );
     focus_ring(ui, &response, rect);
     response
@@ -284,7 +280,7 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
 pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T, &str, &str)]) -> bool {
     let before = *chosen;
     let frame = egui::Frame::new()
-        .fill(theme::WELL)
+        .fill(theme::well())
         .corner_radius(theme::RADIUS)
         .inner_margin(2);
     frame.show(ui, |ui| {
@@ -299,10 +295,13 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
             }
             for (value, name, hint) in choices {
                 let on = *chosen == *value;
-                let text =
-                    egui::RichText::new(*name).color(if on { theme::TEXT_STRONG } else { theme::TEXT_WEAK });
+                let text = egui::RichText::new(*name).color(if on {
+                    theme::text_strong()
+                } else {
+                    theme::text_weak()
+                });
                 let fill = if on {
-                    theme::FIELD_ACTIVE
+                    theme::field_active()
                 } else {
                     Color32::TRANSPARENT
                 };
@@ -327,7 +326,7 @@ pub fn section(ui: &mut Ui, title: &str) {
     ui.label(
         egui::RichText::new(title.to_uppercase())
             .small()
-            .color(theme::TEXT_WEAK),
+            .color(theme::text_weak()),
     );
     ui.add_space(2.0);
 }

@@ -1,5 +1,6 @@
 //! The shell: window, panels, commands, command line; the only room that knows everyone.
 
+pub mod actions;
 pub mod application;
 mod bev_image;
 pub mod camera_views;
@@ -8,9 +9,12 @@ mod canvas_draw;
 pub mod canvas_tools;
 pub mod cli;
 pub mod command;
+pub mod dock;
+mod dock_ui;
 mod execute;
 mod file_dialogs;
 mod icons;
+pub mod keymap;
 mod keys;
 pub mod live;
 pub mod open;
@@ -20,8 +24,9 @@ mod pipeline;
 mod pointer;
 pub mod roads;
 pub mod sensing;
+pub mod settings;
 pub mod state;
-mod theme;
+pub mod theme;
 pub mod view3d;
 mod view3d_tools;
 
@@ -52,6 +57,7 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
         }),
         new_scene: Arc::new(new_scene),
         native_dialogs: true,
+        settings_file: settings::Settings::file(),
     })
 }
 

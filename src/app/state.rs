@@ -2,6 +2,7 @@
 //! here is saved with a scene.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::editor::Edit;
 use crate::generation::job::Named;
@@ -53,13 +54,59 @@ impl VoxelVerb {
     ];
 }
 
-/// The two large views.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// What a part of the window shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Pane {
     /// Bird's-eye view.
     Bev,
     /// 3D view.
     View3d,
+    /// All cameras in a row.
+    Cameras,
+    /// One camera of the rig, by index.
+    Camera(usize),
+    /// The newest sweep, unrolled: azimuth by beam.
+    Lidar,
+    /// The chosen box from above, from its side and from behind.
+    BoxViews,
+    /// Options of the tool in hand, map layers.
+    Tools,
+    /// The chosen box in numbers, all boxes, the history.
+    Objects,
+}
+
+impl Pane {
+    /// What a tile can be told to show.
+    pub const CHOICES: [Pane; 13] = [
+        Pane::Bev,
+        Pane::View3d,
+        Pane::Cameras,
+        Pane::Lidar,
+        Pane::BoxViews,
+        Pane::Tools,
+        Pane::Objects,
+        Pane::Camera(0),
+        Pane::Camera(1),
+        Pane::Camera(2),
+        Pane::Camera(3),
+        Pane::Camera(4),
+        Pane::Camera(5),
+    ];
+
+    /// Name for a person; that of a camera is its number until the rig names it.
+    pub fn name(self) -> String {
+        match self {
+            Pane::Bev => "Bird's-eye view".into(),
+            Pane::View3d => "3D view".into(),
+            Pane::Cameras => "Cameras".into(),
+            Pane::Camera(i) => format!("Camera {}", i + 1),
+            Pane::Lidar => "LiDAR sweep".into(),
+            Pane::BoxViews => "Box views".into(),
+            Pane::Tools => "Tools".into(),
+            Pane::Objects => "Objects".into(),
+        }
+    }
 }
 
 /// What the camera strip shows.
@@ -178,8 +225,6 @@ pub struct UiState {
     pub sensor: SensorChoice,
     /// Camera that is enlarged.
     pub inspected: Option<usize>,
-    /// The 3D view is the left pane.
-    pub swapped: bool,
     /// Pane under the pointer in the last frame.
     pub hovered_pane: Option<Pane>,
     /// What the pane under the pointer says about it; shown in the status bar.
@@ -188,6 +233,10 @@ pub struct UiState {
     pub log_open: bool,
     /// The sheet of keys is open.
     pub keys_open: bool,
+    /// The settings are open.
+    pub settings_open: bool,
+    /// The start screen is open.
+    pub start_open: bool,
 }
 
 impl UiState {
@@ -282,11 +331,12 @@ impl Default for UiState {
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,
-            swapped: false,
             hovered_pane: None,
             readout: String::new(),
             log_open: false,
             keys_open: false,
+            settings_open: false,
+            start_open: false,
         }
     }
 }

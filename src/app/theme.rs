@@ -1,37 +1,171 @@
-//! The look of the window: one dark theme, one spacing scale, the colours that panels share.
+//! The look of the window: a dark and a light theme, one spacing scale, the colours that panels share.
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
+use serde::{Deserialize, Serialize};
 
 use crate::scene::Class;
 
+/// Which theme the window has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Look {
+    /// Light text on dark surfaces.
+    #[default]
+    Dark,
+    /// Dark text on light surfaces.
+    Light,
+}
+
+/// Colours of a theme.
+struct Colors {
+    background: Color32,
+    panel: Color32,
+    well: Color32,
+    field: Color32,
+    field_hover: Color32,
+    field_active: Color32,
+    window: Color32,
+    edge: Color32,
+    text: Color32,
+    text_strong: Color32,
+    text_weak: Color32,
+    accent: Color32,
+    accent_fill: Color32,
+    good: Color32,
+    warn: Color32,
+    bad: Color32,
+}
+
+const DARK: Colors = Colors {
+    background: Color32::from_rgb(20, 22, 26),
+    panel: Color32::from_rgb(30, 33, 39),
+    well: Color32::from_rgb(22, 24, 29),
+    field: Color32::from_rgb(42, 46, 54),
+    field_hover: Color32::from_rgb(53, 58, 68),
+    field_active: Color32::from_rgb(62, 68, 80),
+    window: Color32::from_rgb(36, 39, 46),
+    edge: Color32::from_rgb(58, 63, 73),
+    text: Color32::from_rgb(214, 218, 225),
+    text_strong: Color32::from_rgb(242, 244, 247),
+    text_weak: Color32::from_rgb(140, 148, 160),
+    accent: Color32::from_rgb(86, 152, 240),
+    accent_fill: Color32::from_rgb(43, 74, 117),
+    good: Color32::from_rgb(104, 190, 130),
+    warn: Color32::from_rgb(236, 180, 90),
+    bad: Color32::from_rgb(238, 112, 104),
+};
+
+const LIGHT: Colors = Colors {
+    background: Color32::from_rgb(206, 210, 216),
+    panel: Color32::from_rgb(240, 242, 245),
+    well: Color32::from_rgb(252, 253, 254),
+    field: Color32::from_rgb(222, 226, 232),
+    field_hover: Color32::from_rgb(210, 215, 223),
+    field_active: Color32::from_rgb(194, 201, 212),
+    window: Color32::from_rgb(247, 248, 250),
+    edge: Color32::from_rgb(190, 196, 206),
+    text: Color32::from_rgb(38, 42, 50),
+    text_strong: Color32::from_rgb(12, 15, 20),
+    text_weak: Color32::from_rgb(76, 83, 95),
+    accent: Color32::from_rgb(24, 98, 205),
+    accent_fill: Color32::from_rgb(176, 207, 248),
+    good: Color32::from_rgb(18, 96, 48),
+    warn: Color32::from_rgb(118, 68, 0),
+    bad: Color32::from_rgb(168, 30, 26),
+};
+
+/// The theme of this process's window: there is one, and its colours are asked for everywhere.
+static LIGHT_LOOK: AtomicBool = AtomicBool::new(false);
+
+fn colors() -> &'static Colors {
+    if LIGHT_LOOK.load(Ordering::Relaxed) {
+        &LIGHT
+    } else {
+        &DARK
+    }
+}
+
+/// True if surfaces are light.
+pub fn is_light() -> bool {
+    LIGHT_LOOK.load(Ordering::Relaxed)
+}
+
 /// Behind everything: gaps between panels.
-pub const BACKGROUND: Color32 = Color32::from_rgb(20, 22, 26);
+pub fn background() -> Color32 {
+    colors().background
+}
+
 /// Surface of panels and bars.
-pub const PANEL: Color32 = Color32::from_rgb(30, 33, 39);
-/// Surface of the canvas and of empty picture frames.
-pub const WELL: Color32 = Color32::from_rgb(22, 24, 29);
+pub fn panel() -> Color32 {
+    colors().panel
+}
+
+/// Surface of empty picture frames and text fields.
+pub fn well() -> Color32 {
+    colors().well
+}
+
 /// A row or field on a panel.
-pub const FIELD: Color32 = Color32::from_rgb(42, 46, 54);
+pub fn field() -> Color32 {
+    colors().field
+}
+
 /// The same under the pointer.
-pub const FIELD_HOVER: Color32 = Color32::from_rgb(53, 58, 68);
+pub fn field_hover() -> Color32 {
+    colors().field_hover
+}
+
 /// The same while pressed.
-pub const FIELD_ACTIVE: Color32 = Color32::from_rgb(62, 68, 80);
+pub fn field_active() -> Color32 {
+    colors().field_active
+}
+
 /// Text that matters.
-pub const TEXT: Color32 = Color32::from_rgb(214, 218, 225);
+pub fn text() -> Color32 {
+    colors().text
+}
+
 /// Titles and chosen things.
-pub const TEXT_STRONG: Color32 = Color32::from_rgb(242, 244, 247);
+pub fn text_strong() -> Color32 {
+    colors().text_strong
+}
+
 /// Units, hints, captions.
-pub const TEXT_WEAK: Color32 = Color32::from_rgb(140, 148, 160);
+pub fn text_weak() -> Color32 {
+    colors().text_weak
+}
+
 /// What is chosen or runs.
-pub const ACCENT: Color32 = Color32::from_rgb(86, 152, 240);
+pub fn accent() -> Color32 {
+    colors().accent
+}
+
 /// Surface of what is chosen.
-pub const ACCENT_FILL: Color32 = Color32::from_rgb(43, 74, 117);
+pub fn accent_fill() -> Color32 {
+    colors().accent_fill
+}
+
 /// All is well.
-pub const GOOD: Color32 = Color32::from_rgb(104, 190, 130);
+pub fn good() -> Color32 {
+    colors().good
+}
+
 /// Look at this.
-pub const WARN: Color32 = Color32::from_rgb(236, 180, 90);
+pub fn warn() -> Color32 {
+    colors().warn
+}
+
 /// This failed.
-pub const BAD: Color32 = Color32::from_rgb(238, 112, 104);
+pub fn bad() -> Color32 {
+    colors().bad
+}
+
+/// Around the grid of the bird's-eye view. Views are dark in both themes: their colours are made for it.
+pub const CANVAS: Color32 = Color32::from_rgb(20, 22, 26);
+/// Text on views and pictures.
+pub const ON_CANVAS: Color32 = Color32::from_rgb(236, 239, 243);
 
 /// One step of the spacing scale, points.
 pub const GAP: f32 = 8.0;
@@ -41,10 +175,15 @@ pub const ROW: f32 = 24.0;
 pub const RADIUS: u8 = 4;
 
 /// Puts the theme on a context.
-pub fn apply(ctx: &egui::Context) {
-    ctx.set_theme(egui::Theme::Dark);
-    ctx.style_mut_of(egui::Theme::Dark, style);
-    ctx.options_mut(|o| o.fallback_theme = egui::Theme::Dark);
+pub fn apply(ctx: &egui::Context, look: Look) {
+    LIGHT_LOOK.store(look == Look::Light, Ordering::Relaxed);
+    let theme = match look {
+        Look::Dark => egui::Theme::Dark,
+        Look::Light => egui::Theme::Light,
+    };
+    ctx.set_theme(theme);
+    ctx.style_mut_of(theme, style);
+    ctx.options_mut(|o| o.fallback_theme = theme);
 }
 
 fn style(style: &mut egui::Style) {
@@ -77,22 +216,26 @@ fn style(style: &mut egui::Style) {
 }
 
 fn visuals(v: &mut egui::Visuals) {
-    *v = egui::Visuals::dark();
-    v.panel_fill = PANEL;
-    v.window_fill = Color32::from_rgb(36, 39, 46);
-    v.window_stroke = Stroke::new(1.0, Color32::from_rgb(58, 63, 73));
+    *v = if is_light() {
+        egui::Visuals::light()
+    } else {
+        egui::Visuals::dark()
+    };
+    v.panel_fill = panel();
+    v.window_fill = colors().window;
+    v.window_stroke = Stroke::new(1.0, colors().edge);
     v.window_corner_radius = CornerRadius::same(8);
     v.menu_corner_radius = CornerRadius::same(6);
-    v.extreme_bg_color = WELL;
-    v.text_edit_bg_color = Some(WELL);
-    v.faint_bg_color = Color32::from_rgb(35, 38, 45);
-    v.code_bg_color = WELL;
-    v.weak_text_color = Some(TEXT_WEAK);
-    v.hyperlink_color = ACCENT;
-    v.warn_fg_color = WARN;
-    v.error_fg_color = BAD;
-    v.selection.bg_fill = ACCENT_FILL;
-    v.selection.stroke = Stroke::new(1.0, TEXT_STRONG);
+    v.extreme_bg_color = well();
+    v.text_edit_bg_color = Some(well());
+    v.faint_bg_color = field().gamma_multiply(0.5);
+    v.code_bg_color = well();
+    v.weak_text_color = Some(text_weak());
+    v.hyperlink_color = accent();
+    v.warn_fg_color = warn();
+    v.error_fg_color = bad();
+    v.selection.bg_fill = accent_fill();
+    v.selection.stroke = Stroke::new(1.0, text_strong());
     v.slider_trailing_fill = true;
     v.striped = false;
     v.indent_has_left_vline = false;
@@ -106,12 +249,12 @@ fn visuals(v: &mut egui::Visuals) {
         w.expansion = 0.0;
     };
     let w = &mut v.widgets;
-    widget(&mut w.noninteractive, PANEL, TEXT);
-    w.noninteractive.bg_stroke = Stroke::new(1.0, Color32::from_rgb(48, 52, 61));
-    widget(&mut w.inactive, FIELD, TEXT);
-    widget(&mut w.hovered, FIELD_HOVER, TEXT_STRONG);
-    widget(&mut w.active, FIELD_ACTIVE, TEXT_STRONG);
-    widget(&mut w.open, FIELD_HOVER, TEXT_STRONG);
+    widget(&mut w.noninteractive, panel(), text());
+    w.noninteractive.bg_stroke = Stroke::new(1.0, colors().edge);
+    widget(&mut w.inactive, field(), text());
+    widget(&mut w.hovered, field_hover(), text_strong());
+    widget(&mut w.active, field_active(), text_strong());
+    widget(&mut w.open, field_hover(), text_strong());
 }
 
 /// Frame of a dialog.
@@ -137,7 +280,7 @@ pub fn class_color(class: Class) -> Color32 {
     }
 }
 
-/// Frame of a side panel. Not filled: the window is cleared with [`PANEL`], and pixels drawn twice
+/// Frame of a side panel. Not filled: the window is cleared with [`panel`], and pixels drawn twice
 /// cost on a software rasteriser.
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().inner_margin(Margin::symmetric(12, 10))
@@ -180,11 +323,16 @@ mod tests {
             };
             0.2126 * linear(c.r()) + 0.7152 * linear(c.g()) + 0.0722 * linear(c.b())
         };
-        for text in [TEXT, TEXT_STRONG, TEXT_WEAK, GOOD, WARN, BAD] {
-            for surface in [PANEL, WELL, BACKGROUND] {
-                let ratio = (luminance(text) + 0.05) / (luminance(surface) + 0.05);
-                assert!(ratio >= 4.5, "{text:?} on {surface:?} is {ratio}");
+        for c in [DARK, LIGHT] {
+            for text in [c.text, c.text_strong, c.text_weak, c.good, c.warn, c.bad] {
+                for surface in [c.panel, c.well, c.background, c.window] {
+                    let (a, b) = (luminance(text) + 0.05, luminance(surface) + 0.05);
+                    let ratio = a.max(b) / a.min(b);
+                    assert!(ratio >= 4.5, "{text:?} on {surface:?} is {ratio}");
+                }
             }
+            let (a, b) = (luminance(c.text_strong) + 0.05, luminance(c.accent_fill) + 0.05);
+            assert!(a.max(b) / a.min(b) >= 4.5);
         }
     }
 }

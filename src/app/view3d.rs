@@ -107,6 +107,11 @@ impl View3d {
         self.gpu.is_some()
     }
 
+    /// Forgets colours of returns made with another palette.
+    pub fn forget_pictures(&mut self) {
+        self.colors = None;
+    }
+
     /// Takes a standard viewpoint.
     pub fn preset(&mut self, preset: ViewPreset) {
         self.camera = ViewCamera::preset(preset);
@@ -485,16 +490,22 @@ fn no_adapter(ui: &Ui, rect: Rect) {
 /// A title and a line in the middle of an empty pane.
 fn hint(ui: &Ui, rect: Rect, title: &str, text: &str) {
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 0.0, theme::WELL);
+    painter.rect_filled(rect, 0.0, theme::well());
     let heading = egui::TextStyle::Heading.resolve(ui.style());
     let body = egui::TextStyle::Body.resolve(ui.style());
-    painter.text(rect.center(), Align2::CENTER_BOTTOM, title, heading, theme::TEXT);
+    painter.text(
+        rect.center(),
+        Align2::CENTER_BOTTOM,
+        title,
+        heading,
+        theme::text(),
+    );
     let galley = painter.layout(
         text.into(),
         body,
-        theme::TEXT_WEAK,
+        theme::text_weak(),
         (rect.width() - 40.0).max(60.0),
     );
     let at = rect.center() + egui::vec2(-galley.size().x / 2.0, 8.0);
-    painter.galley(at, galley, theme::TEXT_WEAK);
+    painter.galley(at, galley, theme::text_weak());
 }

@@ -1,5 +1,7 @@
 //! The 18 occupancy classes (Occ3D ids), the 18 BEV layers (UniScene order), their names and colours.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use serde::{Deserialize, Serialize};
 
 /// An Occ3D class; the discriminant is the label value. Names and ids follow nuScenes.
@@ -27,6 +29,58 @@ pub enum Class {
     Vegetation,
     Free,
 }
+
+/// Colours of the classes on screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Palette {
+    /// Close to the data set's own.
+    #[default]
+    Standard,
+    /// Told apart with red-green blindness too: blue against orange and yellow, and by lightness.
+    ColorBlindSafe,
+}
+
+/// The one palette of this process, as the display has one viewer. Commands never change it.
+static SAFE: AtomicBool = AtomicBool::new(false);
+
+impl Palette {
+    /// The palette in use.
+    pub fn current() -> Self {
+        if SAFE.load(Ordering::Relaxed) {
+            Palette::ColorBlindSafe
+        } else {
+            Palette::Standard
+        }
+    }
+
+    /// Uses this palette from now on; pictures made before keep their colours.
+    pub fn make_current(self) {
+        SAFE.store(self == Palette::ColorBlindSafe, Ordering::Relaxed);
+    }
+}
+
+/// After Okabe and Ito (2008), objects saturated, surroundings pale or dark.
+const SAFE_COLORS: [[u8; 3]; 18] = [
+    [128, 128, 128],
+    [190, 120, 40],
+    [204, 121, 167],
+    [240, 228, 66],
+    [0, 114, 178],
+    [0, 190, 170],
+    [230, 159, 0],
+    [213, 94, 0],
+    [255, 250, 200],
+    [120, 80, 40],
+    [86, 180, 233],
+    [84, 88, 100],
+    [150, 150, 146],
+    [178, 166, 186],
+    [176, 182, 150],
+    [214, 212, 220],
+    [44, 92, 70],
+    [0, 0, 0],
+];
 
 impl Class {
     /// Number of classes, free included.
@@ -154,7 +208,10 @@ impl Class {
             [62, 140, 66],
             [0, 0, 0],
         ];
-        COLORS[self as usize]
+        match Palette::current() {
+            Palette::Standard => COLORS[self as usize],
+            Palette::ColorBlindSafe => SAFE_COLORS[self as usize],
+        }
     }
 
     /// Length, width and height in metres of a typical object of this class (median of the

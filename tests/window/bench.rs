@@ -140,6 +140,7 @@ impl Bench {
             save: Arc::new(|scene, path| Ok(project::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,
+            settings_file: None,
         };
         let builder = Harness::builder()
             .with_size(egui::vec2(1400.0, 900.0))

@@ -46,8 +46,6 @@ pub fn header(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Cameras").color(theme::TEXT));
-        ui.add_space(4.0);
         icons::segments(ui, &mut state.camera_mode, &MODES);
         ui.add_space(8.0);
         match state.camera_mode {
@@ -66,8 +64,8 @@ pub fn header(
         }
         if stale {
             ui.add_space(4.0);
-            ui.add(egui::Spinner::new().size(12.0).color(theme::TEXT_WEAK));
-            ui.label(egui::RichText::new("updating").small().color(theme::TEXT_WEAK));
+            ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
+            ui.label(egui::RichText::new("updating").small().color(theme::text_weak()));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Sensors…").clicked() {
@@ -75,7 +73,7 @@ pub fn header(
             }
             if let Some(n) = input.lidar_points {
                 let text = format!("LiDAR  {} returns", thousands(n));
-                ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
+                ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             }
         });
     });

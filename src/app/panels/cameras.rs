@@ -43,7 +43,7 @@ pub struct CamerasInput<'a> {
 }
 
 impl CameraStrip {
-    /// Draws header and pictures.
+    /// Draws the pictures in a row.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -53,8 +53,6 @@ impl CameraStrip {
     ) {
         self.refresh(ui, input.views, state);
         self.note_stale(ui, input.stale);
-        header(ui, input, self.looks_stale, state, commands);
-        ui.add_space(2.0);
         let cameras = &input.scene.rig.cameras;
         let shown: Vec<usize> = (0..cameras.len()).filter(|i| !state.camera_hidden(*i)).collect();
         let count = shown.len().max(1) as f32;
@@ -76,7 +74,43 @@ impl CameraStrip {
         }
         if shown.is_empty() {
             let text = "No camera is shown. Sensors… adds and shows them.";
-            ui.label(egui::RichText::new(text).color(theme::TEXT_WEAK));
+            ui.label(egui::RichText::new(text).color(theme::text_weak()));
+        }
+    }
+
+    /// What the header of the strip offers.
+    pub fn controls(
+        &self,
+        ui: &mut Ui,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        header(ui, input, self.looks_stale, state, commands);
+    }
+
+    /// Draws one camera into all the space there is.
+    pub fn single(
+        &mut self,
+        ui: &mut Ui,
+        index: usize,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        self.refresh(ui, input.views, state);
+        self.note_stale(ui, input.stale);
+        let area = ui.available_rect_before_wrap();
+        let Some(camera) = input.scene.rig.cameras.get(index) else {
+            let text = "The vehicle has no such camera. Sensors… adds one.";
+            ui.label(egui::RichText::new(text).color(theme::text_weak()));
+            return;
+        };
+        let aspect = camera.width as f32 / camera.height.max(1) as f32;
+        let width = area.width().min(area.height() * aspect).max(40.0);
+        let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
+        if let Some(part) = self.picture(ui, rect, index, &camera.name, state, commands) {
+            state.readout = self.pixel_text(input.scene, camera, part);
         }
     }
 
@@ -172,21 +206,21 @@ impl CameraStrip {
                 painter.image(texture.id(), rect, unit(), tint);
             }
             None => {
-                painter.rect_filled(rect, 3.0, theme::WELL);
+                painter.rect_filled(rect, 3.0, theme::well());
                 let font = egui::TextStyle::Small.resolve(ui.style());
                 painter.text(
                     rect.center(),
                     Align2::CENTER_CENTER,
                     "rendering…",
                     font,
-                    theme::TEXT_WEAK,
+                    theme::text_weak(),
                 );
             }
         }
         let chosen = state.inspected == Some(index);
         let edge = match (chosen, response.hovered()) {
-            (true, _) => Stroke::new(2.0, theme::ACCENT),
-            (_, true) => Stroke::new(1.0, theme::TEXT_WEAK),
+            (true, _) => Stroke::new(2.0, theme::accent()),
+            (_, true) => Stroke::new(1.0, theme::text_weak()),
             _ => Stroke::new(1.0, Color32::from_black_alpha(120)),
         };
         painter.rect_stroke(rect, 2.0, edge, StrokeKind::Inside);
@@ -195,7 +229,7 @@ impl CameraStrip {
             &painter,
             rect.left_bottom() + vec2(6.0, -6.0),
             &label,
-            theme::TEXT_STRONG,
+            theme::ON_CANVAS,
         );
         let part = response.hover_pos().map(|p| (p - rect.min) / rect.size());
         if response.double_clicked() {

@@ -1,8 +1,7 @@
-//! Windows over everything: unsaved changes, the sheet of keys.
+//! The dialog over everything: unsaved changes.
 
-use egui::{Id, Key, Modal, Ui};
+use egui::{Id, Modal, Ui};
 
-use crate::app::keys::SHEET;
 use crate::app::theme;
 
 /// What the user wants to become of unsaved changes.
@@ -29,7 +28,7 @@ pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
             ui.add_space(2.0 * theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui
-                    .add(egui::Button::new("Save changes").fill(theme::ACCENT_FILL))
+                    .add(egui::Button::new("Save changes").fill(theme::accent_fill()))
                     .clicked()
                 {
                     answer = Some(Unsaved::Save);
@@ -46,38 +45,4 @@ pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
         answer = Some(Unsaved::Stay);
     }
     answer
-}
-
-/// The sheet of keys.
-pub fn keys_sheet(ui: &Ui, open: &mut bool) {
-    let modal = Modal::new(Id::unique("keys")).frame(theme::dialog_frame(ui.style()));
-    let shown = modal.show(ui.ctx(), |ui| {
-        ui.set_width(800.0);
-        ui.heading("Keys");
-        ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-            for (column, sections) in [(left, &SHEET[..2]), (right, &SHEET[2..])] {
-                for (title, keys) in sections {
-                    section(column, title, keys);
-                }
-            }
-        });
-    });
-    let toggled = ui.input(|i| i.key_pressed(Key::F1));
-    if shown.should_close() || toggled {
-        *open = false;
-    }
-}
-
-fn section(ui: &mut Ui, title: &str, keys: &[(&str, &str)]) {
-    crate::app::icons::section(ui, title);
-    for (key, what) in keys {
-        ui.horizontal(|ui| {
-            let name = egui::Label::new(egui::RichText::new(*key).color(theme::TEXT_STRONG));
-            ui.scope(|ui| {
-                ui.set_width(172.0);
-                ui.add(name);
-            });
-            ui.label(egui::RichText::new(*what).color(theme::TEXT_WEAK));
-        });
-    }
 }

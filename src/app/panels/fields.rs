@@ -16,7 +16,7 @@ pub fn caption(ui: &mut Ui, text: &str) {
         egui::Align2::LEFT_CENTER,
         text,
         font,
-        theme::TEXT_WEAK,
+        theme::text_weak(),
     );
 }
 

@@ -76,7 +76,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
 }
 
 fn caption(ui: &mut Ui, text: &str) {
-    ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
 fn brush_options(ui: &mut Ui, state: &mut UiState) {
@@ -88,7 +88,7 @@ fn brush_options(ui: &mut Ui, state: &mut UiState) {
     );
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Size").color(theme::TEXT_WEAK));
+        ui.label(egui::RichText::new("Size").color(theme::text_weak()));
         let slider = egui::Slider::new(&mut state.brush_m, UiState::BRUSH_M)
             .logarithmic(true)
             .suffix(" m")
@@ -108,7 +108,7 @@ fn voxel_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) 
     }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Size").color(theme::TEXT_WEAK));
+        ui.label(egui::RichText::new("Size").color(theme::text_weak()));
         let slider = egui::Slider::new(&mut state.voxel_size, 1..=UiState::MAX_VOXEL_SIZE).suffix(" vx");
         ui.add(slider)
             .on_hover_text("[ and ]")
@@ -190,7 +190,7 @@ fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
         if eye(ui, *on, &format!("Show {}", name.to_lowercase())).clicked() {
             *on = !*on;
         }
-        let color = if *on { theme::TEXT } else { theme::TEXT_WEAK };
+        let color = if *on { theme::text() } else { theme::text_weak() };
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW), Sense::click());
         let body = egui::TextStyle::Body.resolve(ui.style());
         let at = pos2(rect.left() + 8.0, rect.center().y);
@@ -206,8 +206,8 @@ fn eye(ui: &mut Ui, shown: bool, name: &str) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(theme::ROW, theme::ROW), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, shown, name));
     let color = match (response.hovered(), shown) {
-        (true, _) => theme::TEXT_STRONG,
-        (false, true) => theme::TEXT_WEAK,
+        (true, _) => theme::text_strong(),
+        (false, true) => theme::text_weak(),
         (false, false) => Color32::from_rgb(90, 96, 106),
     };
     let icon = if shown { Icon::Eye } else { Icon::EyeOff };

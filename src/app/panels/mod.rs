@@ -1,13 +1,19 @@
 //! The panels around the views: each draws from values and pushes commands.
 
+pub mod box_views;
 pub mod camera_header;
 pub mod cameras;
 pub mod dialogs;
 pub mod fields;
 pub mod layers;
+pub mod lidar_sweep;
 pub mod objects;
+pub mod palette;
 pub mod panes;
 pub mod sensors;
+pub mod settings;
+pub mod shortcuts;
+pub mod start;
 pub mod status;
 pub mod toasts;
 pub mod toolbar;

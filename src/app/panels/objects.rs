@@ -21,7 +21,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     match state.selected.and_then(|id| frame.boxes.get(&id)) {
         Some(b) => inspector(ui, b, commands),
         None => {
-            ui.label(egui::RichText::new("Nothing selected").color(theme::TEXT_WEAK));
+            ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
         }
     }
     ui.add_space(theme::GAP);
@@ -89,7 +89,7 @@ fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<
         (true, boxes) => format!("The map layers and {boxes} are guesses."),
         (false, boxes) => format!("{boxes}: guesses."),
     };
-    ui.label(egui::RichText::new(what).small().color(theme::TEXT_WEAK));
+    ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
     ui.horizontal(|ui| {
         ui.checkbox(&mut state.correcting, "Correct them").on_hover_text(
             "While ticked, edits of boxes and map layers change no voxel and generate nothing.",
@@ -196,7 +196,7 @@ fn speed(ui: &mut Ui, b: &SceneBox) {
             format!("{kmh:.0} km/h")
         };
         ui.label(text);
-        ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::TEXT_WEAK));
+        ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::text_weak()));
     });
 }
 
@@ -209,9 +209,9 @@ fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
         for i in range {
             let color = match i.cmp(&at) {
-                std::cmp::Ordering::Less => theme::TEXT,
-                std::cmp::Ordering::Equal => theme::TEXT_STRONG,
-                std::cmp::Ordering::Greater => theme::TEXT_WEAK.gamma_multiply(0.7),
+                std::cmp::Ordering::Less => theme::text(),
+                std::cmp::Ordering::Equal => theme::text_strong(),
+                std::cmp::Ordering::Greater => theme::text_weak().gamma_multiply(0.7),
             };
             let size = egui::vec2(ui.available_width(), theme::ROW - 4.0);
             let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
@@ -220,8 +220,8 @@ fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
                 egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
             });
             let fill = match (i == at, response.hovered()) {
-                (true, _) => theme::FIELD,
-                (_, true) => theme::FIELD.gamma_multiply(0.6),
+                (true, _) => theme::field(),
+                (_, true) => theme::field().gamma_multiply(0.6),
                 _ => egui::Color32::TRANSPARENT,
             };
             ui.painter().rect_filled(rect, theme::RADIUS, fill);

@@ -1,82 +1,89 @@
-//! Headers of the two large views: name, and what they show.
+//! What the headers of the views offer.
 
-use egui::{Ui, vec2};
+use egui::Ui;
 
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon};
-use crate::app::state::{LidarModel, UiState, Underlay};
+use crate::app::state::{CameraMode, LidarModel, UiState, Underlay};
 use crate::app::theme;
 use crate::viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 
-/// Height of a header, points.
-pub const HEADER: f32 = 32.0;
-
-fn title(ui: &mut Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(theme::TEXT));
-}
-
-/// A header: the title on the left, the rest from the right.
-fn header(ui: &mut Ui, name: &str, rest: impl FnOnce(&mut Ui)) {
-    let size = vec2(ui.available_width(), HEADER);
-    let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-    let inner = rect.shrink2(vec2(10.0, 2.0));
-    ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
-        ui.set_clip_rect(rect);
-        ui.horizontal_centered(|ui| {
-            title(ui, name);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), rest);
-        });
-    });
-}
-
 /// Of the bird's-eye view.
-pub fn bev_header(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
-    header(ui, "Bird's-eye view", |ui| {
-        swap(ui, commands);
-        icons::segments(
-            ui,
-            &mut state.underlay,
-            &[
-                (Underlay::Layout, "Layout", "map layers"),
-                (Underlay::Occupancy, "Occupancy", "voxels from above"),
-                (Underlay::Both, "Both", "layers over voxels"),
-            ],
-        );
-    });
+pub fn bev_controls(ui: &mut Ui, state: &mut UiState) {
+    icons::segments(
+        ui,
+        &mut state.underlay,
+        &[
+            (Underlay::Layout, "Layout", "map layers"),
+            (Underlay::Occupancy, "Occupancy", "voxels from above"),
+            (Underlay::Both, "Both", "layers over voxels"),
+        ],
+    );
 }
 
 /// Of the 3D view.
-pub fn view3d_header(
+pub fn view3d_controls(
     ui: &mut Ui,
     options: &mut ViewOptions,
     state: &mut UiState,
     commands: &mut Vec<Command>,
 ) {
-    header(ui, "3D view", |ui| {
-        swap(ui, commands);
-        if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
-            commands.push(Command::QuickShot);
-        }
-        let show = egui::containers::menu::MenuButton::new("Show").config(
-            egui::containers::menu::MenuConfig::new()
-                .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),
-        );
-        show.ui(ui, |ui| show_menu(ui, options, state));
-        ui.menu_button("View", |ui| {
-            for preset in ViewPreset::ALL {
-                if ui.button(theme::sentence(preset.name())).clicked() {
-                    commands.push(Command::View(preset));
-                    ui.close();
-                }
+    if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
+        commands.push(Command::QuickShot);
+    }
+    let show = egui::containers::menu::MenuButton::new("Show").config(
+        egui::containers::menu::MenuConfig::new()
+            .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),
+    );
+    show.ui(ui, |ui| show_menu(ui, options, state));
+    ui.menu_button("View", |ui| {
+        for preset in ViewPreset::ALL {
+            if ui.button(theme::sentence(preset.name())).clicked() {
+                commands.push(Command::View(preset));
+                ui.close();
             }
-        });
+        }
     });
 }
 
-fn swap(ui: &mut Ui, commands: &mut Vec<Command>) {
-    if icons::button(ui, Icon::Swap, "Swap views", "Tab", false, true).clicked() {
-        commands.push(Command::SwapPanes);
-    }
+/// Of a single camera.
+pub fn camera_controls(ui: &mut Ui, state: &mut UiState) {
+    let modes = [
+        (CameraMode::Semantic, "Semantic"),
+        (CameraMode::Depth, "Depth"),
+        (CameraMode::Picture, "Picture"),
+        (CameraMode::Planes, "Planes"),
+        (CameraMode::Layout, "Boxes, lanes"),
+    ];
+    let shown = modes.iter().find(|(mode, _)| *mode == state.camera_mode);
+    egui::ComboBox::from_id_salt("camera mode")
+        .selected_text(shown.map_or("", |(_, name)| name))
+        .width(96.0)
+        .show_ui(ui, |ui| {
+            for (mode, name) in modes {
+                ui.selectable_value(&mut state.camera_mode, mode, name);
+            }
+        });
+}
+
+/// Of the unrolled sweep.
+pub fn lidar_controls(ui: &mut Ui, state: &mut UiState) {
+    let colors = [
+        (LidarColorMode::Range, "Range"),
+        (LidarColorMode::Class, "Class"),
+        (LidarColorMode::Ring, "Ring"),
+        (LidarColorMode::Intensity, "Echo"),
+        (LidarColorMode::Drop, "Loss"),
+    ];
+    let shown = colors.iter().find(|(mode, _)| *mode == state.lidar_colors);
+    egui::ComboBox::from_id_salt("sweep colours")
+        .selected_text(shown.map_or("Range", |(_, name)| name))
+        .width(84.0)
+        .show_ui(ui, |ui| {
+            for (mode, name) in colors {
+                ui.selectable_value(&mut state.lidar_colors, mode, name);
+            }
+        });
 }
 
 fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
@@ -110,7 +117,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
         );
     }
     ui.separator();
-    ui.label(egui::RichText::new("LiDAR").small().color(theme::TEXT_WEAK));
+    ui.label(egui::RichText::new("LiDAR").small().color(theme::text_weak()));
     icons::segments(
         ui,
         &mut state.lidar_model,
@@ -126,7 +133,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
     ui.label(
         egui::RichText::new("LiDAR colour")
             .small()
-            .color(theme::TEXT_WEAK),
+            .color(theme::text_weak()),
     );
     icons::segments(
         ui,

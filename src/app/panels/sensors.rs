@@ -95,7 +95,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
             let label = format!("Camera {}", camera.name);
             if icons::row(
                 ui,
-                theme::ACCENT,
+                theme::accent(),
                 &camera_label(&camera.name),
                 &right,
                 chosen,
@@ -117,7 +117,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
             lidar.name.clone()
         };
         let label = format!("LiDAR {}", lidar.name);
-        if icons::row(ui, theme::TEXT, &name, &right, chosen, &label).clicked() {
+        if icons::row(ui, theme::text(), &name, &right, chosen, &label).clicked() {
             state.sensor = SensorChoice::Lidar(i);
         }
     }
@@ -221,7 +221,7 @@ fn camera_fields(ui: &mut Ui, rig: &SensorRig, index: usize, camera: &Camera, co
         "{} x {} px, f {:.0} px",
         camera.width, camera.height, camera.focal_px[0]
     );
-    ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
 fn lidar_fields(
@@ -302,7 +302,7 @@ fn lidar_fields(
     let low = lidar.elevations_deg.first().copied().unwrap_or(0.0);
     let high = lidar.elevations_deg.last().copied().unwrap_or(0.0);
     let text = format!("{low:.1}° to {high:.1}°, {} rays a sweep", lidar.rays());
-    ui.label(egui::RichText::new(text).small().color(theme::TEXT_WEAK));
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
 /// A name that is taken when the field is left.

@@ -78,22 +78,24 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
         if let Some(running) = input.running {
             progress(ui, running, input.now_s, commands);
         } else if let Some(what) = input.busy_with {
-            ui.add(egui::Spinner::new().size(13.0).color(theme::ACCENT));
-            say(ui, what, theme::TEXT);
+            ui.add(egui::Spinner::new().size(13.0).color(theme::accent()));
+            say(ui, what, theme::text());
         } else {
             idle(ui, input);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let log = egui::RichText::new("Log").color(if input.unread > 0 {
-                theme::WARN
+                theme::warn()
             } else {
-                theme::TEXT_WEAK
+                theme::text_weak()
             });
             let button = egui::Button::new(log).frame(false).selected(false);
             if ui.add(button).on_hover_text("What happened so far").clicked() {
                 commands.push(Command::ToggleLog);
             }
-            ui.add(egui::Label::new(egui::RichText::new(&state.readout).color(theme::TEXT_WEAK)).truncate());
+            ui.add(
+                egui::Label::new(egui::RichText::new(&state.readout).color(theme::text_weak())).truncate(),
+            );
         });
     });
 }
@@ -110,21 +112,21 @@ fn dot(ui: &mut Ui, color: Color32) {
 fn idle(ui: &mut Ui, input: &StatusInput<'_>) {
     match input.receipt {
         _ if input.unsettled && !input.live => {
-            dot(ui, theme::WARN);
-            say(ui, "Edited, not generated: live is off", theme::TEXT);
+            dot(ui, theme::warn());
+            say(ui, "Edited, not generated: live is off", theme::text());
         }
         _ if input.unsettled => {
-            dot(ui, theme::WARN);
-            say(ui, "Edited, not generated", theme::TEXT);
+            dot(ui, theme::warn());
+            say(ui, "Edited, not generated", theme::text());
         }
         Some(receipt) => {
             let sound = receipt.full || receipt.untouched_voxels_changed == 0;
-            dot(ui, if sound { theme::GOOD } else { theme::BAD });
-            say(ui, &receipt.text(), theme::TEXT);
+            dot(ui, if sound { theme::good() } else { theme::bad() });
+            say(ui, &receipt.text(), theme::text());
         }
         None => {
-            dot(ui, theme::GOOD);
-            say(ui, "Ready", theme::TEXT);
+            dot(ui, theme::good());
+            say(ui, "Ready", theme::text());
         }
     }
 }
@@ -147,9 +149,9 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         info.value = Some(f64::from(done));
         info
     });
-    ui.painter().rect_filled(rect, 3.0, theme::FIELD);
+    ui.painter().rect_filled(rect, 3.0, theme::field());
     let filled = Rect::from_min_size(rect.min, vec2(rect.width() * done, rect.height()));
-    ui.painter().rect_filled(filled, 3.0, theme::ACCENT);
+    ui.painter().rect_filled(filled, 3.0, theme::accent());
     let count = if steps > 0 {
         format!(" {step}/{steps}")
     } else {
@@ -163,7 +165,7 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
     say(
         ui,
         &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
-        theme::TEXT,
+        theme::text(),
     );
     let cancel = ui.add(egui::Button::new("Cancel").small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));

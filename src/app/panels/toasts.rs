@@ -116,11 +116,11 @@ impl Toasts {
             for entry in &self.entries {
                 ui.horizontal(|ui| {
                     let at = format!("{:02}:{:02}", entry.at_s as u64 / 60, entry.at_s as u64 % 60);
-                    ui.label(egui::RichText::new(at).monospace().color(theme::TEXT_WEAK));
+                    ui.label(egui::RichText::new(at).monospace().color(theme::text_weak()));
                     let color = if entry.level == Level::Error {
-                        theme::BAD
+                        theme::bad()
                     } else {
-                        theme::TEXT
+                        theme::text()
                     };
                     ui.add(egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap());
                 });
@@ -131,9 +131,9 @@ impl Toasts {
 
 fn card(ui: &mut Ui, entry: &mut Entry) {
     let edge = if entry.level == Level::Error {
-        theme::BAD
+        theme::bad()
     } else {
-        theme::ACCENT
+        theme::accent()
     };
     let frame = Frame::new()
         .fill(Color32::from_rgb(44, 48, 56))

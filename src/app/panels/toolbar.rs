@@ -4,8 +4,9 @@ use egui::accesskit::Role;
 use egui::{Align2, Sense, Ui, WidgetInfo, vec2};
 
 use crate::app::command::Command;
+use crate::app::dock::Workspace;
 use crate::app::icons::{self, Icon};
-use crate::app::state::{Tool, UiState};
+use crate::app::state::{Pane, Tool, UiState};
 use crate::app::theme;
 use crate::viewport::ViewPreset;
 
@@ -25,6 +26,8 @@ pub struct ToolbarInput<'a> {
     pub busy: bool,
     /// Voxels that the user painted.
     pub has_paint: bool,
+    /// The workspace chosen last.
+    pub workspace: Workspace,
 }
 
 /// Draws the bar.
@@ -76,6 +79,12 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
         if redo.clicked() {
             commands.push(Command::Redo);
         }
+        divider(ui);
+        let mut workspace = input.workspace;
+        let names = Workspace::ALL.map(|(workspace, name)| (workspace, name, "arranges the panes"));
+        if icons::segments(ui, &mut workspace, &names) {
+            commands.push(Command::Workspace(workspace));
+        }
         let left = ui.min_rect().right();
         let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             generation(ui, input, commands);
@@ -87,7 +96,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
 
 /// A chord in the second column of a menu.
 fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
-    let keys = egui::RichText::new(keys).color(theme::TEXT_WEAK);
+    let keys = egui::RichText::new(keys).color(theme::text_weak());
     let button = egui::Button::new(name).shortcut_text(keys);
     let clicked = ui.add_enabled(enabled, button).clicked();
     if clicked {
@@ -155,6 +164,11 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             on(item(ui, &name, key, true), Command::View(preset));
         }
         ui.separator();
+        ui.menu_button("Panes", |ui| {
+            for pane in Pane::CHOICES {
+                on(item(ui, &pane.name(), "", true), Command::ShowPane(pane));
+            }
+        });
         on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
         on(item(ui, "Grid", "G", true), Command::ToggleGrid);
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
@@ -181,14 +195,22 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         };
         on(item(ui, live, "Ctrl+Space", true), Command::ToggleLive);
     });
-    let help = ui.button("Keys");
-    on(help.clicked(), Command::ToggleKeys);
+    ui.menu_button("Help", |ui| {
+        on(
+            item(ui, "Find a command…", "Ctrl+K", true),
+            Command::TogglePalette,
+        );
+        on(item(ui, "Keys", "F1", true), Command::ToggleKeys);
+        on(item(ui, "Start screen", "", true), Command::ToggleStart);
+        ui.separator();
+        on(item(ui, "Settings…", "Ctrl+,", true), Command::ToggleSettings);
+    });
 }
 
 fn divider(ui: &mut Ui) {
     ui.add_space(6.0);
     let (rect, _) = ui.allocate_exact_size(vec2(1.0, 18.0), Sense::hover());
-    ui.painter().rect_filled(rect, 0.0, theme::FIELD_HOVER);
+    ui.painter().rect_filled(rect, 0.0, theme::field_hover());
     ui.add_space(6.0);
 }
 
@@ -200,7 +222,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
             "Cancel",
             "Cancel job",
             "Ctrl+Backspace",
-            theme::FIELD,
+            theme::field(),
             Icon::Stop,
             Command::CancelGeneration,
         )
@@ -210,7 +232,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
             "Generate",
             "Generate everything",
             "all of it, Ctrl+Enter",
-            theme::ACCENT_FILL,
+            theme::accent_fill(),
             Icon::Play,
             command,
         )
@@ -219,7 +241,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
         commands.push(command);
     }
     let fill = if input.live {
-        theme::FIELD
+        theme::field()
     } else {
         egui::Color32::TRANSPARENT
     };
@@ -231,7 +253,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     let live = wide_button(ui, Icon::Live, "Live", hint, fill, "Live");
     if input.live {
         let dot = live.rect.right_top() + vec2(-6.0, 6.0);
-        ui.painter().circle_filled(dot, 3.0, theme::GOOD);
+        ui.painter().circle_filled(dot, 3.0, theme::good());
     }
     live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, "Live"));
     if live.clicked() {
@@ -251,20 +273,20 @@ fn wide_button(
     let font = egui::TextStyle::Button.resolve(ui.style());
     let galley = ui
         .painter()
-        .layout_no_wrap(name.to_owned(), font, theme::TEXT_STRONG);
+        .layout_no_wrap(name.to_owned(), font, theme::text_strong());
     let size = vec2(galley.size().x + 42.0, theme::ROW + 4.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
     let fill = if response.hovered() {
-        fill.lerp_to_gamma(theme::TEXT_STRONG, 0.12)
+        fill.lerp_to_gamma(theme::text_strong(), 0.12)
     } else {
         fill
     };
     ui.painter().rect_filled(rect, theme::RADIUS, fill);
     let icon_rect = egui::Rect::from_center_size(rect.left_center() + vec2(17.0, 0.0), vec2(14.0, 14.0));
-    icon.paint(ui, icon_rect, theme::TEXT_STRONG);
+    icon.paint(ui, icon_rect, theme::text_strong());
     let at = rect.left_center() + vec2(30.0, -galley.size().y / 2.0);
-    ui.painter().galley(at, galley, theme::TEXT_STRONG);
+    ui.painter().galley(at, galley, theme::text_strong());
     icons::focus_ring(ui, &response, rect);
     response.on_hover_ui(|ui| icons::tip(ui, name, hint))
 }
@@ -277,8 +299,8 @@ fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let middle = egui::pos2((left + right) / 2.0, ui.max_rect().center().y);
     let painter = ui.painter();
-    let drawn = painter.text(middle, Align2::CENTER_CENTER, input.name, font, theme::TEXT);
+    let drawn = painter.text(middle, Align2::CENTER_CENTER, input.name, font, theme::text());
     if input.dirty {
-        painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::WARN);
+        painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::warn());
     }
 }

@@ -1,0 +1,369 @@
+//! Everything that a key can call for: the one list behind keys, the sheet of keys and the command palette.
+
+use glam::DVec3;
+
+use crate::viewport::ViewPreset;
+
+use super::command::Command;
+use super::dock::Workspace;
+use super::state::{Pane, Tool, UiState, VoxelVerb};
+
+/// Where a chord counts; what stands later wins over what stands before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum When {
+    /// Everywhere.
+    Always,
+    /// With the pointer over the 3D view.
+    Over3d,
+    /// While a box is chosen.
+    Chosen,
+}
+
+impl When {
+    /// True if a chord cannot mean two things in these two places: only `Always` gives way to the others.
+    pub fn meets(self, other: Self) -> bool {
+        self == other
+    }
+}
+
+/// Sections of the sheet of keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Tools.
+    Tools,
+    /// The chosen box.
+    Selection,
+    /// Views and panes.
+    Views,
+    /// Generation and versions.
+    Generation,
+    /// Files and history.
+    File,
+}
+
+impl Group {
+    /// Every group with its title.
+    pub const ALL: [(Group, &'static str); 5] = [
+        (Group::Tools, "Tools"),
+        (Group::Selection, "Selection"),
+        (Group::Views, "Views"),
+        (Group::Generation, "Generation"),
+        (Group::File, "File and edit"),
+    ];
+}
+
+/// One action.
+#[derive(Clone, Copy)]
+pub struct ActionDef {
+    /// Its name in key files.
+    pub id: &'static str,
+    /// Section of the sheet.
+    pub group: Group,
+    /// What it does, for a person.
+    pub title: &'static str,
+    /// Where its chords count.
+    pub when: When,
+    /// Default chords, separated by blanks.
+    pub keys: &'static str,
+    /// Goes on while the key is held.
+    pub repeats: bool,
+    /// What to do; none if only the window's state changes.
+    pub command: fn(&mut UiState) -> Option<Command>,
+}
+
+const fn action(
+    group: Group,
+    id: &'static str,
+    title: &'static str,
+    keys: &'static str,
+    command: fn(&mut UiState) -> Option<Command>,
+) -> ActionDef {
+    ActionDef {
+        id,
+        group,
+        title,
+        when: When::Always,
+        keys,
+        repeats: false,
+        command,
+    }
+}
+
+impl ActionDef {
+    const fn over_3d(mut self) -> Self {
+        self.when = When::Over3d;
+        self
+    }
+
+    const fn chosen(mut self) -> Self {
+        self.when = When::Chosen;
+        self
+    }
+
+    const fn repeats(mut self) -> Self {
+        self.repeats = true;
+        self
+    }
+}
+
+use Group::{File, Generation, Selection, Tools, Views};
+
+/// Every action.
+pub const ACTIONS: &[ActionDef] = &[
+    action(Tools, "select_tool", "Select", "V", |_| {
+        Some(Command::Tool(Tool::Select))
+    }),
+    action(Tools, "brush_tool", "Brush", "B", |_| {
+        Some(Command::Tool(Tool::Brush))
+    }),
+    action(Tools, "voxel_brush", "Voxel brush (over the 3D view)", "B", |s| {
+        let tool = if s.tool == Tool::Voxel {
+            Tool::Brush
+        } else {
+            Tool::Voxel
+        };
+        Some(Command::Tool(tool))
+    })
+    .over_3d(),
+    action(Tools, "add_box_tool", "Add box", "A", |_| {
+        Some(Command::Tool(Tool::AddBox))
+    }),
+    action(Tools, "brush_smaller", "Smaller brush", "[ {", |_| {
+        Some(Command::BrushSize(-1))
+    })
+    .repeats(),
+    action(Tools, "brush_larger", "Larger brush", "] }", |_| {
+        Some(Command::BrushSize(1))
+    })
+    .repeats(),
+    action(
+        Tools,
+        "toggle_erase",
+        "Paint or erase (or hold Shift)",
+        "E",
+        |s| {
+            s.erase = !s.erase;
+            None
+        },
+    ),
+    action(Tools, "voxel_attach", "Attach voxels", "T", |_| {
+        Some(Command::Verb(VoxelVerb::Attach))
+    }),
+    action(Tools, "voxel_remove", "Remove voxels", "R", |_| {
+        Some(Command::Verb(VoxelVerb::Remove))
+    }),
+    action(Tools, "voxel_recolour", "Recolour voxels", "Y", |_| {
+        Some(Command::Verb(VoxelVerb::Recolour))
+    }),
+    action(
+        Tools,
+        "escape",
+        "Cancel the drag, drop the selection",
+        "Esc",
+        |_| Some(Command::Escape),
+    ),
+    action(Selection, "delete", "Delete", "Del Backspace", |_| {
+        Some(Command::DeleteSelected)
+    }),
+    action(Selection, "duplicate", "Duplicate", "Ctrl+D", |_| {
+        Some(Command::DuplicateSelected)
+    }),
+    action(Selection, "turn_left", "Turn left 1°", "Z", |_| {
+        Some(Command::Turn(1.0))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_right", "Turn right 1°", "X", |_| {
+        Some(Command::Turn(-1.0))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_left_far", "Turn left 15°", "Shift+Z", |_| {
+        Some(Command::Turn(15.0))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_right_far", "Turn right 15°", "Shift+X", |_| {
+        Some(Command::Turn(-15.0))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_90", "Turn 90°", "C", |_| {
+        Some(Command::Turn(90.0))
+    })
+    .chosen(),
+    action(Selection, "turn_180", "Turn 180°", "Q", |_| {
+        Some(Command::Turn(180.0))
+    })
+    .chosen(),
+    action(Selection, "next_box", "Next box", "J", |_| {
+        Some(Command::SelectNext(1))
+    }),
+    action(Selection, "previous_box", "Previous box", "Shift+J", |_| {
+        Some(Command::SelectNext(-1))
+    }),
+    action(Views, "frame_selection", "Frame the selection", "F", |_| {
+        Some(Command::FrameSelection)
+    }),
+    action(Views, "frame_all", "Frame everything", "Home", |_| {
+        Some(Command::FrameAll)
+    }),
+    action(Views, "view_top", "3D view from above", "7", |_| {
+        Some(Command::View(ViewPreset::Top))
+    })
+    .over_3d(),
+    action(Views, "view_front", "3D view from the front", "1", |_| {
+        Some(Command::View(ViewPreset::Front))
+    })
+    .over_3d(),
+    action(Views, "view_side", "3D view from the side", "3", |_| {
+        Some(Command::View(ViewPreset::Side))
+    })
+    .over_3d(),
+    action(Views, "view_perspective", "3D view in perspective", "5", |_| {
+        Some(Command::View(ViewPreset::Perspective))
+    })
+    .over_3d(),
+    action(Views, "view_ego", "3D view from the ego vehicle", "0", |_| {
+        Some(Command::View(ViewPreset::Ego))
+    })
+    .over_3d(),
+    action(Views, "look_1", "Look through camera 1", "Ctrl+Alt+1", |_| {
+        Some(Command::LookThrough(0))
+    }),
+    action(Views, "look_2", "Look through camera 2", "Ctrl+Alt+2", |_| {
+        Some(Command::LookThrough(1))
+    }),
+    action(Views, "look_3", "Look through camera 3", "Ctrl+Alt+3", |_| {
+        Some(Command::LookThrough(2))
+    }),
+    action(Views, "look_4", "Look through camera 4", "Ctrl+Alt+4", |_| {
+        Some(Command::LookThrough(3))
+    }),
+    action(Views, "look_5", "Look through camera 5", "Ctrl+Alt+5", |_| {
+        Some(Command::LookThrough(4))
+    }),
+    action(Views, "look_6", "Look through camera 6", "Ctrl+Alt+6", |_| {
+        Some(Command::LookThrough(5))
+    }),
+    action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", |_| {
+        Some(Command::SwapPanes)
+    }),
+    action(
+        Views,
+        "maximize",
+        "Maximize the pane under the pointer",
+        "Shift+Space",
+        |_| Some(Command::MaximizePane),
+    ),
+    action(Views, "grid", "Grid", "G", |_| Some(Command::ToggleGrid)),
+    action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", |_| {
+        Some(Command::Workspace(Workspace::Edit))
+    }),
+    action(Views, "workspace_paint", "Workspace: Paint", "Alt+2", |_| {
+        Some(Command::Workspace(Workspace::Paint))
+    }),
+    action(Views, "workspace_voxels", "Workspace: Voxels", "Alt+3", |_| {
+        Some(Command::Workspace(Workspace::Voxels))
+    }),
+    action(Views, "workspace_sensors", "Workspace: Sensors", "Alt+4", |_| {
+        Some(Command::Workspace(Workspace::Sensors))
+    }),
+    action(Views, "workspace_label", "Workspace: Label", "Alt+5", |_| {
+        Some(Command::Workspace(Workspace::Label))
+    }),
+    action(Views, "pane_lidar", "Show the LiDAR sweep", "", |_| {
+        Some(Command::ShowPane(Pane::Lidar))
+    }),
+    action(Views, "pane_box_views", "Show the box views", "", |_| {
+        Some(Command::ShowPane(Pane::BoxViews))
+    }),
+    action(Views, "pane_cameras", "Show the cameras", "", |_| {
+        Some(Command::ShowPane(Pane::Cameras))
+    }),
+    action(Views, "sensors", "Sensors of the vehicle", "", |_| {
+        Some(Command::ToggleSensors)
+    }),
+    action(Views, "log", "Log", "", |_| Some(Command::ToggleLog)),
+    action(
+        Generation,
+        "generate",
+        "Generate everything",
+        "Ctrl+Enter",
+        |_| Some(Command::Generate { full: true }),
+    ),
+    action(
+        Generation,
+        "generate_edited",
+        "Generate what was edited",
+        "Ctrl+Shift+Enter",
+        |_| Some(Command::Generate { full: false }),
+    ),
+    action(Generation, "live", "Live on or off", "Ctrl+Space", |_| {
+        Some(Command::ToggleLive)
+    }),
+    action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
+        Some(Command::CancelGeneration)
+    }),
+    action(
+        Generation,
+        "confirm_inferred",
+        "Confirm what was inferred",
+        "",
+        |_| Some(Command::ConfirmInferred),
+    ),
+    action(Generation, "clear_paint", "Unlock painted voxels", "", |_| {
+        Some(Command::ClearPaint)
+    }),
+    action(File, "undo", "Undo", "Ctrl+Z", |_| Some(Command::Undo)).repeats(),
+    action(File, "redo", "Redo", "Ctrl+Shift+Z Ctrl+Y", |_| {
+        Some(Command::Redo)
+    })
+    .repeats(),
+    action(File, "new", "New scene", "Ctrl+N", |_| Some(Command::New)),
+    action(File, "open", "Open", "Ctrl+O", |_| Some(Command::Open)),
+    action(File, "save", "Save", "Ctrl+S", |_| Some(Command::Save)),
+    action(File, "save_as", "Save as", "Ctrl+Shift+S", |_| {
+        Some(Command::SaveAs)
+    }),
+    action(File, "screenshot", "Screenshot of the 3D view", "F12", |_| {
+        Some(Command::QuickShot)
+    }),
+    action(File, "export_screenshot", "Export a screenshot", "", |_| {
+        Some(Command::ExportScreenshot)
+    }),
+    action(File, "import_rig", "Import sensors", "", |_| {
+        Some(Command::ImportRig)
+    }),
+    action(File, "export_rig", "Export sensors", "", |_| {
+        Some(Command::ExportRig)
+    }),
+    action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
+        Some(Command::TogglePalette)
+    }),
+    action(File, "keys", "Sheet of keys", "F1 ?", |_| {
+        Some(Command::ToggleKeys)
+    }),
+    action(File, "settings", "Settings", "Ctrl+,", |_| {
+        Some(Command::ToggleSettings)
+    }),
+    action(File, "start_screen", "Start screen", "", |_| {
+        Some(Command::ToggleStart)
+    }),
+    action(File, "quit", "Quit", "Ctrl+Q", |_| Some(Command::Quit)),
+];
+
+/// Nudges of the chosen box by the arrows, which no preset changes: direction in the ego frame, as the bird's-eye view
+/// shows it (forward is up).
+pub fn nudge_direction(key: egui::Key) -> Option<DVec3> {
+    use egui::Key;
+    Some(match key {
+        Key::ArrowUp => DVec3::X,
+        Key::ArrowDown => -DVec3::X,
+        Key::ArrowLeft => DVec3::Y,
+        Key::ArrowRight => -DVec3::Y,
+        Key::PageUp => DVec3::Z,
+        Key::PageDown => -DVec3::Z,
+        _ => return None,
+    })
+}

@@ -1,0 +1,297 @@
+//! Which pane stands where: the tree of panes, ready-made workspaces, and moving panes about. Drawing is in
+//! `dock_ui.rs`.
+
+use std::collections::HashSet;
+
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+
+use super::state::Pane;
+
+/// An arrangement made for one kind of work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Workspace {
+    /// Bird's-eye view and 3D view side by side, cameras below.
+    #[default]
+    Edit,
+    /// A large bird's-eye view.
+    Paint,
+    /// A large 3D view.
+    Voxels,
+    /// Six cameras and the unrolled LiDAR sweep.
+    Sensors,
+    /// The chosen box from three sides, beside bird's-eye and 3D view.
+    Label,
+}
+
+impl Workspace {
+    /// Every workspace with its name.
+    pub const ALL: [(Workspace, &'static str); 5] = [
+        (Workspace::Edit, "Edit"),
+        (Workspace::Paint, "Paint"),
+        (Workspace::Voxels, "Voxels"),
+        (Workspace::Sensors, "Sensors"),
+        (Workspace::Label, "Label"),
+    ];
+}
+
+/// Which way a pane is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Split {
+    /// The new pane stands to the right.
+    Right,
+    /// The new pane stands below.
+    Down,
+}
+
+/// The panes of the window.
+#[derive(Clone, PartialEq)]
+pub struct Dock {
+    pub(super) tree: Tree<Pane>,
+    /// Alone on screen, if any.
+    pub(super) maximized: Option<TileId>,
+}
+
+impl Default for Dock {
+    fn default() -> Self {
+        Self::workspace(Workspace::Edit)
+    }
+}
+
+impl Dock {
+    /// A ready-made arrangement.
+    pub fn workspace(workspace: Workspace) -> Self {
+        use LinearDir::{Horizontal, Vertical};
+        let mut t = Tiles::default();
+        let root = match workspace {
+            Workspace::Edit => {
+                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let strip = t.insert_pane(Pane::Cameras);
+                let center = join(&mut t, Vertical, &[(views, 700.0), (strip, 150.0)]);
+                framed(&mut t, center)
+            }
+            Workspace::Paint => {
+                let (bev, view, strip) = (
+                    t.insert_pane(Pane::Bev),
+                    t.insert_pane(Pane::View3d),
+                    t.insert_pane(Pane::Camera(0)),
+                );
+                let side = join(&mut t, Vertical, &[(view, 1.0), (strip, 1.0)]);
+                let center = join(&mut t, Horizontal, &[(bev, 2.0), (side, 1.0)]);
+                framed(&mut t, center)
+            }
+            Workspace::Voxels => {
+                let (bev, view, boxes) = (
+                    t.insert_pane(Pane::Bev),
+                    t.insert_pane(Pane::View3d),
+                    t.insert_pane(Pane::BoxViews),
+                );
+                let side = join(&mut t, Vertical, &[(bev, 1.0), (boxes, 1.0)]);
+                let center = join(&mut t, Horizontal, &[(view, 2.2), (side, 1.0)]);
+                framed(&mut t, center)
+            }
+            Workspace::Sensors => {
+                let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // in the order of the rig: forward, then back
+                    .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (Pane::Camera(c), 1.0))))
+                    .to_vec();
+                let sweep = t.insert_pane(Pane::Lidar);
+                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.55)]);
+                join(&mut t, Horizontal, &[(cameras, 1.5), (views, 1.0)])
+            }
+            Workspace::Label => {
+                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let boxes = t.insert_pane(Pane::BoxViews);
+                let strip = t.insert_pane(Pane::Cameras);
+                let center = join(
+                    &mut t,
+                    Vertical,
+                    &[(views, 440.0), (boxes, 240.0), (strip, 150.0)],
+                );
+                framed(&mut t, center)
+            }
+        };
+        Self {
+            tree: Tree::new(egui::Id::unique("dock"), root, t),
+            maximized: None,
+        }
+    }
+
+    /// From what was kept of an earlier session; none if it is not sound: empty, or a pane twice.
+    pub fn from_kept(tree: Tree<Pane>) -> Option<Self> {
+        let dock = Self {
+            tree,
+            maximized: None,
+        };
+        let panes: Vec<Pane> = dock.all().map(|(_, pane)| pane).collect();
+        let distinct: HashSet<Pane> = panes.iter().copied().collect();
+        (!panes.is_empty() && distinct.len() == panes.len() && dock.tree.root.is_some()).then_some(dock)
+    }
+
+    /// The tree, to be kept.
+    pub fn tree(&self) -> &Tree<Pane> {
+        &self.tree
+    }
+
+    fn all(&self) -> impl Iterator<Item = (TileId, Pane)> + '_ {
+        let pane = |(id, tile): (&TileId, &Tile<Pane>)| match tile {
+            Tile::Pane(pane) => Some((*id, *pane)),
+            Tile::Container(_) => None,
+        };
+        self.tree.tiles.iter().filter_map(pane)
+    }
+
+    /// The tile that holds a pane.
+    pub fn find(&self, pane: Pane) -> Option<TileId> {
+        self.all().find(|(_, p)| *p == pane).map(|(id, _)| id)
+    }
+
+    /// True if the pane is on screen: not behind another tab, nor behind a maximized pane.
+    pub fn is_shown(&self, pane: Pane) -> bool {
+        self.find(pane).is_some_and(|id| match self.maximized {
+            Some(large) => large == id,
+            None => self.tree.active_tiles().contains(&id),
+        })
+    }
+
+    /// Puts a pane into a tile. If it stands elsewhere the two change places.
+    pub fn put(&mut self, tile: TileId, pane: Pane) {
+        let other = self.find(pane).filter(|id| *id != tile);
+        let Some(Tile::Pane(here)) = self.tree.tiles.get_mut(tile) else {
+            return;
+        };
+        let before = std::mem::replace(here, pane);
+        if let Some(Tile::Pane(there)) = other.and_then(|id| self.tree.tiles.get_mut(id)) {
+            *there = before;
+        }
+    }
+
+    /// Lets two panes change places; one that is not there takes the other's place.
+    pub fn swap(&mut self, a: Pane, b: Pane) {
+        match (self.find(a), self.find(b)) {
+            (Some(tile), _) => self.put(tile, b),
+            (None, Some(tile)) => self.put(tile, a),
+            (None, None) => {}
+        }
+    }
+
+    /// Divides a tile; the new half shows a pane that is nowhere else.
+    pub fn split(&mut self, tile: TileId, split: Split, pane: Pane) {
+        if self.find(pane).is_some() {
+            return;
+        }
+        let dir = match split {
+            Split::Right => LinearDir::Horizontal,
+            Split::Down => LinearDir::Vertical,
+        };
+        let tiles = &mut self.tree.tiles;
+        let parent = tiles.parent_of(tile);
+        let new = tiles.insert_pane(pane);
+        let both = tiles.insert_container(Linear::new(dir, vec![tile, new]));
+        match parent {
+            Some(parent) => {
+                if let Some(Tile::Container(container)) = tiles.get_mut(parent) {
+                    let _was_there = container.replace_child(tile, both);
+                }
+            }
+            None => self.tree.root = Some(both),
+        }
+        self.maximized = None;
+    }
+
+    /// Takes a pane off the screen; the last one stays.
+    pub fn close(&mut self, tile: TileId) {
+        if self.all().count() > 1 {
+            self.tree.remove_recursively(tile);
+            self.maximized = None;
+        }
+    }
+
+    /// Brings a pane to the front, or opens it below the largest view.
+    pub fn open(&mut self, pane: Pane) {
+        self.maximized = None;
+        if self.find(pane).is_some() {
+            self.tree
+                .make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));
+            return;
+        }
+        let beside = [Pane::View3d, Pane::Bev, Pane::Cameras]
+            .into_iter()
+            .find_map(|p| self.find(p));
+        if let Some(tile) = beside.or_else(|| self.all().next().map(|(id, _)| id)) {
+            self.split(tile, Split::Down, pane);
+        }
+    }
+
+    /// Shows a tile alone, or all of them again.
+    pub fn toggle_maximized(&mut self, tile: TileId) {
+        self.maximized = (self.maximized != Some(tile)).then_some(tile);
+    }
+
+    /// A pane of this list that is nowhere yet.
+    pub fn first_absent(&self) -> Option<Pane> {
+        Pane::CHOICES.into_iter().find(|p| self.find(*p).is_none())
+    }
+}
+
+fn row<const N: usize>(tiles: &mut Tiles<Pane>, dir: LinearDir, panes: &[(Pane, f32); N]) -> TileId {
+    let ids = panes.map(|(pane, share)| (tiles.insert_pane(pane), share));
+    join(tiles, dir, &ids)
+}
+
+fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> TileId {
+    let mut linear = Linear::new(dir, parts.iter().map(|(id, _)| *id).collect());
+    for (id, share) in parts {
+        linear.shares.set_share(*id, *share);
+    }
+    tiles.insert_container(Container::Linear(linear))
+}
+
+/// Tools on the left and objects on the right of what stands in the middle.
+fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
+    let tools = tiles.insert_pane(Pane::Tools);
+    let objects = tiles.insert_pane(Pane::Objects);
+    let parts = [(tools, 232.0), (center, 1100.0), (objects, 268.0)];
+    join(tiles, LinearDir::Horizontal, &parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn workspaces_hold_each_pane_once_and_survive_being_kept() {
+        for (workspace, name) in Workspace::ALL {
+            let dock = Dock::workspace(workspace);
+            let text = serde_json::to_string(dock.tree()).expect("plain data");
+            let back = serde_json::from_str(&text).expect("the same");
+            assert!(Dock::from_kept(back) == Some(dock), "{name}");
+        }
+        let mut twice = Dock::default();
+        let tile = twice.find(Pane::Bev).expect("there");
+        twice.tree.tiles.insert(tile, Tile::Pane(Pane::View3d));
+        assert!(Dock::from_kept(twice.tree).is_none());
+    }
+
+    #[test]
+    fn panes_change_places_split_and_close() {
+        let mut dock = Dock::default();
+        let (bev, view) = (dock.find(Pane::Bev), dock.find(Pane::View3d));
+        dock.swap(Pane::Bev, Pane::View3d);
+        assert_eq!((dock.find(Pane::View3d), dock.find(Pane::Bev)), (bev, view));
+        assert!(!dock.is_shown(Pane::Lidar));
+        dock.open(Pane::Lidar);
+        assert!(dock.is_shown(Pane::Lidar));
+        let sweep = dock.find(Pane::Lidar).expect("opened");
+        dock.toggle_maximized(sweep);
+        assert!(dock.is_shown(Pane::Lidar) && !dock.is_shown(Pane::Bev));
+        dock.close(sweep);
+        assert!(dock.is_shown(Pane::Bev) && dock.find(Pane::Lidar).is_none());
+        for pane in [Pane::Tools, Pane::Objects, Pane::Cameras, Pane::Bev, Pane::View3d] {
+            let tile = dock.find(pane).expect("still there");
+            dock.close(tile);
+        }
+        assert!(dock.find(Pane::View3d).is_some(), "the last pane stays");
+    }
+}

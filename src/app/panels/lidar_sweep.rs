@@ -1,0 +1,118 @@
+//! The newest sweep unrolled: azimuth from left to right as the driver sees it, beams from top to bottom.
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Color32, ColorImage, Rect, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2};
+use glam::DVec3;
+
+use crate::app::state::UiState;
+use crate::app::theme;
+use crate::scene::{LidarSweep, Scene};
+use crate::viewport::{LidarColorMode, lidar_colors};
+
+/// Columns of the picture.
+const COLUMNS: usize = 1080;
+
+/// The picture and what it was made from.
+#[derive(Default)]
+pub struct SweepPane {
+    texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
+}
+
+impl SweepPane {
+    /// Draws the sweep into all the space there is.
+    pub fn show(&mut self, ui: &mut Ui, scene: &Scene, sweep: Option<&Arc<LidarSweep>>, state: &mut UiState) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "LiDAR sweep"));
+        ui.painter().rect_filled(rect, 0.0, theme::well());
+        let (Some(sweep), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
+            let text = "This vehicle has no LiDAR. Sensors… adds one.";
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let painter = ui.painter();
+            painter.text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                text,
+                font,
+                theme::text_weak(),
+            );
+            return;
+        };
+        let rings = lidar.elevations_deg.len().max(1);
+        let mount = DVec3::from_array(lidar.translation_m);
+        let mode = state.lidar_colors;
+        let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
+            Arc::ptr_eq(of, sweep) && *m == mode && *n == rings
+        };
+        if !self.texture.as_ref().is_some_and(known) {
+            let image = picture(sweep, mode, rings, mount);
+            let options = TextureOptions::NEAREST;
+            let handle = ui.ctx().load_texture("sweep", image, options);
+            self.texture = Some((sweep.clone(), mode, rings, handle));
+        }
+        let Some((.., handle)) = &self.texture else { return };
+        let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        ui.painter().image(handle.id(), rect, unit, Color32::WHITE);
+        if let Some(p) = response.hover_pos() {
+            let part = (p - rect.min) / rect.size();
+            let azimuth_deg = 180.0 - f64::from(part.x) * 360.0;
+            let ring = (f64::from(1.0 - part.y) * rings as f64) as usize;
+            let near = nearest(sweep, mount, ring.min(rings - 1), azimuth_deg);
+            state.readout = match near {
+                Some((range_m, class)) => {
+                    format!("azimuth {azimuth_deg:.0}°  ·  beam {ring}  ·  {range_m:.2} m  ·  {class}")
+                }
+                None => format!("azimuth {azimuth_deg:.0}°  ·  beam {ring}  ·  no return"),
+            };
+        }
+    }
+}
+
+/// Azimuth of a return as seen from the sensor, degrees, counter-clockwise from forward.
+fn azimuth_deg(p_in_ego: [f32; 3], mount: DVec3) -> f64 {
+    let d = DVec3::from_array(p_in_ego.map(f64::from)) - mount;
+    d.y.atan2(d.x).to_degrees()
+}
+
+fn column(azimuth_deg: f64) -> usize {
+    (((180.0 - azimuth_deg) / 360.0 * COLUMNS as f64) as usize).min(COLUMNS - 1)
+}
+
+fn picture(sweep: &LidarSweep, mode: LidarColorMode, rings: usize, mount: DVec3) -> ColorImage {
+    let mut image = ColorImage::filled([COLUMNS, rings], theme::well());
+    for (point, [r, g, b, _]) in sweep.points.iter().zip(lidar_colors(sweep, mode)) {
+        let ring = usize::from(point.ring);
+        if ring < rings {
+            let x = column(azimuth_deg(point.position_in_ego, mount));
+            image[(x, rings - 1 - ring)] = Color32::from_rgb(r, g, b);
+        }
+    }
+    image
+}
+
+/// Range and class of the return of a beam that is nearest to an azimuth, within a degree.
+fn nearest(sweep: &LidarSweep, mount: DVec3, ring: usize, at_deg: f64) -> Option<(f64, String)> {
+    let off = |p: [f32; 3]| (azimuth_deg(p, mount) - at_deg).abs();
+    let found = sweep
+        .points
+        .iter()
+        .filter(|p| usize::from(p.ring) == ring)
+        .min_by(|a, b| off(a.position_in_ego).total_cmp(&off(b.position_in_ego)))?;
+    (off(found.position_in_ego) <= 1.0).then(|| (f64::from(found.range_m), found.class.label()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sweep_is_unrolled_as_the_driver_sees_it() {
+        let mount = DVec3::new(1.0, 0.0, 1.8);
+        let at = |x: f32, y: f32| column(azimuth_deg([x, y, 0.0], mount));
+        assert_eq!(at(11.0, 0.0), COLUMNS / 2, "forward is in the middle");
+        assert_eq!(at(1.0, 10.0), COLUMNS / 4, "left is left");
+        assert_eq!(at(1.0, -10.0), COLUMNS * 3 / 4, "right is right");
+    }
+}

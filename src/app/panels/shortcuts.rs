@@ -1,0 +1,170 @@
+//! The sheet of keys: searched, changed by a click and a press, with presets.
+
+use egui::{Id, Key, Modal, Ui, vec2};
+
+use crate::app::actions::{ACTIONS, ActionDef, Group, When};
+use crate::app::keymap::{Chord, Chords, Keymap, PRESETS};
+use crate::app::theme;
+
+/// What no preset changes: the pointer, and keys that go with it.
+const FIXED: [(&str, &str); 8] = [
+    ("Middle drag", "Orbit; pan in the bird's-eye view"),
+    ("Shift+middle, Space+left", "Pan"),
+    ("Wheel", "Zoom to the pointer"),
+    ("Ctrl+wheel", "Brush size"),
+    ("Hold right + WASD QE", "Fly (Shift fast, Alt slow)"),
+    ("Arrows, PgUp PgDn", "Nudge 0.1 m (Shift 1 m, Ctrl 0.01 m)"),
+    ("Ctrl + − 0", "Larger, smaller, normal size of everything"),
+    ("Double click on a header", "Maximize the pane"),
+];
+
+/// What is typed, and the action whose chord is awaited.
+#[derive(Clone, Debug, Default)]
+pub struct Shortcuts {
+    query: String,
+    awaiting: Option<&'static str>,
+}
+
+impl Shortcuts {
+    /// Draws the sheet while it is open.
+    pub fn show(&mut self, ui: &Ui, keymap: &mut Keymap, open: &mut bool) {
+        if !*open {
+            return;
+        }
+        self.take_chord(ui, keymap);
+        let modal = Modal::new(Id::unique("keys")).frame(theme::dialog_frame(ui.style()));
+        let shown = modal.show(ui.ctx(), |ui| {
+            let room = ui.ctx().content_rect().size();
+            ui.set_width((room.x - 80.0).min(940.0));
+            self.head(ui, keymap);
+            ui.add_space(theme::GAP);
+            egui::ScrollArea::vertical()
+                .max_height(room.y - 190.0)
+                .show(ui, |ui| {
+                    ui.columns_const(|[left, right]: &mut [Ui; 2]| {
+                        for (i, (group, title)) in Group::ALL.into_iter().enumerate() {
+                            let column = if i == 0 || i == 2 { &mut *left } else { &mut *right };
+                            self.group(column, group, title, keymap);
+                        }
+                        self.fixed(right);
+                    });
+                });
+        });
+        let toggled = self.awaiting.is_none() && ui.input(|i| i.key_pressed(Key::F1));
+        if self.awaiting.is_none() && (shown.should_close() || toggled) {
+            *open = false;
+        }
+    }
+
+    fn head(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+        ui.horizontal(|ui| {
+            ui.heading("Keys");
+            ui.add_space(theme::GAP);
+            let search = egui::TextEdit::singleline(&mut self.query)
+                .hint_text("Search")
+                .desired_width(200.0);
+            ui.add(search);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let changed = !keymap.own.is_empty();
+                if ui.add_enabled(changed, egui::Button::new("Reset mine")).clicked() {
+                    keymap.reset();
+                }
+                let mut preset = keymap.preset.clone();
+                egui::ComboBox::from_id_salt("key preset")
+                    .selected_text(preset.as_str())
+                    .show_ui(ui, |ui| {
+                        for (name, _) in PRESETS {
+                            ui.selectable_value(&mut preset, name.to_owned(), name);
+                        }
+                    });
+                ui.label(egui::RichText::new("Preset").color(theme::text_weak()));
+                if preset != keymap.preset {
+                    *keymap = Keymap::new(&preset, Chords::new());
+                }
+            });
+        });
+        let text = match self.awaiting {
+            Some(_) => "Press the new chord. Esc leaves it as it was.",
+            None => "Click a chord to change it.",
+        };
+        ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+    }
+
+    fn group(&mut self, ui: &mut Ui, group: Group, title: &str, keymap: &Keymap) {
+        let wanted = self.query.to_lowercase();
+        let fits = |a: &&ActionDef| {
+            let text = format!("{} {}", a.title, keymap.text(a.id)).to_lowercase();
+            a.group == group && text.contains(&wanted)
+        };
+        let actions: Vec<&'static ActionDef> = ACTIONS.iter().filter(fits).collect();
+        if actions.is_empty() {
+            return;
+        }
+        crate::app::icons::section(ui, title);
+        for action in actions {
+            ui.horizontal(|ui| {
+                let chords = keymap.text(action.id);
+                let text = match (self.awaiting == Some(action.id), chords.is_empty()) {
+                    (true, _) => "press…".to_owned(),
+                    (false, true) => "–".to_owned(),
+                    (false, false) => chords,
+                };
+                let color = if self.awaiting == Some(action.id) {
+                    theme::accent()
+                } else {
+                    theme::text_strong()
+                };
+                let button =
+                    egui::Button::new(egui::RichText::new(text).color(color)).min_size(vec2(150.0, 20.0));
+                if ui.add(button).clicked() {
+                    self.awaiting = Some(action.id);
+                }
+                let place = match action.when {
+                    When::Always => "",
+                    When::Over3d => "  (3D)",
+                    When::Chosen => "  (box chosen)",
+                };
+                let title = format!("{}{place}", action.title);
+                ui.label(egui::RichText::new(title).color(theme::text_weak()));
+            });
+        }
+    }
+
+    fn fixed(&self, ui: &mut Ui) {
+        let wanted = self.query.to_lowercase();
+        let fits = |(keys, what): &&(&str, &str)| format!("{keys} {what}").to_lowercase().contains(&wanted);
+        let rows: Vec<_> = FIXED.iter().filter(fits).collect();
+        if rows.is_empty() {
+            return;
+        }
+        crate::app::icons::section(ui, "Pointer");
+        for (keys, what) in rows {
+            ui.horizontal(|ui| {
+                ui.scope(|ui| {
+                    ui.set_width(158.0);
+                    ui.label(egui::RichText::new(*keys).color(theme::text_strong()));
+                });
+                ui.label(egui::RichText::new(*what).color(theme::text_weak()));
+            });
+        }
+    }
+
+    fn take_chord(&mut self, ui: &Ui, keymap: &mut Keymap) {
+        let Some(id) = self.awaiting else { return };
+        let pressed = ui.input_mut(|i| {
+            let at = i
+                .events
+                .iter()
+                .position(|e| matches!(e, egui::Event::Key { pressed: true, .. }))?;
+            match i.events.remove(at) {
+                egui::Event::Key { key, modifiers, .. } => Some((key, modifiers)),
+                _ => None,
+            }
+        });
+        let Some((key, modifiers)) = pressed else { return };
+        self.awaiting = None;
+        if key != Key::Escape {
+            keymap.rebind(id, Chord::pressed(key, modifiers));
+        }
+    }
+}
