@@ -278,6 +278,9 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Views, "pane_box_views", "Show the box views", "", |_| {
         Some(Command::ShowPane(Pane::BoxViews))
     }),
+    action(Views, "pane_versions", "Show the versions", "", |_| {
+        Some(Command::ShowPane(Pane::Versions))
+    }),
     action(Views, "pane_cameras", "Show the cameras", "", |_| {
         Some(Command::ShowPane(Pane::Cameras))
     }),
@@ -304,6 +307,23 @@ pub const ACTIONS: &[ActionDef] = &[
     }),
     action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
         Some(Command::CancelGeneration)
+    }),
+    action(
+        Generation,
+        "compare",
+        "Compare: off, wipe, side, difference",
+        "Shift+Backslash",
+        |_| Some(Command::CycleCompare),
+    ),
+    action(
+        Generation,
+        "previous_version",
+        "Previous version",
+        "Ctrl+[",
+        |_| Some(Command::StepVersion(-1)),
+    ),
+    action(Generation, "next_version", "Next version", "Ctrl+]", |_| {
+        Some(Command::StepVersion(1))
     }),
     action(
         Generation,

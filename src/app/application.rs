@@ -16,8 +16,9 @@ use crate::generation::worker::GenWorker;
 use crate::scene::{Scene, SceneRev};
 
 use super::camera_views::Wanted;
-use super::canvas::{Canvas, CanvasInput};
+use super::canvas::Canvas;
 use super::command::Command;
+use super::compare::Compare;
 use super::dock::Dock;
 use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
@@ -26,11 +27,8 @@ use super::live::{Advice, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
 use super::panels::dialogs::{self, Unsaved};
-use super::panels::layers::layers_ui;
 use super::panels::lidar_sweep::SweepPane;
-use super::panels::objects::objects_ui;
 use super::panels::palette::Palette;
-use super::panels::panes;
 use super::panels::sensors::sensors_ui;
 use super::panels::settings::settings_ui;
 use super::panels::shortcuts::Shortcuts;
@@ -42,7 +40,8 @@ use super::sensing::Sensing;
 use super::settings::Settings;
 use super::state::{Pane, UiState};
 use super::theme;
-use super::view3d::{View3d, View3dInput};
+use super::versions::Versions;
+use super::view3d::View3d;
 
 /// Reads a scene from a file of any kind that can be opened.
 pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;
@@ -135,11 +134,15 @@ pub struct SceneloomApp {
     pub(super) io: (OpenScene, SaveScene, NewScene),
     pub(super) clock: Instant,
     gate: UpdateGate,
-    sensing: Sensing,
-    strip: CameraStrip,
-    sweep: SweepPane,
-    box_views: BoxViewsPane,
+    pub(super) sensing: Sensing,
+    pub(super) strip: CameraStrip,
+    pub(super) sweep: SweepPane,
+    pub(super) box_views: BoxViewsPane,
     pub(super) dock: Dock,
+    /// What was generated so far.
+    pub versions: Versions,
+    pub(super) compare: Compare,
+    pub(super) render_state: Option<egui_wgpu::RenderState>,
     pub(super) palette: Palette,
     /// What is kept between sessions.
     pub settings: Settings,
@@ -153,7 +156,7 @@ pub struct SceneloomApp {
     center: Rect,
     passes: u32,
     ctx: egui::Context,
-    unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
+    pub(super) unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
 }
 
 impl SceneloomApp {
@@ -182,7 +185,9 @@ impl SceneloomApp {
             ..UiState::default()
         };
         // On a software rasteriser a frame costs the time of a step of generation: fewer of them then.
-        let view3d = View3d::new(render_state);
+        let view3d = View3d::new(render_state.clone());
+        let mut versions = Versions::default();
+        versions.push("As opened".into(), String::new(), Arc::new(config.scene.clone()));
         let wake = waker(ctx, if view3d.is_software() { 0.15 } else { 0.015 });
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
@@ -215,6 +220,9 @@ impl SceneloomApp {
                 .unwrap_or_default(),
             keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
             palette: Palette::default(),
+            versions,
+            compare: Compare::default(),
+            render_state,
             shortcuts: Shortcuts::default(),
             kept: (config.settings_file, settings.clone(), 0.0),
             settings,
@@ -251,6 +259,9 @@ impl SceneloomApp {
 
     /// The document's scene, or a preview of its generation.
     fn shown_scene(&self) -> Arc<Scene> {
+        if let (true, Some(before)) = (self.state.holding_before, &self.compare.before) {
+            return before.clone();
+        }
         match &self.preview {
             Some((rev, scene)) if *rev == self.document.scene().rev => scene.clone(),
             _ => self.document.scene().clone(),
@@ -417,8 +428,13 @@ impl SceneloomApp {
             .is_ok()
         {
             let now_s = self.now_s();
-            if let Some(receipt) = &self.receipt {
-                self.toasts.log(receipt.text(), now_s);
+            let note = self.receipt.as_ref().map_or_else(String::new, Receipt::text);
+            let label = self.document.undo_label().unwrap_or("Generated");
+            let scene = self.document.settled_scene().clone();
+            self.versions.push(label.to_owned(), note.clone(), scene);
+            self.compare.chosen = None;
+            if self.receipt.is_some() {
+                self.toasts.log(note, now_s);
             }
             for note in &result.report.notes {
                 self.toasts.log(note.clone(), now_s);
@@ -449,6 +465,10 @@ impl SceneloomApp {
                     self.toasts.log(format!("Opened {}", scene.name), now_s);
                 }
                 self.document = Document::new(scene);
+                self.versions.clear();
+                let opened = self.document.settled_scene().clone();
+                self.versions.push("As opened".into(), String::new(), opened);
+                self.compare.chosen = None;
                 if let Some(path) = &opening.path {
                     self.settings.remember(path);
                 }
@@ -479,6 +499,7 @@ impl SceneloomApp {
         self.passes = self.passes.saturating_add(1);
         let mut commands = Vec::new();
         self.take_window_events(ui.ctx(), &mut commands);
+        self.prepare_compare(ui);
         let scene = self.shown_scene();
         self.bars(ui, &scene, &mut commands);
         self.views(ui, &scene, &mut commands);
@@ -557,80 +578,6 @@ impl SceneloomApp {
         self.live.named = self.state.named;
     }
 
-    /// What the header of a pane offers, from right to left.
-    pub(super) fn pane_controls(
-        &mut self,
-        ui: &mut Ui,
-        pane: Pane,
-        scene: &Arc<Scene>,
-        commands: &mut Vec<Command>,
-    ) {
-        match pane {
-            Pane::Bev => panes::bev_controls(ui, &mut self.state),
-            Pane::View3d => panes::view3d_controls(ui, &mut self.view3d.options, &mut self.state, commands),
-            Pane::Lidar => panes::lidar_controls(ui, &mut self.state),
-            Pane::Cameras => {
-                let rev = self.document.scene().rev;
-                let cameras = cameras_input(scene, rev, &self.sensing);
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    self.strip.controls(ui, &cameras, &mut self.state, commands);
-                });
-            }
-            Pane::Camera(_) => panes::camera_controls(ui, &mut self.state),
-            _ => {}
-        }
-    }
-
-    /// Draws a pane below its header.
-    pub(super) fn pane(&mut self, ui: &mut Ui, pane: Pane, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        let area = ui.available_rect_before_wrap();
-        let rev = self.document.scene().rev;
-        match pane {
-            Pane::Bev => {
-                let input = CanvasInput {
-                    scene,
-                    lidar: self.sensing.lidar().map(|l| &**l),
-                    unsettled: self.unsettled,
-                    generating: self.live.running.is_some(),
-                };
-                self.canvas.show(ui, &input, &mut self.state, commands);
-            }
-            Pane::View3d => {
-                let input = View3dInput {
-                    scene,
-                    settled: self.document.settled_scene(),
-                    lidar: self.sensing.lidar(),
-                    dragging: self.document.is_dragging(),
-                };
-                self.view3d.show(ui, &input, &mut self.state, commands);
-            }
-            Pane::Cameras | Pane::Camera(_) => {
-                let cameras = cameras_input(scene, rev, &self.sensing);
-                egui::Frame::new()
-                    .inner_margin(egui::Margin::symmetric(8, 2))
-                    .show(ui, |ui| match pane {
-                        Pane::Camera(i) => self.strip.single(ui, i, &cameras, &mut self.state, commands),
-                        _ => self.strip.show(ui, &cameras, &mut self.state, commands),
-                    });
-            }
-            Pane::Lidar => self.sweep.show(ui, scene, self.sensing.lidar(), &mut self.state),
-            Pane::BoxViews => {
-                let sweep = self.sensing.lidar().map(|l| &**l);
-                self.box_views.show(ui, scene, sweep, &self.state, commands);
-            }
-            Pane::Tools => {
-                let frame = self.document.scene().frame();
-                theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, &mut self.state, commands));
-            }
-            Pane::Objects => {
-                theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
-            }
-        }
-        if ui.rect_contains_pointer(area) {
-            self.state.hovered_pane = Some(pane);
-        }
-    }
-
     fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
         let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
@@ -693,7 +640,7 @@ fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync +
     }
 }
 
-fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> CamerasInput<'a> {
+pub(super) fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> CamerasInput<'a> {
     CamerasInput {
         scene,
         views: sensing.cameras(),

@@ -21,7 +21,7 @@ pub const DRAW_ORDER: [BevLayer; 8] = [
 pub const SIZE: [usize; 2] = [GridSpec::NY, GridSpec::NX];
 
 /// Column under a pixel: rows run against ego x, columns against ego y, so that forward is up.
-fn column_of(pixel: usize) -> (usize, usize) {
+pub(super) fn column_of(pixel: usize) -> (usize, usize) {
     let (row, col) = (pixel / GridSpec::NY, pixel % GridSpec::NY);
     (GridSpec::NX - 1 - row, GridSpec::NY - 1 - col)
 }

@@ -131,6 +131,23 @@ impl Canvas {
         response
     }
 
+    /// Draws the view into `rect` as `map` says, without answering the pointer.
+    pub(super) fn still(&mut self, ui: &Ui, rect: Rect, map: &ScreenMap, scene: &Scene, state: &UiState) {
+        let response = ui.interact(rect, ui.scope_id().with("still"), Sense::empty());
+        let input = CanvasInput {
+            scene,
+            lidar: None,
+            unsettled: None,
+            generating: false,
+        };
+        let state = UiState {
+            tool: Tool::Select,
+            ..state.clone()
+        };
+        let map = ScreenMap { rect, ..*map };
+        self.draw(ui, &response, &map, &input, &state);
+    }
+
     /// Fits the whole grid into a pane.
     pub fn frame_all(&mut self, rect: Rect) {
         let side = f64::from(rect.width().min(rect.height()).max(80.0));

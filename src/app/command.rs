@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use crate::editor::Edit;
-use crate::scene::{BoxId, Class};
+use crate::scene::{BoxId, Class, SceneRev};
 use crate::viewport::ViewPreset;
 
 use super::dock::Workspace;
@@ -63,6 +63,14 @@ pub enum Command {
     },
     /// Stops the generation that runs.
     CancelGeneration,
+    /// Compares with the version of that state.
+    CompareWith(SceneRev),
+    /// Goes back (or forward) to the version of that state, as an undo step.
+    RestoreVersion(SceneRev),
+    /// Goes to the next (1) or previous (-1) version.
+    StepVersion(i32),
+    /// The next way to compare.
+    CycleCompare,
     /// Switches generation after each edit on or off.
     ToggleLive,
     /// What was inferred on import is marked as a guess no more.

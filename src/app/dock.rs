@@ -251,8 +251,9 @@ fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> Til
 /// Tools on the left and objects on the right of what stands in the middle.
 fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     let tools = tiles.insert_pane(Pane::Tools);
-    let objects = tiles.insert_pane(Pane::Objects);
-    let parts = [(tools, 232.0), (center, 1100.0), (objects, 268.0)];
+    let column = [(Pane::Objects, 2.0), (Pane::Versions, 1.0)];
+    let column = row(tiles, LinearDir::Vertical, &column);
+    let parts = [(tools, 232.0), (center, 1100.0), (column, 268.0)];
     join(tiles, LinearDir::Horizontal, &parts)
 }
 
@@ -288,7 +289,14 @@ mod tests {
         assert!(dock.is_shown(Pane::Lidar) && !dock.is_shown(Pane::Bev));
         dock.close(sweep);
         assert!(dock.is_shown(Pane::Bev) && dock.find(Pane::Lidar).is_none());
-        for pane in [Pane::Tools, Pane::Objects, Pane::Cameras, Pane::Bev, Pane::View3d] {
+        for pane in [
+            Pane::Tools,
+            Pane::Objects,
+            Pane::Versions,
+            Pane::Cameras,
+            Pane::Bev,
+            Pane::View3d,
+        ] {
             let tile = dock.find(pane).expect("still there");
             dock.close(tile);
         }

@@ -11,6 +11,7 @@ use crate::scene::SceneBox;
 use super::application::{Next, Opening, SceneloomApp, one_line};
 use super::canvas_tools::new_box;
 use super::command::Command;
+use super::compare::CompareMode;
 use super::dock::Dock;
 use super::file_dialogs::Purpose;
 use super::open;
@@ -77,6 +78,26 @@ impl SceneloomApp {
                     self.toasts.push(Level::Info, "Generation cancelled", now_s);
                 }
             }
+            Command::CompareWith(rev) => {
+                let version = self.versions.of(rev).map(|i| &self.versions.list()[i]);
+                self.compare.chosen = version.map(|v| v.scene.clone());
+                if self.state.compare == CompareMode::Off {
+                    self.state.compare = CompareMode::Wipe;
+                }
+            }
+            Command::RestoreVersion(rev) => {
+                if let Some(i) = self.versions.of(rev) {
+                    let scene = self.versions.list()[i].scene.clone();
+                    self.restore(&scene);
+                }
+            }
+            Command::StepVersion(step) => {
+                let rev = self.document.settled_scene().rev;
+                if let Some(scene) = self.versions.neighbour(rev, step).cloned() {
+                    self.restore(&scene);
+                }
+            }
+            Command::CycleCompare => self.state.compare = self.state.compare.next(),
             Command::ToggleLive => {
                 self.live.on = !self.live.on;
                 self.live.forget_asked();
@@ -151,6 +172,14 @@ impl SceneloomApp {
         // A box that an edit or undo took away is not selected any more.
         let boxes = &self.document.scene().frame().boxes;
         self.state.selected = self.state.selected.filter(|id| boxes.contains_key(id));
+    }
+
+    /// A version becomes the present state; its result is there already.
+    fn restore(&mut self, scene: &crate::scene::Scene) {
+        self.worker.cancel();
+        self.document.restore("Go to version", scene);
+        self.live.source_changed();
+        self.compare.chosen = None;
     }
 
     fn fail(&mut self, text: String) {

@@ -9,6 +9,8 @@ use crate::generation::job::Named;
 use crate::scene::{BevLayer, BoxId, Class};
 use crate::viewport::LidarColorMode;
 
+use super::compare::CompareMode;
+
 /// What the primary button does on a canvas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Tool {
@@ -70,6 +72,8 @@ pub enum Pane {
     Lidar,
     /// The chosen box from above, from its side and from behind.
     BoxViews,
+    /// What was generated so far.
+    Versions,
     /// Options of the tool in hand, map layers.
     Tools,
     /// The chosen box in numbers, all boxes, the history.
@@ -78,12 +82,13 @@ pub enum Pane {
 
 impl Pane {
     /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 13] = [
+    pub const CHOICES: [Pane; 14] = [
         Pane::Bev,
         Pane::View3d,
         Pane::Cameras,
         Pane::Lidar,
         Pane::BoxViews,
+        Pane::Versions,
         Pane::Tools,
         Pane::Objects,
         Pane::Camera(0),
@@ -103,6 +108,7 @@ impl Pane {
             Pane::Camera(i) => format!("Camera {}", i + 1),
             Pane::Lidar => "LiDAR sweep".into(),
             Pane::BoxViews => "Box views".into(),
+            Pane::Versions => "Versions".into(),
             Pane::Tools => "Tools".into(),
             Pane::Objects => "Objects".into(),
         }
@@ -219,6 +225,12 @@ pub struct UiState {
     pub cameras_hidden: u32,
     /// How the LiDAR sweep comes about.
     pub lidar_model: LidarModel,
+    /// How the present state is compared with the version before.
+    pub compare: CompareMode,
+    /// The key that shows the version before is held.
+    pub holding_before: bool,
+    /// Where the line of the wipe stands, 0 to 1.
+    pub wipe_at: f32,
     /// The sensors' window is open.
     pub sensors_open: bool,
     /// The sensor chosen in it.
@@ -328,6 +340,9 @@ impl Default for UiState {
             plane_m: 12.0,
             cameras_hidden: 0,
             lidar_model: LidarModel::default(),
+            compare: CompareMode::Off,
+            holding_before: false,
+            wipe_at: 0.5,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,

@@ -66,7 +66,12 @@ pub struct View3dInput<'a> {
     pub lidar: Option<&'a Arc<LidarSweep>>,
     /// The user drags something, anywhere.
     pub dragging: bool,
+    /// Voxels that are marked.
+    pub marked: &'a [[usize; 3]],
 }
+
+/// Voxels that are marked at most; more would only hide each other.
+const MARKED: usize = 20_000;
 
 /// The pointer over the view.
 #[derive(Clone, Copy, Debug)]
@@ -154,6 +159,25 @@ impl View3d {
         }
         self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
         response
+    }
+
+    /// Draws the view as a picture into `rect`, without answering the pointer, from where `camera` stands.
+    pub(super) fn still(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        (camera, options): (&ViewCamera, &ViewOptions),
+        input: &View3dInput<'_>,
+        state: &UiState,
+    ) {
+        self.rect = rect;
+        self.pixels_per_point = ui.ctx().pixels_per_point();
+        self.camera = camera.clone();
+        self.options = options.clone();
+        if self.gpu.is_some() {
+            let now_s = ui.input(|i| i.time);
+            self.paint(ui, input, state, None, None, now_s);
+        }
     }
 
     /// True if pictures are made by the processor.
@@ -274,7 +298,11 @@ impl View3d {
         let size = self.size_px();
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar_colors);
-        let (cells, brush_color) = self.brush_cells(input, state, pointer, hit);
+        let (mut cells, mut brush_color) = self.brush_cells(input, state, pointer, hit);
+        if cells.is_empty() && !input.marked.is_empty() {
+            cells = input.marked[..input.marked.len().min(MARKED)].to_vec();
+            brush_color = [240, 180, 60];
+        }
         let ghost = self.ghost(input.scene, state, pointer, hit);
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.selected.into_iter().chain(ghost.map(|b| b.id)).collect();

@@ -182,6 +182,12 @@ impl Document {
         Ok(scene.rev)
     }
 
+    /// Shows a state that was kept elsewhere (a version), as an undo step; nothing if it is the one shown.
+    pub fn restore(&mut self, label: &'static str, scene: &Scene) {
+        self.drag = None;
+        self.push(label, scene.clone());
+    }
+
     /// Shows another frame of the clip; not an undo step. False if there is none. Cancels a drag.
     pub fn select_frame(&mut self, index: usize) -> bool {
         let step = &mut self.steps[self.at];

@@ -25,6 +25,8 @@ pub struct CameraStrip {
     made_from: Option<(Arc<Vec<CameraView>>, CameraMode, f64)>,
     probe: Option<(SceneRev, MarchScene)>,
     stale_since_s: Option<f64>,
+    /// Pictures of another state, shown up to this part of the width of each.
+    before: Option<(Vec<Option<TextureHandle>>, f32)>,
     looks_stale: bool,
 }
 
@@ -76,6 +78,22 @@ impl CameraStrip {
             let text = "No camera is shown. Sensors… adds and shows them.";
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
         }
+    }
+
+    /// The pictures as textures, brought up to date.
+    pub fn textures(
+        &mut self,
+        ui: &Ui,
+        input: &CamerasInput<'_>,
+        state: &UiState,
+    ) -> Vec<Option<TextureHandle>> {
+        self.refresh(ui, input.views, state);
+        self.textures.clone()
+    }
+
+    /// Shows these pictures of another state on the left of each, up to a part of its width; none: not at all.
+    pub fn wipe(&mut self, before: Option<(Vec<Option<TextureHandle>>, f32)>) {
+        self.before = before;
     }
 
     /// What the header of the strip offers.
@@ -216,6 +234,14 @@ impl CameraStrip {
                     theme::text_weak(),
                 );
             }
+        }
+        if let Some((before, part)) = &self.before
+            && let Some(texture) = before.get(index).and_then(Option::as_ref)
+        {
+            let left = Rect::from_min_size(rect.min, vec2(rect.width() * part, rect.height()));
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(*part, 1.0));
+            painter.image(texture.id(), left, uv, Color32::WHITE);
+            painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
         let chosen = state.inspected == Some(index);
         let edge = match (chosen, response.hovered()) {

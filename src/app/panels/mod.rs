@@ -17,3 +17,4 @@ pub mod start;
 pub mod status;
 pub mod toasts;
 pub mod toolbar;
+pub mod versions;

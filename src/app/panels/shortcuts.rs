@@ -7,7 +7,8 @@ use crate::app::keymap::{Chord, Chords, Keymap, PRESETS};
 use crate::app::theme;
 
 /// What no preset changes: the pointer, and keys that go with it.
-const FIXED: [(&str, &str); 8] = [
+const FIXED: [(&str, &str); 9] = [
+    ("Hold \\", "Show the version before, in every view"),
     ("Middle drag", "Orbit; pan in the bird's-eye view"),
     ("Shift+middle, Space+left", "Pan"),
     ("Wheel", "Zoom to the pointer"),

@@ -1,0 +1,252 @@
+//! Before and after: two states of the scene in every view at once, by holding a key, by a line that is dragged, side by
+//! side, or as what differs.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+use crate::scene::{GridSpec, Scene, SceneRev, VoxelGrid};
+
+use super::bev_image::{SIZE, column_of};
+use super::camera_views::Wanted;
+use super::canvas::Canvas;
+use super::panels::cameras::CameraStrip;
+use super::panels::lidar_sweep::SweepPane;
+use super::sensing::Sensing;
+use super::theme;
+use super::view3d::View3d;
+
+/// How two states are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CompareMode {
+    /// Only the present state is shown.
+    #[default]
+    Off,
+    /// Before on the left of a line, after on its right.
+    Wipe,
+    /// Before beside after.
+    Side,
+    /// Voxels that differ are marked.
+    Difference,
+}
+
+impl CompareMode {
+    /// Every mode with its name and what it does.
+    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
+        (CompareMode::Off, "Off", "only the present state"),
+        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
+        (CompareMode::Side, "Side", "before beside after"),
+        (CompareMode::Difference, "Diff", "voxels that differ"),
+    ];
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()].0
+    }
+}
+
+/// What differs between two grids.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Voxels that are there and were not.
+    pub added: usize,
+    /// Voxels that were there and are not.
+    pub removed: usize,
+    /// Voxels of another class.
+    pub changed: usize,
+    /// All of them, `[x, y, z]`.
+    pub cells: Vec<[usize; 3]>,
+}
+
+impl Difference {
+    /// Between two grids; columns that share their memory are passed over.
+    pub fn between(before: &VoxelGrid, after: &VoxelGrid) -> Self {
+        let mut out = Self::default();
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                let (a, b) = (before.column(x, y), after.column(x, y));
+                if a == b {
+                    continue;
+                }
+                for z in (0..GridSpec::NZ).filter(|z| a[*z] != b[*z]) {
+                    let free = crate::scene::Class::FREE;
+                    match (a[z] == free, b[z] == free) {
+                        (true, _) => out.added += 1,
+                        (_, true) => out.removed += 1,
+                        _ => out.changed += 1,
+                    }
+                    out.cells.push([x, y, z]);
+                }
+            }
+        }
+        out
+    }
+
+    /// In one line.
+    pub fn text(&self) -> String {
+        match self.cells.len() {
+            0 => "no voxel differs".into(),
+            _ => format!(
+                "{} voxels differ: {} added, {} removed, {} of another class",
+                self.cells.len(),
+                self.added,
+                self.removed,
+                self.changed
+            ),
+        }
+    }
+
+    /// From above: green where something came, red where something went, amber where only classes changed.
+    fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
+        let free = crate::scene::Class::FREE;
+        let pixel = |i: usize| {
+            let (x, y) = column_of(i);
+            let (a, b) = (before.column(x, y), after.column(x, y));
+            let any = |f: &dyn Fn(u8, u8) -> bool| a.iter().zip(b).any(|(a, b)| a != b && f(*a, *b));
+            if any(&|a, b| a != free && b == free) {
+                Color32::from_rgba_unmultiplied(235, 70, 60, 200)
+            } else if any(&|a, _| a == free) {
+                Color32::from_rgba_unmultiplied(70, 205, 110, 200)
+            } else if any(&|_, _| true) {
+                Color32::from_rgba_unmultiplied(240, 180, 60, 200)
+            } else {
+                Color32::TRANSPARENT
+            }
+        };
+        ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+    }
+}
+
+/// The other state, and its own copies of what draws it.
+#[derive(Default)]
+pub struct Compare {
+    /// What the user chose to compare with; none: the version before the present one.
+    pub chosen: Option<Arc<Scene>>,
+    /// The state compared with, while there is a comparison.
+    pub(super) before: Option<Arc<Scene>>,
+    pub(super) canvas: Canvas,
+    pub(super) view3d: Option<View3d>,
+    pub(super) strip: CameraStrip,
+    pub(super) sweep: SweepPane,
+    pub(super) sensing: Option<Sensing>,
+    difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
+}
+
+impl Compare {
+    /// Notes what to compare with and asks its sensors, or lets go of it.
+    pub(super) fn prepare(
+        &mut self,
+        before: Option<Arc<Scene>>,
+        wanted: Wanted,
+        senses: bool,
+        wake: impl Fn() + Send + 'static,
+    ) {
+        self.before = before;
+        let Some(scene) = &self.before else { return };
+        if !senses {
+            return;
+        }
+        if self.sensing.is_none() {
+            // Without a thread the cameras of the other state stay empty; the views do not need it.
+            self.sensing = Sensing::spawn(wake).ok();
+        }
+        if let Some(sensing) = &mut self.sensing {
+            sensing.ask(scene, wanted, false);
+            sensing.drain();
+        }
+    }
+
+    /// What differs from `after`, with a picture of it; none without a comparison.
+    pub(super) fn difference(&mut self, ui: &Ui, after: &Scene) -> Option<(&Difference, egui::TextureId)> {
+        let before = self.before.as_ref()?;
+        let known = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == before.rev && *b == after.rev;
+        if !self.difference.as_ref().is_some_and(known) {
+            let (a, b) = (&before.frame().occupancy, &after.frame().occupancy);
+            let image = Difference::image(a, b);
+            let texture = ui
+                .ctx()
+                .load_texture("difference", image, egui::TextureOptions::NEAREST);
+            let found = Difference::between(a, b);
+            self.difference = Some((before.rev, after.rev, found, texture));
+        }
+        self.difference
+            .as_ref()
+            .map(|(_, _, found, texture)| (found, texture.id()))
+    }
+}
+
+/// The line of the wipe over a view, which can be dragged; `at` runs from 0 to 1 across it.
+pub(super) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
+    let x = rect.left() + rect.width() * *at;
+    let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
+    let id = ui.scope_id().with("wipe");
+    let response = ui.interact(grip, id, Sense::drag());
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    if let (true, Some(p)) = (response.dragged(), response.interact_pointer_pos()) {
+        *at = ((p.x - rect.left()) / rect.width().max(1.0)).clamp(0.02, 0.98);
+    }
+    let painter = ui.painter_at(rect);
+    painter.vline(
+        x,
+        rect.y_range(),
+        Stroke::new(3.0, Color32::from_black_alpha(120)),
+    );
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+    painter.circle(
+        pos2(x, rect.center().y),
+        6.0,
+        theme::accent(),
+        Stroke::new(1.5, Color32::WHITE),
+    );
+    tag(ui, rect.left_top() + vec2(8.0, 8.0), "before", false);
+    tag(ui, rect.right_top() + vec2(-8.0, 8.0), "after", true);
+}
+
+/// A word in a corner of a view.
+pub(super) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(text.to_owned(), font, theme::ON_CANVAS);
+    let size = galley.size() + vec2(10.0, 4.0);
+    let min = if from_right { at - vec2(size.x, 0.0) } else { at };
+    let rect = Rect::from_min_size(min, size);
+    ui.painter()
+        .rect_filled(rect, 3.0, Color32::from_black_alpha(170));
+    ui.painter()
+        .galley(rect.min + vec2(5.0, 2.0), galley, theme::ON_CANVAS);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Class;
+
+    #[test]
+    fn differences_are_counted_by_kind() {
+        let mut before = VoxelGrid::new();
+        before.set(1, 2, 3, Class::Car.id());
+        before.set(4, 5, 6, Class::Car.id());
+        let mut after = before.clone();
+        assert_eq!(Difference::between(&before, &after), Difference::default());
+        after.set(1, 2, 3, Class::FREE);
+        after.set(4, 5, 6, Class::Bus.id());
+        after.set(7, 8, 9, Class::Bus.id());
+        let found = Difference::between(&before, &after);
+        assert_eq!((found.added, found.removed, found.changed), (1, 1, 1));
+        assert_eq!(found.cells, [[1, 2, 3], [4, 5, 6], [7, 8, 9]]);
+        assert!(found.text().starts_with("3 voxels differ"));
+    }
+
+    #[test]
+    fn modes_go_round() {
+        let mut mode = CompareMode::Off;
+        for _ in CompareMode::ALL {
+            mode = mode.next();
+        }
+        assert_eq!(mode, CompareMode::Off);
+    }
+}
