@@ -115,9 +115,18 @@ impl Bench {
         Self::with(false)
     }
 
+    /// Settings come from that file and are kept there.
+    pub fn with_settings(file: &Path) -> Self {
+        Self::build(false, Some(file.to_owned()))
+    }
+
     /// With `gpu` true there is a real device; a machine without any adapter, Mesa's software one
     /// included, fails the test.
     pub fn with(gpu: bool) -> Self {
+        Self::build(gpu, None)
+    }
+
+    fn build(gpu: bool, settings_file: Option<PathBuf>) -> Self {
         let (orders, orders_in) = unbounded();
         let (started_out, started) = unbounded();
         let folder = tempfile::tempdir().expect("a folder");
@@ -140,7 +149,7 @@ impl Bench {
             save: Arc::new(|scene, path| Ok(project::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,
-            settings_file: None,
+            settings_file,
         };
         let builder = Harness::builder()
             .with_size(egui::vec2(1400.0, 900.0))
