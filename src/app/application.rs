@@ -17,11 +17,13 @@ use crate::scene::{Scene, SceneRev};
 
 use super::camera_views::Wanted;
 use super::canvas::{Canvas, CanvasInput};
+use super::checking::Checking;
 use super::command::Command;
 use super::file_dialogs::FileDialogs;
 use super::keys;
 use super::live::{Advice, Live, Purpose};
 use super::panels::cameras::{CameraStrip, CamerasInput};
+use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
@@ -30,6 +32,7 @@ use super::panels::sensors::sensors_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
+use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::state::{Pane, UiState};
 use super::theme;
@@ -111,6 +114,10 @@ pub struct SceneloomApp {
     pub receipt: Option<Receipt>,
     /// Messages.
     pub toasts: Toasts,
+    /// Findings of the quality checks.
+    pub checking: Checking,
+    /// Copies of unsaved work; none in tests.
+    pub recovery: Option<Recovery>,
     pub(super) path: Option<PathBuf>,
     pub(super) worker: GenWorker,
     pub(super) dialogs: FileDialogs,
@@ -154,6 +161,8 @@ impl SceneloomApp {
             live: Live::new(config.params, config.full_params, config.warm_up),
             receipt: None,
             toasts: Toasts::default(),
+            checking: Checking::spawn(wake.clone())?,
+            recovery: None,
             path: config.path,
             worker,
             dialogs: FileDialogs::new(config.native_dialogs),
@@ -226,6 +235,8 @@ impl SceneloomApp {
         if self.passes > 1 {
             self.schedule(ctx);
         }
+        self.update_checks(ctx);
+        self.update_recovery(ctx);
         self.set_title(ctx);
     }
 
@@ -362,9 +373,11 @@ impl SceneloomApp {
                 self.state.selected = None;
                 self.state.correcting = false;
                 self.state.named = Named::default();
+                self.note_opened(&opening.what, true);
                 ctx.request_repaint();
             }
             Err(error) => {
+                self.note_opened(&opening.what, false);
                 let text = format!("{}: {}", opening.what, one_line(&error));
                 self.toasts.push(Level::Error, text, now_s);
             }
@@ -390,7 +403,10 @@ impl SceneloomApp {
         self.side_panels(ui, &mut commands);
         self.views(ui, &scene, &mut commands);
         // Asked before: the key that closes a dialog is no shortcut.
-        let dialog = self.unsaved.is_some() || self.dialogs.is_open() || self.state.keys_open;
+        let dialog = self.unsaved.is_some()
+            || self.dialogs.is_open()
+            || self.state.keys_open
+            || self.asks_to_recover();
         self.overlays(ui, &scene, &mut commands);
         if !dialog {
             let flying =
@@ -537,6 +553,14 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
+        if self.state.checks_open {
+            let input = ChecksInput {
+                findings: self.checking.findings().map(|f| f.as_slice()),
+                stale: self.checking.is_stale(self.document.settled_scene().rev),
+                selected: self.state.selected,
+            };
+            checks_window(ui, &input, &mut self.state.checks_open, commands);
+        }
         if self.state.keys_open {
             dialogs::keys_sheet(ui, &mut self.state.keys_open);
         }
@@ -544,6 +568,7 @@ impl SceneloomApp {
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
         }
+        self.recovery_dialog(ui);
         if self.unsaved.is_some()
             && let Some(answer) = dialogs::unsaved_ui(ui, &scene.name)
         {

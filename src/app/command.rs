@@ -94,6 +94,12 @@ pub enum Command {
     FrameSelection,
     /// Brings everything into the view under the pointer.
     FrameAll,
+    /// Brings a place of the ego frame, m, into the middle of both large views.
+    FrameAt(glam::DVec3),
+    /// Repairs all findings of the checks that can be repaired.
+    FixAll,
+    /// Shows or hides the findings of the checks.
+    ToggleChecks,
     /// Takes a standard viewpoint in the 3D view.
     View(ViewPreset),
     /// Looks through that camera of the rig in the 3D view.

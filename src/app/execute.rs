@@ -110,6 +110,9 @@ impl SceneloomApp {
                     self.canvas.frame_all_again();
                 }
             },
+            Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
+            Command::FixAll => self.fix_all(ctx),
+            Command::ToggleChecks => self.state.checks_open = !self.state.checks_open,
             Command::View(preset) => self.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
@@ -268,6 +271,9 @@ impl SceneloomApp {
         match next {
             Next::Quit => {
                 self.may_close = true;
+                if let Some(recovery) = &mut self.recovery {
+                    recovery.forget();
+                }
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Next::AskOpen => {
@@ -290,7 +296,7 @@ impl SceneloomApp {
     }
 
     /// Makes a scene on a thread of its own; the window goes on meanwhile.
-    fn load(
+    pub(super) fn load(
         &mut self,
         what: String,
         path: Option<PathBuf>,

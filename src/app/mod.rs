@@ -6,6 +6,7 @@ pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
 pub mod canvas_tools;
+pub mod checking;
 pub mod cli;
 pub mod command;
 mod execute;
@@ -18,6 +19,7 @@ pub mod panels;
 pub mod picture;
 mod pipeline;
 mod pointer;
+pub mod recovery;
 pub mod roads;
 pub mod sensing;
 pub mod state;
@@ -85,7 +87,8 @@ pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
         ..Default::default()
     };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        let app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
+        let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
+        app.keep_copies(&cc.egui_ctx);
         Ok(Box::new(app))
     };
     eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {

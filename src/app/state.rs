@@ -172,6 +172,8 @@ pub struct UiState {
     pub cameras_hidden: u32,
     /// How the LiDAR sweep comes about.
     pub lidar_model: LidarModel,
+    /// The checks' window is open.
+    pub checks_open: bool,
     /// The sensors' window is open.
     pub sensors_open: bool,
     /// The sensor chosen in it.
@@ -279,6 +281,7 @@ impl Default for UiState {
             plane_m: 12.0,
             cameras_hidden: 0,
             lidar_model: LidarModel::default(),
+            checks_open: false,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,

@@ -3,5 +3,6 @@
 mod bench;
 mod editing;
 mod files;
+mod recovery;
 mod sensors;
 mod views;

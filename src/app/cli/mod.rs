@@ -1,5 +1,6 @@
 //! The command line: one subcommand per file. See README for the rules that all of them follow.
 
+mod check;
 mod dataset;
 mod demo;
 mod doctor;
@@ -50,6 +51,8 @@ enum Command {
     Render(render::Render),
     /// The 3D viewport alone, off screen.
     Shot(shot::Shot),
+    /// The quality checks; exit 1 if one of severity error fires.
+    Check(check::Check),
     /// Training and evaluation data from procedural worlds.
     Dataset(dataset::Dataset),
     /// Held-out quality.
@@ -182,6 +185,7 @@ pub fn main() -> ExitCode {
         Some(Command::Edit(c)) => c.run(),
         Some(Command::Render(c)) => c.run(),
         Some(Command::Shot(c)) => c.run(),
+        Some(Command::Check(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),

@@ -2,11 +2,13 @@
 
 pub mod camera_header;
 pub mod cameras;
+pub mod checks;
 pub mod dialogs;
 pub mod fields;
 pub mod layers;
 pub mod objects;
 pub mod panes;
+pub mod recovery;
 pub mod sensors;
 pub mod status;
 pub mod toasts;

@@ -158,6 +158,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
         on(item(ui, "Grid", "G", true), Command::ToggleGrid);
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
+        on(item(ui, "Checks…", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
     });
     ui.menu_button("Generate", |ui| {
