@@ -19,6 +19,7 @@ use super::camera_views::Wanted;
 use super::canvas::{Canvas, CanvasInput};
 use super::checking::Checking;
 use super::command::Command;
+use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::keys;
 use super::live::{Advice, Live, Purpose};
@@ -118,6 +119,7 @@ pub struct SceneloomApp {
     pub checking: Checking,
     /// Copies of unsaved work; none in tests.
     pub recovery: Option<Recovery>,
+    pub(super) exporting: Exporting,
     pub(super) path: Option<PathBuf>,
     pub(super) worker: GenWorker,
     pub(super) dialogs: FileDialogs,
@@ -163,6 +165,7 @@ impl SceneloomApp {
             toasts: Toasts::default(),
             checking: Checking::spawn(wake.clone())?,
             recovery: None,
+            exporting: Exporting::default(),
             path: config.path,
             worker,
             dialogs: FileDialogs::new(config.native_dialogs),
@@ -237,6 +240,7 @@ impl SceneloomApp {
         }
         self.update_checks(ctx);
         self.update_recovery(ctx);
+        self.update_export();
         self.set_title(ctx);
     }
 
@@ -568,6 +572,7 @@ impl SceneloomApp {
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
         }
+        self.export_dialog(ui);
         self.recovery_dialog(ui);
         if self.unsaved.is_some()
             && let Some(answer) = dialogs::unsaved_ui(ui, &scene.name)

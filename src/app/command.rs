@@ -78,6 +78,8 @@ pub enum Command {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
+    /// Opens or closes the dialog that exports files for other programs.
+    ToggleExport,
     /// Asks for a file and saves the 3D view there.
     ExportScreenshot,
     /// Saves the 3D view beside the scene.

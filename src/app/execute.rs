@@ -110,6 +110,7 @@ impl SceneloomApp {
                     self.canvas.frame_all_again();
                 }
             },
+            Command::ToggleExport => self.toggle_export(),
             Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             Command::FixAll => self.fix_all(ctx),
             Command::ToggleChecks => self.state.checks_open = !self.state.checks_open,
@@ -375,7 +376,7 @@ impl SceneloomApp {
     }
 
     /// A path beside the scene's file, or in the working folder, named after the scene.
-    fn suggested(&self, extension: &str) -> PathBuf {
+    pub(super) fn suggested(&self, extension: &str) -> PathBuf {
         match &self.path {
             Some(path) => path.with_extension(extension),
             None => {

@@ -10,6 +10,8 @@ pub mod checking;
 pub mod cli;
 pub mod command;
 mod execute;
+pub mod export;
+mod exporting;
 mod file_dialogs;
 mod icons;
 mod keys;

@@ -17,8 +17,7 @@ use crate::app::state::{CameraSource, LidarModel};
 #[derive(clap::Args)]
 pub struct Export {
     /// Scene to read.
-    #[arg(required_unless_present_any = ["help"], default_value = "")]
-    scene: PathBuf,
+    scene: Option<PathBuf>,
     /// Kind of file; `list` names them all, `all` writes every kind into a folder.
     #[arg(long, value_name = "NAME")]
     format: String,
@@ -69,10 +68,7 @@ impl Export {
             }
         };
         let path = self.output.context("-o PATH is missing: where should the files go?")?;
-        if self.format == "all" {
-            std::fs::create_dir_all(&path).with_context(|| format!("create {}", path.display()))?;
-        }
-        let scene = open::scene(&self.scene)?;
+        let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
         let options = ExportOptions {
             camera_size: self.size,
             source: match self.source.as_str() {
@@ -92,6 +88,9 @@ impl Export {
                 ..ShotOptions::default()
             },
         };
+        if self.format == "all" {
+            std::fs::create_dir_all(&path).with_context(|| format!("create {}", path.display()))?;
+        }
         let start = Instant::now();
         let mut files = Vec::new();
         for format in formats {

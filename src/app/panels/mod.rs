@@ -4,6 +4,7 @@ pub mod camera_header;
 pub mod cameras;
 pub mod checks;
 pub mod dialogs;
+pub mod export;
 pub mod fields;
 pub mod layers;
 pub mod objects;

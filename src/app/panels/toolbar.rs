@@ -109,6 +109,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Save", "Ctrl+S", true), Command::Save);
         on(item(ui, "Save as…", "Ctrl+Shift+S", true), Command::SaveAs);
         ui.separator();
+        on(item(ui, "Export…", "", true), Command::ToggleExport);
         on(item(ui, "Quick screenshot", "F12", true), Command::QuickShot);
         on(
             item(ui, "Export screenshot…", "", true),
