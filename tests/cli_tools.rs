@@ -16,7 +16,10 @@ use sceneloom::generation::sensors::lidar;
 use sceneloom::scene::{BoxId, Class, GridSpec, Scene};
 
 fn sceneloom(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sceneloom")).args(args).output().expect("the built program runs")
+    Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .args(args)
+        .output()
+        .expect("the built program runs")
 }
 
 /// The one JSON object that a command prints, and its exit code.
@@ -32,7 +35,10 @@ fn refused(args: &[&str], needle: &str) {
     let output = sceneloom(args);
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
-    assert!(error.trim_end().lines().count() == 1 && error.contains(needle), "{args:?}: {error}");
+    assert!(
+        error.trim_end().lines().count() == 1 && error.contains(needle),
+        "{args:?}: {error}"
+    );
 }
 
 struct Folder(tempfile::TempDir);
@@ -63,7 +69,9 @@ fn apply(scene: &mut Scene, edit: Edit) {
 
 fn files(report: &Value) -> Vec<PathBuf> {
     let list = report["files"].as_array().expect("a list");
-    list.iter().map(|f| PathBuf::from(f.as_str().expect("a path"))).collect()
+    list.iter()
+        .map(|f| PathBuf::from(f.as_str().expect("a path")))
+        .collect()
 }
 
 fn export(scene: &str, format: &str, out: &str, more: &[&str]) -> Vec<PathBuf> {
@@ -98,8 +106,16 @@ fn checks_tell_by_exit_code_and_fix() {
     let (report, code) = run(&["check", &path]);
     assert_eq!((code, report["errors"].as_u64()), (1, Some(2)), "{report:#}");
     let findings = report["findings"].as_array().expect("a list");
-    let of = |id: u64| findings.iter().find(|f| f["box"] == id).unwrap_or_else(|| panic!("{report:#}"));
-    assert_eq!((&of(900)["check"], &of(900)["severity"]), (&"unsound".into(), &"error".into()));
+    let of = |id: u64| {
+        findings
+            .iter()
+            .find(|f| f["box"] == id)
+            .unwrap_or_else(|| panic!("{report:#}"))
+    };
+    assert_eq!(
+        (&of(900)["check"], &of(900)["severity"]),
+        (&"unsound".into(), &"error".into())
+    );
     assert_eq!(of(901)["check"], "out_of_range");
     let x = of(901)["where_m"][0].as_f64().expect("a number");
     assert!((x - first.center_m.x).abs() < 1e-3);
@@ -135,7 +151,10 @@ fn occupancy_and_boxes_are_read_by_others() {
     let boxes = list["boxes"].as_array().expect("a list");
     assert_eq!(boxes.len(), frame.boxes.len());
     for (found, b) in boxes.iter().zip(frame.boxes.values()) {
-        assert_eq!((&found["id"], &found["class"]), (&b.id.0.into(), &b.class.name().into()));
+        assert_eq!(
+            (&found["id"], &found["class"]),
+            (&b.id.0.into(), &b.class.name().into())
+        );
         assert_eq!(found["class_id"], b.class.id());
         for axis in 0..3 {
             assert_eq!(found["center_m"][axis], b.center_m[axis]);
@@ -151,7 +170,11 @@ fn occupancy_and_boxes_are_read_by_others() {
 
 /// Scalars of a binary little-endian PLY by name of the property, parsed from the header alone.
 fn ply(bytes: &[u8]) -> HashMap<String, Vec<f64>> {
-    let end = bytes.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+    let end = bytes
+        .windows(11)
+        .position(|w| w == b"end_header\n")
+        .expect("a header")
+        + 11;
     let header = std::str::from_utf8(&bytes[..end]).expect("text");
     assert!(header.starts_with("ply\nformat binary_little_endian 1.0\n"));
     let (mut count, mut properties) = (0, Vec::new());
@@ -166,8 +189,14 @@ fn ply(bytes: &[u8]) -> HashMap<String, Vec<f64>> {
     for _ in 0..count {
         for (kind, name) in &properties {
             let (value, size) = match kind.as_str() {
-                "float" => (f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().expect("four"))), 4),
-                "ushort" => (f64::from(u16::from_le_bytes(bytes[at..at + 2].try_into().expect("two"))), 2),
+                "float" => (
+                    f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().expect("four"))),
+                    4,
+                ),
+                "ushort" => (
+                    f64::from(u16::from_le_bytes(bytes[at..at + 2].try_into().expect("two"))),
+                    2,
+                ),
                 "uchar" => (f64::from(bytes[at]), 1),
                 other => panic!("unknown type {other}"),
             };
@@ -191,14 +220,19 @@ fn lidar_files_hold_the_sweep() {
     for (i, p) in sweep.points.iter().enumerate() {
         let at = [found["x"][i], found["y"][i], found["z"][i]];
         assert_eq!(at, p.position_in_ego.map(f64::from));
-        assert_eq!([found["ring"][i], found["class"][i]], [f64::from(p.ring), f64::from(p.class.id())]);
+        assert_eq!(
+            [found["ring"][i], found["class"][i]],
+            [f64::from(p.ring), f64::from(p.class.id())]
+        );
         assert_eq!(found["intensity"][i], f64::from(p.intensity));
     }
     // As the nuScenes devkit reads it: five floats a point, in the sensor's frame.
     let written = export(&path, "nuscenes-lidar", &dir.path("top.pcd.bin"), &[]);
     let bytes = std::fs::read(&written[0]).expect("there");
-    let floats: Vec<f32> =
-        bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().expect("four"))).collect();
+    let floats: Vec<f32> = bytes
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes(b.try_into().expect("four")))
+        .collect();
     assert_eq!(floats.len(), 5 * sweep.points.len());
     let mount = scene.rig.lidars[0].ego_from_sensor();
     for (of, p) in floats.chunks_exact(5).zip(&sweep.points) {
@@ -242,8 +276,14 @@ fn camera_maps_and_views_are_pictures_that_say_what_they_show() {
     let bytes = std::fs::read(dir.path("maps/CAM_FRONT_semantic.png")).expect("there");
     let parts = chunks(&bytes);
     assert_eq!(parts[0].1[8..10], [8, 3], "8 bits, palette");
-    let text = parts.iter().filter(|(kind, _)| kind == "iTXt").map(|(_, b)| String::from_utf8_lossy(b).into_owned());
-    assert!(text.clone().any(|t| t.starts_with("Prompt") && t.ends_with("night, rain")));
+    let text = parts
+        .iter()
+        .filter(|(kind, _)| kind == "iTXt")
+        .map(|(_, b)| String::from_utf8_lossy(b).into_owned());
+    assert!(
+        text.clone()
+            .any(|t| t.starts_with("Prompt") && t.ends_with("night, rain"))
+    );
     assert!(text.clone().any(|t| t.starts_with("Seed") && t.ends_with('3')));
     let front = image::load_from_memory(&bytes).expect("a picture").to_rgb8();
     assert_eq!(front.dimensions(), (160, 90));
@@ -254,13 +294,23 @@ fn camera_maps_and_views_are_pictures_that_say_what_they_show() {
 
     let written = export(&path, "depth", &dir.path("maps"), &size);
     assert_eq!(written.len(), 6);
-    let depth = image::open(dir.path("maps/CAM_FRONT_depth_mm.png")).expect("a picture").to_luma16();
+    let depth = image::open(dir.path("maps/CAM_FRONT_depth_mm.png"))
+        .expect("a picture")
+        .to_luma16();
     // The camera hangs 1.5 m above the road: the lowest row looks at it some metres ahead.
     let mm = depth.get_pixel(80, 89).0[0];
     assert!((2500..9000).contains(&mm), "{mm} mm");
     assert!(depth.get_pixel(80, 70).0[0] > mm, "farther up is farther away");
 
-    let more = ["--view-size", "200x120", "--transparent", "--scale", "3", "--view", "top"];
+    let more = [
+        "--view-size",
+        "200x120",
+        "--transparent",
+        "--scale",
+        "3",
+        "--view",
+        "top",
+    ];
     let written = export(&path, "view", &dir.path("view.png"), &more);
     let view = image::open(&written[0]).expect("a picture").to_rgba8();
     assert_eq!(view.dimensions(), (200, 120));
@@ -268,7 +318,10 @@ fn camera_maps_and_views_are_pictures_that_say_what_they_show() {
     refused(&["export", &path, "--format", "fbx", "-o", "x"], "occ3d");
     refused(&["export", &path, "--format", "ply"], "-o");
     refused(&["export", "--format", "ply", "-o", "x"], "scene");
-    refused(&["export", &path, "--format", "view", "--view", "behind", "-o", "x"], "CAM_FRONT");
+    refused(
+        &["export", &path, "--format", "view", "--view", "behind", "-o", "x"],
+        "CAM_FRONT",
+    );
     let (list, _) = run(&["export", "--format", "list"]);
     assert_eq!(list["formats"].as_array().map(Vec::len), Some(8));
 }
@@ -283,7 +336,9 @@ fn differences_are_counted() {
     let removed_voxels = a.frame().occupancy.count_different(&b.frame().occupancy);
     // Far from the box and outside of what the edit redraws.
     let cells = vec![[3, 3, 9], [3, 3, 10]];
-    let changed = cells.iter().filter(|c: &&[usize; 3]| a.frame().occupancy.get(c[0], c[1], c[2]) != Class::Barrier.id());
+    let changed = cells
+        .iter()
+        .filter(|c: &&[usize; 3]| a.frame().occupancy.get(c[0], c[1], c[2]) != Class::Barrier.id());
     let painted = changed.count();
     let class = Class::Barrier;
     apply(&mut b, Edit::PaintVoxels { cells, class });
@@ -293,10 +348,19 @@ fn differences_are_counted() {
     assert_eq!(code, 0);
     assert_eq!(report["boxes"]["removed"][0]["id"], id.0);
     assert_eq!(report["boxes"]["added"].as_array().map(Vec::len), Some(0));
-    assert_eq!(report["voxels_changed"].as_u64(), Some((removed_voxels + painted) as u64));
+    assert_eq!(
+        report["voxels_changed"].as_u64(),
+        Some((removed_voxels + painted) as u64)
+    );
     assert_eq!(report["changed_outside_region"].as_u64(), Some(painted as u64));
-    assert_eq!(report["changed_inside_region"].as_u64(), Some(removed_voxels as u64));
-    assert_eq!(report["voxels"]["barrier"]["gained"].as_u64(), Some(painted as u64));
+    assert_eq!(
+        report["changed_inside_region"].as_u64(),
+        Some(removed_voxels as u64)
+    );
+    assert_eq!(
+        report["voxels"]["barrier"]["gained"].as_u64(),
+        Some(painted as u64)
+    );
     assert!(report["lidar"]["rays_changed"].is_u64());
     let picture = image::open(&sheet).expect("a picture");
     assert!(picture.width() > 3 * GridSpec::NY as u32);
@@ -306,6 +370,10 @@ fn differences_are_counted() {
     assert_eq!(report["layout"]["cells_changed"], 0);
     assert_eq!(report["lidar"]["rays_changed"], 0);
     let mut text = String::new();
-    sceneloom(&["diff", &pa, &pb]).stdout.as_slice().read_to_string(&mut text).expect("text");
+    sceneloom(&["diff", &pa, &pb])
+        .stdout
+        .as_slice()
+        .read_to_string(&mut text)
+        .expect("text");
     assert!(text.contains("boxes: 0 added, 1 removed, 0 changed"), "{text}");
 }

@@ -11,7 +11,7 @@ use sceneloom::editor::{Document, Edit, Shape};
 use sceneloom::scene::grid::{BRICKS, NOT_PAINTED};
 use sceneloom::scene::{BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SceneRev};
 
-const COMMANDS: u64 = 4000;
+const COMMANDS: u64 = 10_000;
 /// States are compared voxel by voxel at every so many commands; by everything else at each.
 const DEEP_EVERY: u64 = 25;
 
@@ -78,20 +78,36 @@ fn shape(random: &mut Random) -> Shape {
             points_m: (0..random.below(5)).map(|_| random.point()).collect(),
             width_m: random.number(0.0, 4.0),
         },
-        _ => Shape::Cells((0..random.below(20)).map(|_| [random.below(203), random.below(203)]).collect()),
+        _ => Shape::Cells(
+            (0..random.below(20))
+                .map(|_| [random.below(203), random.below(203)])
+                .collect(),
+        ),
     }
 }
 
 fn cells(random: &mut Random) -> Vec<[usize; 3]> {
     let at = [random.below(202), random.below(202), random.below(17)];
     let n = random.below(40);
-    (0..n).map(|_| [at[0] + random.below(4), at[1] + random.below(4), (at[2] + random.below(3)) % 17]).collect()
+    (0..n)
+        .map(|_| {
+            [
+                at[0] + random.below(4),
+                at[1] + random.below(4),
+                (at[2] + random.below(3)) % 17,
+            ]
+        })
+        .collect()
 }
 
 fn edit(random: &mut Random, scene: &Scene) -> Edit {
     let center = |random: &mut Random| random.point().extend(random.number(-1.0, 4.0));
     let size = |random: &mut Random| {
-        DVec3::new(random.number(0.2, 13.0), random.number(0.2, 3.0), random.number(0.2, 4.0))
+        DVec3::new(
+            random.number(0.2, 13.0),
+            random.number(0.2, 3.0),
+            random.number(0.2, 4.0),
+        )
     };
     match random.below(13) {
         0 | 1 => Edit::AddBox {
@@ -140,7 +156,9 @@ fn edit(random: &mut Random, scene: &Scene) -> Edit {
         },
         _ => {
             let inner = edit(random, scene);
-            Edit::Correct { edit: Box::new(inner) }
+            Edit::Correct {
+                edit: Box::new(inner),
+            }
         }
     }
 }
@@ -160,10 +178,16 @@ fn frame_is_sound(frame: &Frame) {
             assert_eq!((b.id, b.problem()), (*id, None));
         }
     }
-    assert!(frame.inferred.boxes.iter().all(|id| frame.boxes.contains_key(id)), "a guess without a box");
+    assert!(
+        frame.inferred.boxes.iter().all(|id| frame.boxes.contains_key(id)),
+        "a guess without a box"
+    );
     for layout in [&frame.layout, &frame.source.layout] {
         assert_eq!(layout.cells().len(), GridSpec::COLUMNS);
-        assert!(layout.cells().iter().all(|c| c >> BevLayer::MAP.len() == 0), "bits of objects in the map");
+        assert!(
+            layout.cells().iter().all(|c| c >> BevLayer::MAP.len() == 0),
+            "bits of objects in the map"
+        );
     }
     assert_eq!(frame.occupancy.bricks().len(), BRICKS * BRICKS);
     assert_eq!(frame.painted.bricks().len(), BRICKS * BRICKS);
@@ -172,7 +196,10 @@ fn frame_is_sound(frame: &Frame) {
 /// The grids: labels within the palette, paint shown as it was painted, nothing beyond the grid's last row.
 fn grids_are_sound(frame: &Frame) {
     for (x, y, z, label) in frame.occupancy.iter_set() {
-        assert!(label < Class::FREE && x < GridSpec::NX && y < GridSpec::NY, "{label} at {x}, {y}, {z}");
+        assert!(
+            label < Class::FREE && x < GridSpec::NX && y < GridSpec::NY,
+            "{label} at {x}, {y}, {z}"
+        );
     }
     for (x, y, z, class) in frame.painted.iter_set() {
         assert!(class <= Class::FREE && class != NOT_PAINTED);
@@ -189,7 +216,10 @@ fn same(a: &Scene, b: &Scene, deep: bool) -> bool {
     let boxes = |f: &Frame| -> BTreeMap<BoxId, SceneBox> { f.boxes.clone() };
     a.prompt == b.prompt
         && a.current == b.current
-        && a.frames.iter().zip(&b.frames).all(|(a, b)| boxes(a) == boxes(b) && grids(a, b))
+        && a.frames
+            .iter()
+            .zip(&b.frames)
+            .all(|(a, b)| boxes(a) == boxes(b) && grids(a, b))
 }
 
 /// What the document should hold: the states by step, kept apart from it.
@@ -215,12 +245,18 @@ impl Model {
 }
 
 fn env(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+    std::env::var(name)
+        .ok()
+        .and_then(|v| v.parse().ok())
+        .unwrap_or(default)
 }
 
 #[test]
 fn random_commands_break_nothing() {
-    let (commands, seed) = (env("SCENELOOM_RANDOM_COMMANDS", COMMANDS), env("SCENELOOM_RANDOM_SEED", 1));
+    let (commands, seed) = (
+        env("SCENELOOM_RANDOM_COMMANDS", COMMANDS),
+        env("SCENELOOM_RANDOM_SEED", 1),
+    );
     let mut random = Random(seed);
     let mut start = open::bundled().expect("bundled");
     start.frames.push(start.frames[0].clone());
@@ -234,13 +270,22 @@ fn random_commands_break_nothing() {
         let before = document.settled_scene().clone();
         match random.below(20) {
             0..=8 => {
-                let edits: Vec<Edit> = (0..1 + random.below(3)).map(|_| edit(&mut random, &before)).collect();
+                let edits: Vec<Edit> = (0..1 + random.below(3))
+                    .map(|_| edit(&mut random, &before))
+                    .collect();
                 match document.apply_all("Edit", &edits) {
                     Ok(()) => applied += 1,
                     Err(error) => {
                         refused += 1;
-                        assert!(!error.to_string().is_empty() && !error.to_string().contains('\n'), "{error}");
-                        assert_eq!(document.settled_scene().rev, before.rev, "refused, yet changed: {edits:?}");
+                        assert!(
+                            !error.to_string().is_empty() && !error.to_string().contains('\n'),
+                            "{error}"
+                        );
+                        assert_eq!(
+                            document.settled_scene().rev,
+                            before.rev,
+                            "refused, yet changed: {edits:?}"
+                        );
                     }
                 }
                 model.note(&document);
@@ -261,7 +306,10 @@ fn random_commands_break_nothing() {
                     1 => {
                         let dragging = document.is_dragging();
                         let label = document.undo();
-                        assert!(!dragging || label.is_none(), "undo ends the drag and nothing else");
+                        assert!(
+                            !dragging || label.is_none(),
+                            "undo ends the drag and nothing else"
+                        );
                         if !dragging && label.is_some() {
                             model.at -= 1;
                         }
@@ -328,7 +376,10 @@ fn random_commands_break_nothing() {
         let deep = i % DEEP_EVERY == 0;
         let (shown, expected) = (document.scene(), &model.states[model.at]);
         assert_eq!(shown.rev, expected.rev, "command {i}");
-        assert!(same(shown, expected, deep), "command {i}: not the state that was there");
+        assert!(
+            same(shown, expected, deep),
+            "command {i}: not the state that was there"
+        );
         sweep(shown);
         if deep {
             shown.frames.iter().for_each(|f| grids_are_sound(f));

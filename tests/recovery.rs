@@ -22,7 +22,9 @@ const KILLS: u64 = 25;
 fn edits(i: u64) -> [Edit; 2] {
     let at = |salt: u64| (i.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(salt as u32) % 200) as usize;
     [
-        Edit::SetPrompt { prompt: i.to_string() },
+        Edit::SetPrompt {
+            prompt: i.to_string(),
+        },
         Edit::PaintVoxels {
             cells: vec![[at(3), at(17), 5], [at(29), at(41), 9]],
             class: Class::Manmade,
@@ -64,7 +66,9 @@ fn child() {
 
 /// The largest number that follows a word at the start of a line.
 fn last(lines: &[String], word: &str) -> u64 {
-    let numbers = lines.iter().filter_map(|l| l.strip_prefix(word)?.trim().parse().ok());
+    let numbers = lines
+        .iter()
+        .filter_map(|l| l.strip_prefix(word)?.trim().parse().ok());
     numbers.max().unwrap_or(0)
 }
 
@@ -96,7 +100,10 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         let mut lines = Vec::new();
         while last(&lines, "saved") < EDITS_PER_SAVE * (1 + random % 6) {
             let mut line = String::new();
-            assert!(out.read_line(&mut line).expect("text") > 0, "the child ended by itself");
+            assert!(
+                out.read_line(&mut line).expect("text") > 0,
+                "the child ended by itself"
+            );
             lines.push(line);
         }
         // Long enough to reach into any part of a save.
@@ -110,8 +117,14 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
 
         let found = project::load(&user_file).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
         let of = number(&found);
-        assert!(of == saved || of == saved + EDITS_PER_SAVE, "{of} in the file, {saved} was told");
-        assert!(same(&found, &after(of)), "kill {kill}: not the scene that was saved");
+        assert!(
+            of == saved || of == saved + EDITS_PER_SAVE,
+            "{of} in the file, {saved} was told"
+        );
+        assert!(
+            same(&found, &after(of)),
+            "kill {kill}: not the scene that was saved"
+        );
 
         let mut offers = stale(&root);
         assert_eq!(offers.len(), 1, "kill {kill}");
@@ -119,8 +132,14 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         assert_eq!(offer.original.as_deref(), Some(&*user_file));
         let found = project::load(&offer.file()).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
         let of = number(&found);
-        assert!(of + EDITS_PER_COPY > edited, "kill {kill}: {edited} edits, {of} recovered");
-        assert!(same(&found, &after(of)), "kill {kill}: not the scene that was copied");
+        assert!(
+            of + EDITS_PER_COPY > edited,
+            "kill {kill}: {edited} edits, {of} recovered"
+        );
+        assert!(
+            same(&found, &after(of)),
+            "kill {kill}: not the scene that was copied"
+        );
         offer.discard();
     }
 }

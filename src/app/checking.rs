@@ -50,7 +50,9 @@ pub fn seen(scene: &Scene) -> Seen {
     let lidar_returns = lidar::rig_sweep(&frame.occupancy, &scene.rig).map(|sweep| {
         let mut near: Vec<Vec<&SceneBox>> = vec![Vec::new(); GridSpec::COLUMNS];
         for b in sound.values() {
-            box_cells(b, MARGIN_M + GridSpec::VOXEL_M, |x, y| near[x * GridSpec::NY + y].push(b));
+            box_cells(b, MARGIN_M + GridSpec::VOXEL_M, |x, y| {
+                near[x * GridSpec::NY + y].push(b)
+            });
         }
         let mut returns: BTreeMap<BoxId, u32> = BTreeMap::new();
         for point in &sweep.points {
@@ -58,7 +60,10 @@ pub fn seen(scene: &Scene) -> Seen {
             let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
                 continue;
             };
-            for b in near[x * GridSpec::NY + y].iter().filter(|b| b.class == point.class) {
+            for b in near[x * GridSpec::NY + y]
+                .iter()
+                .filter(|b| b.class == point.class)
+            {
                 let (local, half) = (b.to_local(p), b.size_m / 2.0 + DVec3::splat(MARGIN_M));
                 if local.truncate().abs().cmple(half.truncate()).all()
                     && (-half.z - SMEAR_M..=half.z).contains(&local.z)
@@ -171,7 +176,11 @@ impl SceneloomApp {
     /// Repairs all that can be repaired, as one undo step.
     pub(super) fn fix_all(&mut self, ctx: &egui::Context) {
         let scene = self.document.settled_scene();
-        let Some(findings) = self.checking.findings().filter(|_| !self.checking.is_stale(scene.rev)) else {
+        let Some(findings) = self
+            .checking
+            .findings()
+            .filter(|_| !self.checking.is_stale(scene.rev))
+        else {
             return;
         };
         let edits = checks::fix_all(scene, findings);
@@ -227,14 +236,30 @@ mod tests {
             }
         }
         let class = Class::Manmade;
-        Edit::PaintVoxels { cells, class }.apply(&mut scene).expect("sound");
+        Edit::PaintVoxels { cells, class }
+            .apply(&mut scene)
+            .expect("sound");
         let seen = seen(&scene);
-        let (pixels, returns) = (seen.camera_pixels.expect("cameras"), seen.lidar_returns.expect("a LiDAR"));
-        assert!(pixels[&BoxId(901)] > 100 && returns[&BoxId(901)] > 10, "{pixels:?} {returns:?}");
+        let (pixels, returns) = (
+            seen.camera_pixels.expect("cameras"),
+            seen.lidar_returns.expect("a LiDAR"),
+        );
+        assert!(
+            pixels[&BoxId(901)] > 100 && returns[&BoxId(901)] > 10,
+            "{pixels:?} {returns:?}"
+        );
         assert_eq!((pixels.get(&BoxId(902)), returns.get(&BoxId(902))), (None, None));
         let findings = check(&scene);
-        let of = |id: u32| findings.iter().filter(move |f| f.box_id == Some(BoxId(id))).map(|f| f.check);
-        assert_eq!(of(902).collect::<Vec<_>>(), ["unseen_by_cameras", "no_lidar_returns"]);
+        let of = |id: u32| {
+            findings
+                .iter()
+                .filter(move |f| f.box_id == Some(BoxId(id)))
+                .map(|f| f.check)
+        };
+        assert_eq!(
+            of(902).collect::<Vec<_>>(),
+            ["unseen_by_cameras", "no_lidar_returns"]
+        );
         assert_eq!(of(901).count(), 0);
         // A rig without sensors sees nothing and blames nobody; one that is not sound neither.
         let mut blind = scene.clone();

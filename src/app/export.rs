@@ -11,7 +11,9 @@ use super::picture::{ShotOptions, View3d};
 use super::state::{CameraSource, LidarModel};
 use crate::formats::{atomic, box_list, occ3d, png, point_cloud};
 use crate::generation::model::lidar::LidarNet;
-use crate::generation::sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use crate::generation::sensors::appearance::{
+    Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer,
+};
 use crate::generation::sensors::learned::{self, Drops};
 use crate::generation::sensors::splat::{self, GaussianCloud, SplatOptions};
 use crate::generation::sensors::{color, lidar};
@@ -125,14 +127,24 @@ impl Default for ExportOptions {
 
 /// A viewpoint by name: `perspective`, `top`, `front`, `side`, `ego`, or a camera of the scene's rig.
 pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
-    let of_rig = || scene.rig.cameras.iter().find(|c| c.name == name).map(ViewCamera::through);
-    ViewPreset::from_name(name).map(ViewCamera::preset).or_else(of_rig).ok_or_else(|| {
-        let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
-        anyhow!(
-            "--view is {name:?}, expected perspective, top, front, side, ego or one of {}",
-            cameras.join(", ")
-        )
-    })
+    let of_rig = || {
+        scene
+            .rig
+            .cameras
+            .iter()
+            .find(|c| c.name == name)
+            .map(ViewCamera::through)
+    };
+    ViewPreset::from_name(name)
+        .map(ViewCamera::preset)
+        .or_else(of_rig)
+        .ok_or_else(|| {
+            let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+            anyhow!(
+                "--view is {name:?}, expected perspective, top, front, side, ego or one of {}",
+                cameras.join(", ")
+            )
+        })
 }
 
 /// Writes the current frame. `path` is the file, or a folder for the format's usual name; formats that fill a folder
@@ -152,7 +164,10 @@ pub fn export(
     match format {
         Format::Occ3d => {
             if let Some((x, y, z, label)) = frame.occupancy.iter_set().find(|(.., l)| *l > Class::FREE) {
-                bail!("voxel {x}, {y}, {z} holds label {label}, expected 0 to {}", Class::FREE);
+                bail!(
+                    "voxel {x}, {y}, {z} holds label {label}, expected 0 to {}",
+                    Class::FREE
+                );
             }
             out.file(format, &occ3d::to_bytes(&frame.occupancy))?;
         }
@@ -172,7 +187,10 @@ pub fn export(
         Format::Semantic => {
             for m in camera_maps(scene, options)? {
                 let labels = labels(&m);
-                out.picture(&format!("{}_semantic.png", m.camera), png::indexed(m.width, m.height, &labels, &palette())?)?;
+                out.picture(
+                    &format!("{}_semantic.png", m.camera),
+                    png::indexed(m.width, m.height, &labels, &palette())?,
+                )?;
             }
             let classes: Vec<_> = (0..=RENDER_IDS as u8)
                 .map(|id| json!({ "index": id, "name": label_name(id), "rgb": palette()[usize::from(id)] }))
@@ -183,7 +201,10 @@ pub fn export(
         Format::Depth => {
             for m in camera_maps(scene, options)? {
                 let mm = color::depth_mm(&m.depth_m);
-                out.picture(&format!("{}_depth_mm.png", m.camera), png::grey16(m.width, m.height, &mm)?)?;
+                out.picture(
+                    &format!("{}_depth_mm.png", m.camera),
+                    png::grey16(m.width, m.height, &mm)?,
+                )?;
             }
         }
         Format::Pictures => {
@@ -200,7 +221,10 @@ pub fn export(
                 quality: Quality::Full,
             })?;
             for image in images {
-                out.picture(&format!("{}.png", image.camera), png::rgba(image.width, image.height, &image.rgba)?)?;
+                out.picture(
+                    &format!("{}.png", image.camera),
+                    png::rgba(image.width, image.height, &image.rgba)?,
+                )?;
             }
         }
         Format::View => {
@@ -237,8 +261,16 @@ impl Files<'_> {
     fn beside(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
         make_folder(self.path)?;
         // Cameras are named by users.
-        let tidy: String =
-            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+        let tidy: String = name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "-_.".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect();
         self.write(self.path.join(tidy), bytes)
     }
 

@@ -32,7 +32,9 @@ impl SceneloomApp {
 
     /// Draws the dialog and starts what it asks for.
     pub(super) fn export_dialog(&mut self, ui: &egui::Ui) {
-        let Some(mut panel) = self.exporting.panel.take() else { return };
+        let Some(mut panel) = self.exporting.panel.take() else {
+            return;
+        };
         let findings = self.checking.findings();
         let input = ExportInput {
             busy: self.exporting.running.is_some(),
@@ -60,14 +62,17 @@ impl SceneloomApp {
             Ok(_) => self.exporting.running = Some((format, written)),
             Err(error) => {
                 let now_s = self.now_s();
-                self.toasts.push(Level::Error, format!("Not exported: {error}"), now_s);
+                self.toasts
+                    .push(Level::Error, format!("Not exported: {error}"), now_s);
             }
         }
     }
 
     /// Tells how an export ended.
     pub(super) fn update_export(&mut self) {
-        let Some((format, written)) = &self.exporting.running else { return };
+        let Some((format, written)) = &self.exporting.running else {
+            return;
+        };
         let answer = match written.try_recv() {
             Err(TryRecvError::Empty) => return,
             Ok(answer) => answer,
@@ -78,7 +83,9 @@ impl SceneloomApp {
         match answer {
             Ok(files) => {
                 let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
-                let first = files.first().map_or(String::new(), |(path, _)| path.display().to_string());
+                let first = files
+                    .first()
+                    .map_or(String::new(), |(path, _)| path.display().to_string());
                 let what = match files.len() {
                     1 => first,
                     n => format!("{n} files, {first} and others"),

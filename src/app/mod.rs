@@ -21,6 +21,7 @@ pub mod panels;
 pub mod picture;
 mod pipeline;
 mod pointer;
+mod recovering;
 pub mod recovery;
 pub mod roads;
 pub mod sensing;

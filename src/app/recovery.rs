@@ -13,9 +13,6 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use serde::{Deserialize, Serialize};
 
-use super::application::SceneloomApp;
-use super::panels::recovery::{Answer, recovery_ui};
-use super::panels::toasts::Level;
 use crate::editor::Document;
 use crate::formats::{atomic, project};
 use crate::scene::{Scene, SceneRev};
@@ -62,8 +59,8 @@ pub struct Recovery {
     forgotten: bool,
     /// What sessions that died left behind and the user has not answered about, newest first.
     pub offers: Vec<Stale>,
-    opening: Option<Stale>,
-    replaced: Vec<Stale>,
+    pub(super) opening: Option<Stale>,
+    pub(super) replaced: Vec<Stale>,
 }
 
 /// Where copies are kept: `$SCENELOOM_STATE_DIR/recovery`, else in the user's state folder.
@@ -80,8 +77,11 @@ impl Recovery {
     /// A session of this process in the user's folder, with the offers of those that died. Errors if the folder cannot
     /// be written. `SCENELOOM_AUTOSAVE_S` replaces the half minute.
     pub fn at_start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let root = root().ok_or_else(|| std::io::Error::other("the system names no folder for program state"))?;
-        let asked: Option<f64> = std::env::var("SCENELOOM_AUTOSAVE_S").ok().and_then(|v| v.parse().ok());
+        let root =
+            root().ok_or_else(|| std::io::Error::other("the system names no folder for program state"))?;
+        let asked: Option<f64> = std::env::var("SCENELOOM_AUTOSAVE_S")
+            .ok()
+            .and_then(|v| v.parse().ok());
         let every_s = asked.filter(|s| s.is_finite() && *s > 0.0).unwrap_or(EVERY_S);
         Self::start(&root, every_s, wake)
     }
@@ -97,19 +97,21 @@ impl Recovery {
         let (jobs, jobs_in) = unbounded::<Job>();
         let (done_out, done) = unbounded();
         let place = folder.clone();
-        let thread = std::thread::Builder::new().name("recovery".into()).spawn(move || {
-            for job in jobs_in {
-                match job {
-                    Job::Write(scene, original) => {
-                        let written = write(&place, &scene, original).map_err(|e| e.to_string());
-                        // The receiver lives as long as the thread, except at the very end.
-                        let _ = done_out.send(written);
-                        wake();
+        let thread = std::thread::Builder::new()
+            .name("recovery".into())
+            .spawn(move || {
+                for job in jobs_in {
+                    match job {
+                        Job::Write(scene, original) => {
+                            let written = write(&place, &scene, original).map_err(|e| e.to_string());
+                            // The receiver lives as long as the thread, except at the very end.
+                            let _ = done_out.send(written);
+                            wake();
+                        }
+                        Job::Remove => remove_copy(&place),
                     }
-                    Job::Remove => remove_copy(&place),
                 }
-            }
-        })?;
+            })?;
         Ok(Self {
             folder,
             lock: Some(lock),
@@ -133,7 +135,12 @@ impl Recovery {
     /// Has a copy written if there are unsaved changes that are in none yet and it is time, and removes it once there
     /// are none. Returns after how many seconds to call it again if nothing else happens, and why a copy could not be
     /// written (told once until one can). `now_s` never runs backward.
-    pub fn tick(&mut self, document: &Document, path: Option<&Path>, now_s: f64) -> (Option<f64>, Option<String>) {
+    pub fn tick(
+        &mut self,
+        document: &Document,
+        path: Option<&Path>,
+        now_s: f64,
+    ) -> (Option<f64>, Option<String>) {
         let mut problem = None;
         while let Ok(done) = self.done.try_recv() {
             problem = self.note(done).or(problem);
@@ -282,7 +289,12 @@ pub fn stale(root: &Path) -> Vec<Stale> {
 }
 
 fn dead_session(folder: PathBuf) -> Option<Stale> {
-    let lock = File::options().create(true).truncate(false).write(true).open(folder.join(LOCK)).ok()?;
+    let lock = File::options()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(folder.join(LOCK))
+        .ok()?;
     match lock.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return None, // its process lives
@@ -290,7 +302,10 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
     }
     let scene = fs::metadata(folder.join(SCENE)).and_then(|m| m.modified());
     let Ok(modified) = scene else {
-        let age = fs::metadata(&folder).and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
+        let age = fs::metadata(&folder)
+            .and_then(|m| m.modified())
+            .ok()
+            .and_then(|t| t.elapsed().ok());
         drop(lock);
         // A session that has just begun is not locked yet.
         if age.is_some_and(|age| age > EMPTY_AFTER) {
@@ -298,8 +313,9 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
         }
         return None;
     };
-    let about: Option<About> =
-        fs::read(folder.join(ABOUT)).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let about: Option<About> = fs::read(folder.join(ABOUT))
+        .ok()
+        .and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let (original, name) = about.map_or((None, "a scene".into()), |a| (a.original, a.name));
     Some(Stale {
         folder,
@@ -321,78 +337,6 @@ pub fn ago(since: Duration) -> String {
     }
 }
 
-/// What a scene that is being recovered is called while it is read.
-const READING: &str = "Recovering";
-
-impl SceneloomApp {
-    /// Begins to keep copies of unsaved work; without a folder to write to it says so and goes on.
-    pub(super) fn keep_copies(&mut self, ctx: &egui::Context) {
-        let wake = ctx.clone();
-        match Recovery::at_start(move || wake.request_repaint()) {
-            Ok(recovery) => self.recovery = Some(recovery),
-            Err(error) => {
-                let now_s = self.now_s();
-                let text = format!("No recovery copies of unsaved work: {error}");
-                self.toasts.push(Level::Error, text, now_s);
-            }
-        }
-    }
-
-    pub(super) fn update_recovery(&mut self, ctx: &egui::Context) {
-        let now_s = self.now_s();
-        let Some(recovery) = &mut self.recovery else { return };
-        let (wait_s, problem) = recovery.tick(&self.document, self.path.as_deref(), now_s);
-        if let Some(seconds) = wait_s {
-            ctx.request_repaint_after(Duration::from_secs_f64(seconds));
-        }
-        if let Some(problem) = problem {
-            let text = format!("No recovery copy can be written: {problem}");
-            self.toasts.push(Level::Error, text, now_s);
-        }
-    }
-
-    /// True while the user has not answered about what a dead session left.
-    pub(super) fn asks_to_recover(&self) -> bool {
-        self.recovery.as_ref().is_some_and(|r| !r.offers.is_empty())
-    }
-
-    /// Asks about the newest offer, if there is one.
-    pub(super) fn recovery_dialog(&mut self, ui: &egui::Ui) {
-        if self.opening.is_some() {
-            return;
-        }
-        let Some(recovery) = &mut self.recovery else { return };
-        let Some(offer) = recovery.offers.first() else { return };
-        let Some(answer) = recovery_ui(ui, offer, recovery.offers.len() - 1) else {
-            return;
-        };
-        match answer {
-            Answer::Later => recovery.offers.clear(),
-            Answer::Discard => recovery.offers.remove(0).discard(),
-            Answer::Recover => {
-                let offer = recovery.offers.remove(0);
-                let (file, original) = (offer.file(), offer.original.clone());
-                let what = format!("{READING} {}", offer.name);
-                recovery.opening = Some(offer);
-                let open = self.io.0.clone();
-                self.load(what, original, false, ui.ctx(), move || open(&file));
-            }
-        }
-    }
-
-    /// After a scene was read, or could not be: one that was recovered is unsaved, and its copy is kept until there is
-    /// another.
-    pub(super) fn note_opened(&mut self, what: &str, is_open: bool) {
-        let Some(recovery) = &mut self.recovery else { return };
-        if let Some(recovered) = recovery.opening.take_if(|_| what.starts_with(READING))
-            && is_open
-        {
-            self.document.mark_unsaved();
-            recovery.replaced.push(recovered);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -405,7 +349,9 @@ mod tests {
 
     fn say(document: &mut Document, prompt: &str) {
         let prompt = prompt.to_owned();
-        document.apply("Prompt", &Edit::SetPrompt { prompt }).expect("always");
+        document
+            .apply("Prompt", &Edit::SetPrompt { prompt })
+            .expect("always");
     }
 
     fn prompt_in(file: &Path) -> String {
@@ -453,7 +399,10 @@ mod tests {
         assert_eq!(third.offers.len(), 1);
         assert_eq!(start().offers.len(), 0, "offered to one process only");
         let offer = third.offers.remove(0);
-        assert_eq!((offer.original.as_deref(), &*offer.name), (Some(Path::new("/tmp/a.loom")), &*document.scene().name));
+        assert_eq!(
+            (offer.original.as_deref(), &*offer.name),
+            (Some(Path::new("/tmp/a.loom")), &*document.scene().name)
+        );
         assert_eq!(prompt_in(&offer.file()), "night");
         drop(offer); // later
         let offer = start().offers.remove(0);

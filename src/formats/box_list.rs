@@ -47,7 +47,12 @@ struct Entry {
 pub type Counts<'a> = Option<&'a BTreeMap<BoxId, u32>>;
 
 /// The boxes of a frame as the bytes of such a file. Errors if JSON cannot hold them: a number is not finite.
-pub fn to_bytes(scene: &str, frame: &Frame, lidar: Counts<'_>, camera: Counts<'_>) -> Result<Vec<u8>, String> {
+pub fn to_bytes(
+    scene: &str,
+    frame: &Frame,
+    lidar: Counts<'_>,
+    camera: Counts<'_>,
+) -> Result<Vec<u8>, String> {
     if let Some(problem) = frame.boxes.values().find_map(SceneBox::problem) {
         return Err(problem);
     }
@@ -128,9 +133,17 @@ mod tests {
         assert_eq!(read(&bytes).expect("ours"), [b]);
         let text = String::from_utf8(bytes).expect("UTF-8");
         assert!(text.contains("\"num_lidar_pts\": 31") && !text.contains("camera_pixels"));
-        assert!(read(text.replace("sceneloom_boxes", "other").as_bytes()).expect_err("foreign").contains("other"));
+        assert!(
+            read(text.replace("sceneloom_boxes", "other").as_bytes())
+                .expect_err("foreign")
+                .contains("other")
+        );
         read(b"{").expect_err("no JSON");
         frame.boxes.get_mut(&BoxId(7)).expect("there").center_m.x = f64::NAN;
-        assert!(to_bytes("a scene", &frame, None, None).expect_err("NaN").contains("center_m"));
+        assert!(
+            to_bytes("a scene", &frame, None, None)
+                .expect_err("NaN")
+                .contains("center_m")
+        );
     }
 }

@@ -26,10 +26,13 @@ pub fn grey16(width: usize, height: usize, values: &[u16]) -> ImageResult<Vec<u8
 pub fn indexed(width: usize, height: usize, labels: &[u8], palette: &[[u8; 3]]) -> ImageResult<Vec<u8>> {
     let highest = labels.iter().max().copied().unwrap_or(0);
     if usize::from(highest) >= palette.len() || palette.len() > 256 {
-        let problem = format!("label {highest} and {} colours, expected a colour for each label", palette.len());
-        return Err(image::ImageError::Parameter(image::error::ParameterError::from_kind(
-            image::error::ParameterErrorKind::Generic(problem),
-        )));
+        let problem = format!(
+            "label {highest} and {} colours, expected a colour for each label",
+            palette.len()
+        );
+        return Err(image::ImageError::Parameter(
+            image::error::ParameterError::from_kind(image::error::ParameterErrorKind::Generic(problem)),
+        ));
     }
     // A grey picture has the very bytes of a palette picture but for the header; the encoder writes no palettes.
     let mut bytes = encode(width, height, labels, ExtendedColorType::L8)?;
@@ -56,10 +59,13 @@ pub fn add_text(png: &mut Vec<u8>, keyword: &str, text: &str) {
 fn encode(width: usize, height: usize, bytes: &[u8], kind: ExtendedColorType) -> ImageResult<Vec<u8>> {
     let expected = width * height * usize::from(kind.bits_per_pixel() / 8);
     if bytes.len() != expected || expected == 0 {
-        let problem = format!("{} bytes for {width} x {height} pixels, expected {expected}", bytes.len());
-        return Err(image::ImageError::Parameter(image::error::ParameterError::from_kind(
-            image::error::ParameterErrorKind::Generic(problem),
-        )));
+        let problem = format!(
+            "{} bytes for {width} x {height} pixels, expected {expected}",
+            bytes.len()
+        );
+        return Err(image::ImageError::Parameter(
+            image::error::ParameterError::from_kind(image::error::ParameterErrorKind::Generic(problem)),
+        ));
     }
     let mut out = Vec::new();
     PngEncoder::new(&mut out).write_image(bytes, width as u32, height as u32, kind)?;
@@ -84,7 +90,13 @@ fn chunk(kind: &[u8; 4], body: &[u8]) -> Vec<u8> {
 /// The check sum of PNG chunks (specification, annex D).
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32, byte: &u8| {
-        (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
+        (0..8).fold(crc ^ u32::from(*byte), |c, _| {
+            if c & 1 == 1 {
+                0xedb8_8320 ^ (c >> 1)
+            } else {
+                c >> 1
+            }
+        })
     };
     !bytes.iter().fold(u32::MAX, step)
 }
@@ -104,7 +116,11 @@ mod tests {
         assert_eq!(image.dimensions(), (4, 2));
         let found: Vec<[u8; 3]> = image.pixels().map(|p| p.0).collect();
         assert_eq!(found, labels.map(|l| palette[usize::from(l)]));
-        assert!(bytes.windows(11).any(|w| w == "Nebel, 5 °C".as_bytes()[..11].to_vec()));
+        assert!(
+            bytes
+                .windows(11)
+                .any(|w| w == "Nebel, 5 °C".as_bytes()[..11].to_vec())
+        );
         let before = bytes.clone();
         add_text(&mut bytes, "", "no keyword");
         assert_eq!(bytes, before);

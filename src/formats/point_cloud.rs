@@ -12,7 +12,11 @@ pub fn nuscenes(sweep: &LidarSweep, pattern: &LidarPattern) -> Vec<u8> {
     for p in &sweep.points {
         let at = sensor_from_ego.apply(DVec3::from_array(p.position_in_ego.map(f64::from)));
         let [x, y, z] = at.as_vec3().to_array();
-        out.extend([x, y, z, p.intensity, f32::from(p.ring)].into_iter().flat_map(f32::to_le_bytes));
+        out.extend(
+            [x, y, z, p.intensity, f32::from(p.ring)]
+                .into_iter()
+                .flat_map(f32::to_le_bytes),
+        );
     }
     out
 }
@@ -20,8 +24,10 @@ pub fn nuscenes(sweep: &LidarSweep, pattern: &LidarPattern) -> Vec<u8> {
 /// Binary little-endian PLY: x, y, z in the ego frame in m, range, intensity, drop probability, ring, class; the names
 /// of the classes as comments.
 pub fn ply(sweep: &LidarSweep) -> Vec<u8> {
-    let classes: String =
-        Class::ALL.iter().map(|c| format!("comment class {} {}\n", c.id(), c.name())).collect();
+    let classes: String = Class::ALL
+        .iter()
+        .map(|c| format!("comment class {} {}\n", c.id(), c.name()))
+        .collect();
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\ncomment frame ego: x forward, y left, z up, m\n{classes}element vertex {}\n\
          property float x\nproperty float y\nproperty float z\nproperty float range_m\nproperty float intensity\n\
@@ -31,7 +37,12 @@ pub fn ply(sweep: &LidarSweep) -> Vec<u8> {
     .into_bytes();
     for p in &sweep.points {
         let floats = [p.range_m, p.intensity, p.drop_probability];
-        out.extend(p.position_in_ego.into_iter().chain(floats).flat_map(f32::to_le_bytes));
+        out.extend(
+            p.position_in_ego
+                .into_iter()
+                .chain(floats)
+                .flat_map(f32::to_le_bytes),
+        );
         out.extend(p.ring.to_le_bytes());
         out.push(p.class.id());
     }

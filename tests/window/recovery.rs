@@ -54,7 +54,12 @@ fn findings_lead_to_their_place_and_are_fixed() {
     };
     bench.wait_until("the checks", no_errors);
     bench.steps(3);
-    assert!(bench.harness.query_by_label("All is well: no check found anything.").is_some());
+    assert!(
+        bench
+            .harness
+            .query_by_label("All is well: no check found anything.")
+            .is_some()
+    );
     // A box in the air, made by the user's own keys.
     bench.click("Box 7 car");
     for _ in 0..12 {

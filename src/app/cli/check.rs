@@ -87,7 +87,15 @@ impl Check {
         output::report(&self.common, &report, || {
             let line = |f: &Finding| {
                 let p = f.where_m;
-                format!("{}: {} [{}] at {:.1}, {:.1}, {:.1} m", f.severity.name(), f.text, f.check, p.x, p.y, p.z)
+                format!(
+                    "{}: {} [{}] at {:.1}, {:.1}, {:.1} m",
+                    f.severity.name(),
+                    f.text,
+                    f.check,
+                    p.x,
+                    p.y,
+                    p.z
+                )
             };
             match findings.is_empty() {
                 true => "all is well: no check found anything".into(),

@@ -46,19 +46,32 @@ impl Diff {
         let changed_inside = changed.iter().filter(|v| inside(v)).count();
         report.insert("voxels_changed".into(), changed.len().into());
         report.insert("voxels".into(), voxels(before, after, &changed));
-        report.insert("region".into(), json!({ "columns": region.column_count(), "share": region.share() }));
+        report.insert(
+            "region".into(),
+            json!({ "columns": region.column_count(), "share": region.share() }),
+        );
         report.insert("changed_inside_region".into(), changed_inside.into());
-        report.insert("changed_outside_region".into(), (changed.len() - changed_inside).into());
+        report.insert(
+            "changed_outside_region".into(),
+            (changed.len() - changed_inside).into(),
+        );
         let sweep = |s: &Scene| lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
         let sweeps = (sweep(&a), sweep(&b));
         report.insert("lidar".into(), lidar_report(&a, &b, &sweeps.0, &sweeps.1));
-        report.insert("prompt".into(), json!({ "changed": a.prompt != b.prompt, "a": a.prompt, "b": b.prompt }));
+        report.insert(
+            "prompt".into(),
+            json!({ "changed": a.prompt != b.prompt, "a": a.prompt, "b": b.prompt }),
+        );
         report.insert("rig_changed".into(), (a.rig != b.rig).into());
         report.insert("frames".into(), json!([a.frames.len(), b.frames.len()]));
         if let Some(path) = &self.output {
             let sheet = Picture::sheet(
                 &[
-                    vec![layout_top(before, SCALE), layout_top(after, SCALE), layout_change(before, after)],
+                    vec![
+                        layout_top(before, SCALE),
+                        layout_top(after, SCALE),
+                        layout_change(before, after),
+                    ],
                     vec![
                         occupancy_top(&before.occupancy, SCALE),
                         occupancy_top(&after.occupancy, SCALE),
@@ -98,7 +111,10 @@ fn text(report: &Value) -> String {
         lines.push(format!("  {class}: +{} -{}", of["gained"], of["lost"]));
     }
     let lidar = &report["lidar"];
-    lines.push(format!("LiDAR: {} of {} rays changed", lidar["rays_changed"], lidar["rays"]));
+    lines.push(format!(
+        "LiDAR: {} of {} rays changed",
+        lidar["rays_changed"], lidar["rays"]
+    ));
     lines.join("\n")
 }
 
@@ -120,7 +136,10 @@ fn boxes(before: &Frame, after: &Frame) -> Value {
         let gone = here.boxes.values().filter(|b| !there.boxes.contains_key(&b.id));
         gone.map(of).collect()
     };
-    let pairs = before.boxes.values().filter_map(|a| Some((a, after.boxes.get(&a.id)?)));
+    let pairs = before
+        .boxes
+        .values()
+        .filter_map(|a| Some((a, after.boxes.get(&a.id)?)));
     let changed: Vec<Value> = pairs.filter(|(a, b)| a != b).map(|(a, b)| change(a, b)).collect();
     json!({ "added": only(after, before), "removed": only(before, after), "changed": changed })
 }
@@ -135,7 +154,11 @@ fn change(a: &SceneBox, b: &SceneBox) -> Value {
         }
     };
     note("class", a.class != b.class, json!([a.class, b.class]));
-    note("moved_m", a.center_m != b.center_m, json!(b.center_m - a.center_m));
+    note(
+        "moved_m",
+        a.center_m != b.center_m,
+        json!(b.center_m - a.center_m),
+    );
     note("resized_m", a.size_m != b.size_m, json!(b.size_m - a.size_m));
     let turn = (b.yaw_rad - a.yaw_rad).to_degrees().rem_euclid(360.0);
     let turn = if turn > 180.0 { turn - 360.0 } else { turn };
@@ -154,7 +177,9 @@ fn layout(before: &Frame, after: &Frame) -> Value {
     for layer in BevLayer::MAP {
         let count = |with: &[u32], without: &[u32]| {
             let pairs = with.iter().zip(without);
-            pairs.filter(|(w, o)| **w & layer.bit() != 0 && **o & layer.bit() == 0).count()
+            pairs
+                .filter(|(w, o)| **w & layer.bit() != 0 && **o & layer.bit() == 0)
+                .count()
         };
         let (set, cleared) = (count(b, a), count(a, b));
         if set + cleared > 0 {
@@ -186,7 +211,10 @@ fn voxels(before: &Frame, after: &Frame, changed: &[(usize, usize, usize)]) -> V
             }
         }
     }
-    let named = Class::ALL.into_iter().zip(counts).filter(|(_, [gained, lost])| gained + lost > 0);
+    let named = Class::ALL
+        .into_iter()
+        .zip(counts)
+        .filter(|(_, [gained, lost])| gained + lost > 0);
     let entry = |(class, [gained, lost]): (Class, [usize; 2])| {
         (class.name().to_owned(), json!({ "gained": gained, "lost": lost }))
     };
@@ -195,19 +223,25 @@ fn voxels(before: &Frame, after: &Frame, changed: &[(usize, usize, usize)]) -> V
 
 /// Ray by ray, where both scenes have the same LiDAR.
 fn lidar_report(a: &Scene, b: &Scene, sweep_a: &LidarSweep, sweep_b: &LidarSweep) -> Value {
-    let same_sensor = a.rig.lidars.first() == b.rig.lidars.first() && a.rig.ego_speed_mps == b.rig.ego_speed_mps;
+    let same_sensor =
+        a.rig.lidars.first() == b.rig.lidars.first() && a.rig.ego_speed_mps == b.rig.ego_speed_mps;
     let rays = sweep_a.rays.max(sweep_b.rays);
     let rays_changed = same_sensor.then(|| {
         let by_ray = |sweep: &LidarSweep| -> std::collections::BTreeMap<(u16, u16), (f32, Class)> {
             let points = sweep.points.iter();
-            points.map(|p| ((p.ring, p.azimuth), (p.range_m, p.class))).collect()
+            points
+                .map(|p| ((p.ring, p.azimuth), (p.range_m, p.class)))
+                .collect()
         };
         let (of_a, of_b) = (by_ray(sweep_a), by_ray(sweep_b));
         let differs = |ray: &(u16, u16), range_m: f32, class: Class| match of_b.get(ray) {
             Some((other_m, other)) => (range_m - other_m).abs() > SAME_RANGE_M || class != *other,
             None => true,
         };
-        let changed = of_a.iter().filter(|(ray, (range_m, class))| differs(ray, *range_m, *class)).count();
+        let changed = of_a
+            .iter()
+            .filter(|(ray, (range_m, class))| differs(ray, *range_m, *class))
+            .count();
         changed + of_b.keys().filter(|ray| !of_a.contains_key(ray)).count()
     });
     json!({

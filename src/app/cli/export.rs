@@ -52,7 +52,9 @@ pub struct Export {
 impl Export {
     pub(super) fn run(self) -> Outcome {
         if self.format == "list" {
-            let list: Vec<_> = Format::ALL.map(|f| json!({ "name": f.name(), "holds": f.what() })).into();
+            let list: Vec<_> = Format::ALL
+                .map(|f| json!({ "name": f.name(), "holds": f.what() }))
+                .into();
             output::report(&self.common, &json!({ "formats": list }), || {
                 let lines = Format::ALL.map(|f| format!("{:<16} {}", f.name(), f.what()));
                 lines.join("\n")
@@ -67,7 +69,9 @@ impl Export {
                 return Err(anyhow!("--format is {unknown:?}, expected one of {names}, all, list").into());
             }
         };
-        let path = self.output.context("-o PATH is missing: where should the files go?")?;
+        let path = self
+            .output
+            .context("-o PATH is missing: where should the files go?")?;
         let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
         let options = ExportOptions {
             camera_size: self.size,
@@ -100,7 +104,9 @@ impl Export {
         let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();
         let report = json!({ "files": paths, "bytes": bytes, "wall_s": start.elapsed().as_secs_f64() });
         output::report(&self.common, &report, || {
-            let lines = files.iter().map(|(path, bytes)| format!("{} ({bytes} bytes)", path.display()));
+            let lines = files
+                .iter()
+                .map(|(path, bytes)| format!("{} ({bytes} bytes)", path.display()));
             lines.collect::<Vec<_>>().join("\n")
         });
         Ok(())

@@ -1,7 +1,7 @@
 //! The list of what the quality checks found: a click leads there, a button repairs it.
 
 use egui::accesskit::Role;
-use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::command::Command;
 use crate::app::theme;
@@ -39,7 +39,7 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
     };
     if findings.is_empty() {
         ui.horizontal(|ui| {
-            ui.label(egui::RichText::new("✔").color(theme::GOOD));
+            ui.label(egui::RichText::new("✔").color(ui.visuals().hyperlink_color));
             ui.label("All is well: no check found anything.");
         });
         ui.weak("Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.");
@@ -54,18 +54,23 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let button = egui::Button::new(format!("Fix all ({fixable})"));
             let response = ui.add_enabled(fixable > 0 && !input.stale, button);
-            if response.on_hover_text("Repairs all that can be repaired, as one step to undo").clicked() {
+            if response
+                .on_hover_text("Repairs all that can be repaired, as one step to undo")
+                .clicked()
+            {
                 commands.push(Command::FixAll);
             }
         });
     });
     ui.separator();
     let row_height = theme::ROW;
-    egui::ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, findings.len(), |ui, range| {
-        for (i, finding) in range.clone().zip(&findings[range]) {
-            ui.push_id(i, |ui| row(ui, finding, input, commands));
-        }
-    });
+    egui::ScrollArea::vertical()
+        .auto_shrink([false, false])
+        .show_rows(ui, row_height, findings.len(), |ui, range| {
+            for (i, finding) in range.clone().zip(&findings[range]) {
+                ui.push_id(i, |ui| row(ui, finding, input, commands));
+            }
+        });
 }
 
 /// `2 errors, 1 warning`
@@ -132,7 +137,7 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
 fn sign(ui: &mut Ui, severity: Severity) {
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
     let (painter, c) = (ui.painter(), rect.center());
-    let ink = Color32::from_rgb(24, 24, 28);
+    let ink = ui.visuals().window_fill; // dark on bright signs, bright on dark ones
     let bar = |from: egui::Vec2, to: egui::Vec2| {
         painter.line_segment([c + from, c + to], egui::Stroke::new(1.8, ink));
     };

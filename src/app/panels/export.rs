@@ -32,7 +32,11 @@ pub struct ExportPanel {
 impl ExportPanel {
     /// With paths beside the scene's file.
     pub fn new(scene_file: &Path) -> Self {
-        let stem = scene_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = scene_file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         let mut panel = Self {
             format: Format::Occ3d,
             options: ExportOptions::default(),
@@ -55,7 +59,12 @@ impl ExportPanel {
 }
 
 /// Draws the dialog; the format once the user wants it written.
-pub fn export_window(ui: &Ui, input: &ExportInput, panel: &mut ExportPanel, open: &mut bool) -> Option<Format> {
+pub fn export_window(
+    ui: &Ui,
+    input: &ExportInput,
+    panel: &mut ExportPanel,
+    open: &mut bool,
+) -> Option<Format> {
     let mut wanted = None;
     egui::Window::new("Export")
         .id(egui::Id::unique("export"))
@@ -78,7 +87,10 @@ pub fn export_window(ui: &Ui, input: &ExportInput, panel: &mut ExportPanel, open
                 ui.add(field).accessible_name("Export path");
             });
             if panel.format.file_name().is_some() && Path::new(panel.path.trim()).is_file() {
-                ui.colored_label(ui.visuals().warn_fg_color, "The file exists and will be replaced.");
+                ui.colored_label(
+                    ui.visuals().warn_fg_color,
+                    "The file exists and will be replaced.",
+                );
             }
             if input.errors > 0 {
                 let text = match input.errors {
@@ -90,7 +102,7 @@ pub fn export_window(ui: &Ui, input: &ExportInput, panel: &mut ExportPanel, open
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let enabled = !input.busy && !panel.path.trim().is_empty();
-                let button = egui::Button::new("Export files").fill(theme::ACCENT_FILL);
+                let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     wanted = Some(panel.format);
                 }
@@ -119,7 +131,8 @@ fn options(ui: &mut Ui, panel: &mut ExportPanel) {
         ui.horizontal(|ui| {
             ui.label("Size");
             for (value, name) in size.iter_mut().zip(["Width", "Height"]) {
-                ui.add(DragValue::new(value).range(1..=8192).suffix(" px")).accessible_name(name);
+                ui.add(DragValue::new(value).range(1..=8192).suffix(" px"))
+                    .accessible_name(name);
             }
         });
     };
@@ -141,7 +154,11 @@ fn options(ui: &mut Ui, panel: &mut ExportPanel) {
             ui.horizontal(|ui| {
                 ui.label("Sweep");
                 ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
-                ui.radio_value(&mut options.lidar, LidarModel::Learned, "learned, with intensity and lost echoes");
+                ui.radio_value(
+                    &mut options.lidar,
+                    LidarModel::Learned,
+                    "learned, with intensity and lost echoes",
+                );
             });
         }
         Format::View => {

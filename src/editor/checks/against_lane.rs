@@ -32,11 +32,16 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         // On a junction several lanes cross: the best one counts.
         let pieces = near(layout, p, HALF_LANE_M);
         let gap = |heading_rad: f64| gap_deg(heading_rad, b.yaw_rad);
-        let best = pieces.iter().min_by(|a, b| gap(a.heading_rad).total_cmp(&gap(b.heading_rad)));
+        let best = pieces
+            .iter()
+            .min_by(|a, b| gap(a.heading_rad).total_cmp(&gap(b.heading_rad)));
         let Some(best) = best.filter(|l| gap(l.heading_rad) > TOLERATED_DEG) else {
             continue;
         };
-        let nearest = pieces.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)).unwrap_or(best);
+        let nearest = pieces
+            .iter()
+            .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+            .unwrap_or(best);
         let angle = gap(best.heading_rad);
         let how = match (angle > AGAINST_DEG, b.velocity_mps != DVec2::ZERO) {
             (true, true) => "drives against its lane",

@@ -18,7 +18,9 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         if columns.is_empty() || voxels(grid, b) > 0 {
             continue;
         }
-        let cells = columns.iter().flat_map(|&(x, y, layers)| (0..layers).map(move |z| [x, y, z]));
+        let cells = columns
+            .iter()
+            .flat_map(|&(x, y, layers)| (0..layers).map(move |z| [x, y, z]));
         out.push(Finding {
             check: NAME,
             severity: Severity::Error,
@@ -49,7 +51,9 @@ pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
     box_cells(b, MARGIN_M, |x, y| {
         let column = grid.column(x, y).iter().enumerate();
         count += column
-            .filter(|(z, l)| **l == b.class.id() && GridSpec::center(x, y, *z).z <= top_m.max(GridSpec::MIN_M[2] + 0.4))
+            .filter(|(z, l)| {
+                **l == b.class.id() && GridSpec::center(x, y, *z).z <= top_m.max(GridSpec::MIN_M[2] + 0.4)
+            })
             .count();
     });
     count

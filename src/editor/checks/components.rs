@@ -16,9 +16,14 @@ pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
 
 /// What of `occupied` is connected to the ground bins through voxels that touch by a face, an edge or a corner.
 pub fn supported(occupied: &[u16]) -> Vec<u16> {
-    let mut out: Vec<u16> = occupied.iter().map(|bits| fill(bits & GROUND_BINS, *bits)).collect();
-    // Columns whose neighbours may still gain something.
-    let mut queue: Vec<usize> = (0..out.len()).filter(|c| out[*c] != 0).collect();
+    let mut out: Vec<u16> = occupied
+        .iter()
+        .map(|bits| fill(bits & GROUND_BINS, *bits))
+        .collect();
+    // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
+    let mut queue: Vec<usize> = (0..out.len())
+        .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
+        .collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;
         for near in neighbours(c) {
@@ -108,7 +113,9 @@ mod tests {
     fn support_climbs_bridges_and_stops_at_gaps() {
         let mut grid = VoxelGrid::new();
         let put = |grid: &mut VoxelGrid, cells: &[[usize; 3]]| {
-            cells.iter().for_each(|c| grid.set(c[0], c[1], c[2], Class::Manmade.id()));
+            cells
+                .iter()
+                .for_each(|c| grid.set(c[0], c[1], c[2], Class::Manmade.id()));
         };
         // A post, an arm that leaves it over a corner and dips down again: all of it stands.
         let post: Vec<_> = (0..9).map(|z| [10, 10, z]).collect();
@@ -131,7 +138,11 @@ mod tests {
         let cells = vec![[5, 5, 5], [0, 0, 0], [6, 6, 6], [0, 1, 0], [8, 5, 5]];
         assert_eq!(
             groups(cells),
-            [vec![[0, 0, 0], [0, 1, 0]], vec![[5, 5, 5], [6, 6, 6]], vec![[8, 5, 5]]]
+            [
+                vec![[0, 0, 0], [0, 1, 0]],
+                vec![[5, 5, 5], [6, 6, 6]],
+                vec![[8, 5, 5]]
+            ]
         );
         assert!(groups(Vec::new()).is_empty());
     }

@@ -25,7 +25,9 @@ pub fn shared_area_m2(a: &SceneBox, b: &SceneBox) -> f64 {
         }
     }
     let corner = |i: usize| polygon[i % polygon.len()];
-    let twice: f64 = (0..polygon.len()).map(|i| corner(i).perp_dot(corner(i + 1))).sum();
+    let twice: f64 = (0..polygon.len())
+        .map(|i| corner(i).perp_dot(corner(i + 1)))
+        .sum();
     (twice / 2.0).max(0.0)
 }
 
@@ -89,7 +91,11 @@ mod tests {
         assert!((shared_area_m2(&a, &a) - 8.0).abs() < 1e-12);
         let b = block(3.0, 0.5, 4.0, 2.0, 180.0);
         assert!((shared_area_m2(&a, &b) - 1.5).abs() < 1e-9);
-        assert!(way_out_m(&a, &b).distance(DVec2::new(1.0, 0.0)) < 1e-9, "{}", way_out_m(&a, &b));
+        assert!(
+            way_out_m(&a, &b).distance(DVec2::new(1.0, 0.0)) < 1e-9,
+            "{}",
+            way_out_m(&a, &b)
+        );
         // A square turned by 45 degrees inside a larger one is inside.
         let diamond = block(0.2, 0.1, 1.0, 1.0, 45.0);
         assert!((shared_area_m2(&a, &diamond) - 1.0).abs() < 1e-9);
@@ -98,7 +104,20 @@ mod tests {
         let moved = block(0.2 + out.x, 0.1 + out.y, 1.0, 1.0, 45.0);
         assert!(shared_area_m2(&a, &moved) < 1e-9, "{out}");
         let far = block(30.0, 0.0, 4.0, 2.0, 17.0);
-        assert_eq!((shared_area_m2(&a, &far), way_out_m(&a, &far)), (0.0, DVec2::ZERO));
-        assert!((shared_height_m(&a, &SceneBox { center_m: DVec3::new(0.0, 0.0, 2.5), ..a }) - 0.5).abs() < 1e-12);
+        assert_eq!(
+            (shared_area_m2(&a, &far), way_out_m(&a, &far)),
+            (0.0, DVec2::ZERO)
+        );
+        assert!(
+            (shared_height_m(
+                &a,
+                &SceneBox {
+                    center_m: DVec3::new(0.0, 0.0, 2.5),
+                    ..a
+                }
+            ) - 0.5)
+                .abs()
+                < 1e-12
+        );
     }
 }

@@ -17,7 +17,10 @@ pub struct LanePiece {
 
 /// Pieces within `reach_m` of a place, in the order of the layout's lines.
 pub fn near(layout: &BevLayout, p: DVec2, reach_m: f64) -> Vec<LanePiece> {
-    let lanes = layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+    let lanes = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter);
     let pieces = lanes.flat_map(|l| l.points_m.windows(2)).filter_map(|pair| {
         let (a, d) = (pair[0], pair[1] - pair[0]);
         let length_squared = d.length_squared();
@@ -39,7 +42,9 @@ pub fn near(layout: &BevLayout, p: DVec2, reach_m: f64) -> Vec<LanePiece> {
 /// The nearest piece; of several as near, the first.
 pub fn nearest(layout: &BevLayout, p: DVec2, reach_m: f64) -> Option<LanePiece> {
     let pieces = near(layout, p, reach_m);
-    pieces.into_iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+    pieces
+        .into_iter()
+        .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
 }
 
 /// The angle between two headings, 0 to 180 degrees.

@@ -125,7 +125,10 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
             .map(|(_, b)| *b)
             .collect(),
         seen,
-        next_id: highest(&frame.boxes).max(highest(&frame.source.boxes)).saturating_add(1).into(),
+        next_id: highest(&frame.boxes)
+            .max(highest(&frame.source.boxes))
+            .saturating_add(1)
+            .into(),
     };
     let mut findings = Vec::new();
     for (_, check) in CHECKS {

@@ -16,7 +16,9 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     // Bit per class: columns in which it is explained by a box.
     let mut explained = vec![0u32; GridSpec::COLUMNS];
     for b in &context.boxes {
-        box_cells(b, MARGIN_M, |x, y| explained[x * GridSpec::NY + y] |= 1 << b.class.id());
+        box_cells(b, MARGIN_M, |x, y| {
+            explained[x * GridSpec::NY + y] |= 1 << b.class.id()
+        });
     }
     let mut left: Vec<Vec<[usize; 3]>> = vec![Vec::new(); Class::COUNT];
     for (x, y, z, label) in frame.occupancy.iter_set() {
@@ -27,6 +29,9 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     }
     for class in Class::OBJECTS {
         let cells = std::mem::take(&mut left[class as usize]);
+        if cells.len() < LEAST_VOXELS {
+            continue;
+        }
         for group in super::components::groups(cells) {
             if group.len() < LEAST_VOXELS {
                 continue;

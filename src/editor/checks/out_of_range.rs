@@ -45,10 +45,18 @@ fn problem(b: &SceneBox) -> Option<(Severity, String, bool)> {
         return Some((Severity::Warning, text, false));
     }
     if top_m <= 0.0 {
-        return Some((Severity::Error, format!("lies under the ground, its top at {top_m:.1} m"), fits));
+        return Some((
+            Severity::Error,
+            format!("lies under the ground, its top at {top_m:.1} m"),
+            fits,
+        ));
     }
     if bottom_m >= roof_m {
-        return Some((Severity::Error, format!("flies above the grid, its bottom at {bottom_m:.1} m"), fits));
+        return Some((
+            Severity::Error,
+            format!("flies above the grid, its bottom at {bottom_m:.1} m"),
+            fits,
+        ));
     }
     if top_m > roof_m {
         return Some((
@@ -58,7 +66,11 @@ fn problem(b: &SceneBox) -> Option<(Severity, String, bool)> {
         ));
     }
     if bottom_m < -TOLERANCE_M {
-        return Some((Severity::Warning, format!("sticks {:.1} m in the ground", -bottom_m), fits));
+        return Some((
+            Severity::Warning,
+            format!("sticks {:.1} m in the ground", -bottom_m),
+            fits,
+        ));
     }
     (bottom_m > TOLERANCE_M).then(|| {
         let text = format!("hovers {bottom_m:.1} m above the ground");

@@ -58,7 +58,11 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
                     name_of(b),
                     100.0 * share.min(1.0)
                 ),
-                fixes: if wrong { vec![remove, apart] } else { vec![apart, remove] },
+                fixes: if wrong {
+                    vec![remove, apart]
+                } else {
+                    vec![apart, remove]
+                },
             });
         }
     }

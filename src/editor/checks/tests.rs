@@ -27,7 +27,10 @@ fn street(objects: &[SceneBox]) -> Scene {
         kind: PolylineKind::LaneCenter,
         points_m: points.map(|(x, y)| DVec2::new(x, y)).to_vec(),
     };
-    let lanes = vec![lane([(-40.0, -1.75), (40.0, -1.75)]), lane([(40.0, 1.75), (-40.0, 1.75)])];
+    let lanes = vec![
+        lane([(-40.0, -1.75), (40.0, -1.75)]),
+        lane([(40.0, 1.75), (-40.0, 1.75)]),
+    ];
     let mut layout = BevLayout::from_cells(vec![0; GridSpec::COLUMNS], lanes).expect("40,000 cells");
     for x in 0..GridSpec::NX {
         for y in 83..118 {
@@ -36,7 +39,12 @@ fn street(objects: &[SceneBox]) -> Scene {
     }
     let boxes: BTreeMap<_, _> = objects.iter().map(|b| (b.id, *b)).collect();
     let occupancy = draft(&layout, boxes.values());
-    Scene::single("street", Frame::new(layout, boxes, occupancy), Arc::new(SensorRig::default()), 1)
+    Scene::single(
+        "street",
+        Frame::new(layout, boxes, occupancy),
+        Arc::new(SensorRig::default()),
+        1,
+    )
 }
 
 fn traffic() -> Vec<SceneBox> {
@@ -85,25 +93,52 @@ fn paint(scene: &mut Scene, class: Class, cells: Vec<[usize; 3]>) {
 fn all_is_well_on_a_good_street() {
     assert_eq!(run_checks(&street(&traffic()), None), []);
     assert_eq!(run_checks(&street(&[]), None), []);
-    let empty = Frame::new(BevLayout::default(), BTreeMap::new(), crate::scene::VoxelGrid::new());
-    assert_eq!(run_checks(&Scene::single("empty", empty, Arc::default(), 0), None), []);
+    let empty = Frame::new(
+        BevLayout::default(),
+        BTreeMap::new(),
+        crate::scene::VoxelGrid::new(),
+    );
+    assert_eq!(
+        run_checks(&Scene::single("empty", empty, Arc::default(), 0), None),
+        []
+    );
 }
 
 #[test]
 fn floating_voxels_are_found_and_removed() {
     let mut scene = street(&traffic());
-    paint(&mut scene, Class::Vegetation, vec![[50, 50, 9], [51, 51, 10], [50, 51, 9]]);
+    paint(
+        &mut scene,
+        Class::Vegetation,
+        vec![[50, 50, 9], [51, 51, 10], [50, 51, 9]],
+    );
     let finding = only(&scene, "floating_voxels", None);
     assert_eq!(finding.severity, Severity::Warning);
-    assert_eq!(finding.text, "3 voxels of vegetation float 2.6 m above the ground");
+    assert_eq!(
+        finding.text,
+        "3 voxels of vegetation float 2.6 m above the ground"
+    );
     assert!(finding.where_m.distance(GridSpec::center(50, 50, 9)) < 1.0);
     // A stem makes it a tree.
     let stem = (1..9).map(|z| [50, 50, z]).collect();
     paint(&mut scene, Class::Vegetation, stem);
     assert_eq!(run_checks(&scene, None), []);
+    // A crown is offered one.
+    let mut scene = street(&[]);
+    let crown = (0..27).map(|i| [60 + i % 3, 40 + i / 3 % 3, 8 + i / 9]).collect();
+    paint(&mut scene, Class::Vegetation, crown);
+    let finding = only(&scene, "floating_voxels", None);
+    let labels: Vec<_> = finding.fixes.iter().map(|f| f.label).collect();
+    assert_eq!(labels, ["Put a stem under it", "Remove floating voxels"]);
+    finding.fixes[0].edits[0].apply(&mut scene).expect("sound");
+    assert_eq!(scene.frame().occupancy.get(61, 41, 4), Class::Vegetation.id());
     // What may be held from outside the grid is not judged.
     let mut scene = street(&[]);
-    paint(&mut scene, Class::Manmade, vec![[0, 60, 9], [1, 60, 9], [80, 60, 15]]);
+    paint(
+        &mut scene,
+        Class::Manmade,
+        vec![[0, 60, 9], [1, 60, 9], [80, 60, 15]],
+    );
     assert_eq!(run_checks(&scene, None), []);
     // Nor what stands on voxels that nobody observed.
     let mut scene = street(&[]);
@@ -140,26 +175,42 @@ fn a_box_needs_voxels_and_voxels_need_a_box() {
     };
     emptied(&mut scene, &traffic()[0]);
     let finding = only(&scene, "box_without_occupancy", Some(1));
-    assert_eq!((finding.severity, finding.text.as_str()), (Severity::Error, "car 1 has no voxel of its class"));
+    assert_eq!(
+        (finding.severity, finding.text.as_str()),
+        (Severity::Error, "car 1 has no voxel of its class")
+    );
     assert_eq!(finding.fixes.len(), 2);
     // The other way round: the box goes, its voxels stay.
     let mut scene = street(&traffic());
     scene.frame_mut().boxes.remove(&BoxId(3));
     let finding = only(&scene, "occupancy_without_box", None);
-    assert!(finding.text.ends_with("voxels of truck belong to no box"), "{}", finding.text);
+    assert!(
+        finding.text.ends_with("voxels of truck belong to no box"),
+        "{}",
+        finding.text
+    );
     assert!(finding.where_m.truncate().distance(DVec2::new(-15.0, -1.6)) < 0.5);
     let before = scene.frame().occupancy.clone();
     let mut document = Document::new(scene.clone());
     document.apply_all("Add", &finding.fixes[0].edits).expect("sound");
     let frame = document.scene().frame();
     assert_eq!(frame.occupancy, before, "a box around voxels changes no voxel");
-    let added = frame.boxes.values().find(|b| b.class == Class::Truck).expect("a truck");
+    let added = frame
+        .boxes
+        .values()
+        .find(|b| b.class == Class::Truck)
+        .expect("a truck");
     assert!(added.center_m.truncate().distance(DVec2::new(-15.0, -1.6)) < 0.8 && added.id > BoxId(5));
     // Removed, the road under it is whole.
     document.undo();
-    document.apply_all("Remove", &finding.fixes[1].edits).expect("sound");
+    document
+        .apply_all("Remove", &finding.fixes[1].edits)
+        .expect("sound");
     let [x, y] = GridSpec::column_at(-15.0, -1.6).expect("inside");
-    assert_eq!(document.scene().frame().occupancy.get(x, y, 0), Class::DriveableSurface.id());
+    assert_eq!(
+        document.scene().frame().occupancy.get(x, y, 0),
+        Class::DriveableSurface.id()
+    );
 }
 
 #[test]
@@ -167,12 +218,22 @@ fn overlaps_are_moved_apart_or_removed() {
     let mut objects = traffic();
     objects.push(object(6, Class::Car, 13.9, -1.7, 0.0)); // 0.7 m into car 1
     let finding = only(&street(&objects), "overlapping_boxes", Some(6));
-    assert_eq!((finding.severity, finding.fixes[0].label), (Severity::Warning, "Move apart"));
+    assert_eq!(
+        (finding.severity, finding.fixes[0].label),
+        (Severity::Warning, "Move apart")
+    );
     objects.pop();
     objects.push(object(6, Class::Car, 11.5, -1.7, 0.0));
     let finding = only(&street(&objects), "overlapping_boxes", Some(6));
-    assert_eq!((finding.severity, finding.fixes[0].label), (Severity::Error, "Remove the later box"));
-    assert!(finding.text.starts_with("car 1 and car 6 overlap by 6"), "{}", finding.text);
+    assert_eq!(
+        (finding.severity, finding.fixes[0].label),
+        (Severity::Error, "Remove the later box")
+    );
+    assert!(
+        finding.text.starts_with("car 1 and car 6 overlap by 6"),
+        "{}",
+        finding.text
+    );
     // A bridge deck over a car is no overlap.
     let mut high = object(6, Class::Barrier, 10.0, -1.7, 0.0);
     high.center_m.z = 2.7;
@@ -189,7 +250,10 @@ fn three_in_one_place_are_fixed_at_once() {
     let findings = run_checks(&scene, None);
     assert_eq!(checks(&findings), ["overlapping_boxes"; 3]);
     let edits = fix_all(&scene, &findings);
-    assert_eq!(edits, [Edit::RemoveBox { id: BoxId(6) }, Edit::RemoveBox { id: BoxId(7) }]);
+    assert_eq!(
+        edits,
+        [Edit::RemoveBox { id: BoxId(6) }, Edit::RemoveBox { id: BoxId(7) }]
+    );
     edits.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     assert_eq!(run_checks(&scene, None), []);
 }
@@ -203,7 +267,12 @@ fn vehicles_belong_on_the_road_in_its_direction() {
     // No lane near: nothing is offered. Machines and two-wheelers may stand there.
     objects[0].center_m.y = -25.0;
     assert!(run_checks(&street(&objects), None)[0].fixes.is_empty());
-    for class in [Class::ConstructionVehicle, Class::Bicycle, Class::Motorcycle, Class::Barrier] {
+    for class in [
+        Class::ConstructionVehicle,
+        Class::Bicycle,
+        Class::Motorcycle,
+        Class::Barrier,
+    ] {
         objects[0] = object(1, class, 10.0, -25.0, 30.0);
         assert_eq!(run_checks(&street(&objects), None), []);
     }
@@ -216,11 +285,18 @@ fn vehicles_belong_on_the_road_in_its_direction() {
     let finding = only(&scene, "against_lane", Some(1));
     assert!(finding.text.contains("drives against"));
     let mut fixed = scene.clone();
-    finding.fixes[0].edits.iter().for_each(|e| e.apply(&mut fixed).expect("sound"));
+    finding.fixes[0]
+        .edits
+        .iter()
+        .for_each(|e| e.apply(&mut fixed).expect("sound"));
     let b = fixed.frame().boxes[&BoxId(1)];
     assert!(b.velocity_mps.x > 4.9 && b.heading().x > 0.999, "{b:?}");
     objects[0] = object(1, Class::Car, 10.0, -1.7, 90.0);
-    assert!(only(&street(&objects), "against_lane", Some(1)).text.contains("across"));
+    assert!(
+        only(&street(&objects), "against_lane", Some(1))
+            .text
+            .contains("across")
+    );
     // Beside the lanes any heading will do.
     objects[0] = object(1, Class::Car, 10.0, -5.6, 180.0);
     assert_eq!(run_checks(&street(&objects), None), []);
@@ -229,14 +305,22 @@ fn vehicles_belong_on_the_road_in_its_direction() {
 #[test]
 fn sensors_that_see_nothing_are_told() {
     let scene = street(&traffic());
-    let counts = |missing: u32| (1..=5).filter(|id| *id != missing).map(|id| (BoxId(id), 9)).collect();
+    let counts = |missing: u32| {
+        (1..=5)
+            .filter(|id| *id != missing)
+            .map(|id| (BoxId(id), 9))
+            .collect()
+    };
     let seen = Seen {
         camera_pixels: Some(counts(2)),
         lidar_returns: Some(counts(4)),
     };
     let findings = run_checks(&scene, Some(&seen));
     assert_eq!(checks(&findings), ["unseen_by_cameras", "no_lidar_returns"]);
-    assert_eq!([findings[0].box_id, findings[1].box_id], [Some(BoxId(2)), Some(BoxId(4))]);
+    assert_eq!(
+        [findings[0].box_id, findings[1].box_id],
+        [Some(BoxId(2)), Some(BoxId(4))]
+    );
     // A count of 0 is no sight either; a sensor that was not asked says nothing.
     let zero = Seen {
         camera_pixels: None,
@@ -250,15 +334,36 @@ fn sensors_that_see_nothing_are_told() {
 fn heights_and_places_are_checked() {
     for (z, severity, text) in [
         (-0.2, Severity::Warning, "car 1 sticks 1.1 m in the ground"),
-        (-1.5, Severity::Error, "car 1 lies under the ground, its top at -0.7 m"),
+        (
+            -1.5,
+            Severity::Error,
+            "car 1 lies under the ground, its top at -0.7 m",
+        ),
         (2.0, Severity::Warning, "car 1 hovers 1.1 m above the ground"),
-        (4.95, Severity::Warning, "car 1 is cut off at 5.4 m, its top is at 5.8 m"),
-        (7.0, Severity::Error, "car 1 flies above the grid, its bottom at 6.2 m"),
+        (
+            4.95,
+            Severity::Warning,
+            "car 1 is cut off at 5.4 m, its top is at 5.8 m",
+        ),
+        (
+            7.0,
+            Severity::Error,
+            "car 1 flies above the grid, its bottom at 6.2 m",
+        ),
     ] {
         let mut scene = street(&traffic());
-        scene.frame_mut().boxes.get_mut(&BoxId(1)).expect("there").center_m.z = z;
+        scene
+            .frame_mut()
+            .boxes
+            .get_mut(&BoxId(1))
+            .expect("there")
+            .center_m
+            .z = z;
         let findings = run_checks(&scene, None);
-        let found = findings.iter().find(|f| f.check == "out_of_range").unwrap_or_else(|| panic!("{z}: {findings:?}"));
+        let found = findings
+            .iter()
+            .find(|f| f.check == "out_of_range")
+            .unwrap_or_else(|| panic!("{z}: {findings:?}"));
         assert_eq!((found.severity, found.text.as_str()), (severity, text));
         let left = after(&scene, &found.fixes[0]);
         assert_eq!(left, Vec::<&str>::new(), "{z}");
@@ -266,7 +371,10 @@ fn heights_and_places_are_checked() {
     let mut scene = street(&[]);
     let mut far = object(1, Class::Car, 60.0, 0.0, 0.0);
     scene.frame_mut().boxes.insert(BoxId(1), far);
-    assert_eq!(run_checks(&scene, None)[0].text, "car 1 stands outside the map, at 60.0, 0.0 m");
+    assert_eq!(
+        run_checks(&scene, None)[0].text,
+        "car 1 stands outside the map, at 60.0, 0.0 m"
+    );
     // Taller than the grid: dropping does not help.
     far = object(1, Class::Car, 10.0, -1.7, 0.0);
     (far.size_m.z, far.center_m.z) = (6.0, 3.0);
@@ -294,7 +402,11 @@ fn what_is_not_sound_is_named_and_stops_no_other_check() {
     let findings = run_checks(&scene, None);
     let errors: Vec<&Finding> = findings.iter().filter(|f| f.check == "unsound").collect();
     assert_eq!(errors.len(), 6, "{findings:?}");
-    assert!(errors.iter().all(|f| f.severity == Severity::Error && f.where_m.is_finite()));
+    assert!(
+        errors
+            .iter()
+            .all(|f| f.severity == Severity::Error && f.where_m.is_finite())
+    );
     for (finding, text) in errors.iter().zip([
         "box 2: center_m is [NaN",
         "box 33 is filed under id 3",
@@ -308,7 +420,11 @@ fn what_is_not_sound_is_named_and_stops_no_other_check() {
     let fixed = fix_all(&scene, &findings);
     fixed.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     let boxes: Vec<u32> = scene.frame().boxes.keys().map(|id| id.0).collect();
-    assert_eq!(boxes.iter().filter(|id| [2, 3, 9].contains(id)).count(), 0, "{boxes:?}");
+    assert_eq!(
+        boxes.iter().filter(|id| [2, 3, 9].contains(id)).count(),
+        0,
+        "{boxes:?}"
+    );
     let mut nowhere = street(&[]);
     nowhere.current = 7;
     assert_eq!(run_checks(&nowhere, None), []);
@@ -319,7 +435,15 @@ fn names_are_unique_and_results_repeat() {
     let all: std::collections::BTreeSet<&str> = names().collect();
     assert_eq!(all.len(), CHECKS.len());
     let mut objects = traffic();
-    objects.extend((10..200).map(|id| object(id, Class::Car, f64::from(id % 40) - 20.0, f64::from(id % 17) - 8.0, f64::from(id))));
+    objects.extend((10..200).map(|id| {
+        object(
+            id,
+            Class::Car,
+            f64::from(id % 40) - 20.0,
+            f64::from(id % 17) - 8.0,
+            f64::from(id),
+        )
+    }));
     let scene = street(&objects);
     assert_eq!(run_checks(&scene, None), run_checks(&scene, None));
 }

@@ -11,7 +11,13 @@ pub const NO_LIDAR: &str = "no_lidar_returns";
 
 pub fn by_cameras(context: &Context<'_>, out: &mut Vec<Finding>) {
     let counts = context.seen.and_then(|s| s.camera_pixels.as_ref());
-    unseen(context, NO_CAMERA, counts, "is in no camera picture: hidden, too small, or out of view", out);
+    unseen(
+        context,
+        NO_CAMERA,
+        counts,
+        "is in no camera picture: hidden, too small, or out of view",
+        out,
+    );
 }
 
 pub fn by_lidar(context: &Context<'_>, out: &mut Vec<Finding>) {

@@ -43,14 +43,23 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         out.push(error(DVec3::ZERO, None, text, Vec::new()));
     }
     if let Some(problem) = context.scene.rig.problem() {
-        out.push(error(DVec3::ZERO, None, format!("sensors: {problem}"), Vec::new()));
+        out.push(error(
+            DVec3::ZERO,
+            None,
+            format!("sensors: {problem}"),
+            Vec::new(),
+        ));
     }
     let mut outside: BTreeMap<u8, Vec<[usize; 3]>> = BTreeMap::new();
     for (x, y, z, label) in frame.occupancy.iter_set().filter(|(.., l)| *l > Class::FREE) {
         outside.entry(label).or_default().push([x, y, z]);
     }
     for (label, cells) in outside {
-        let text = format!("{} voxels hold label {label}, expected 0 to {}", cells.len(), Class::FREE);
+        let text = format!(
+            "{} voxels hold label {label}, expected 0 to {}",
+            cells.len(),
+            Class::FREE
+        );
         let mut finding = error(middle(&cells), None, text, Vec::new());
         finding.fixes.push(Fix {
             label: "Remove these voxels",

@@ -35,7 +35,10 @@ pub fn boxes_around(class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
     columns.sort_unstable();
     columns.dedup();
     let component = Component {
-        points_m: columns.iter().map(|&[x, y]| GridSpec::center(x, y, 0).truncate()).collect(),
+        points_m: columns
+            .iter()
+            .map(|&[x, y]| GridSpec::center(x, y, 0).truncate())
+            .collect(),
         top: voxels.iter().map(|v| v[2]).max().unwrap_or(0),
     };
     if component.points_m.is_empty() {
