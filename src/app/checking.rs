@@ -276,7 +276,7 @@ mod tests {
         let mut scene = open::from_template("straight", 3).expect("a template");
         for i in 0..10 {
             scene.rev = SceneRev::fresh();
-            let now_s = f64::from(i) * 0.1;
+            let now_s = f64::from(i) * 0.25;
             let wait_s = checking.update(&Arc::new(scene.clone()), false, now_s);
             assert_eq!(wait_s, Some(AFTER_S), "each change starts the rest anew");
         }
