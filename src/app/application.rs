@@ -20,12 +20,15 @@ use super::canvas::Canvas;
 use super::command::Command;
 use super::compare::Compare;
 use super::dock::Dock;
+use super::checking::Checking;
+use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
 use super::keys;
 use super::live::{Advice, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
+use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
@@ -36,6 +39,7 @@ use super::panels::start::start_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
+use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
 use super::state::{Pane, UiState};
@@ -122,6 +126,11 @@ pub struct SceneloomApp {
     pub receipt: Option<Receipt>,
     /// Messages.
     pub toasts: Toasts,
+    /// Findings of the quality checks.
+    pub checking: Checking,
+    /// Copies of unsaved work; none in tests.
+    pub recovery: Option<Recovery>,
+    pub(super) exporting: Exporting,
     pub(super) path: Option<PathBuf>,
     pub(super) worker: GenWorker,
     pub(super) dialogs: FileDialogs,
@@ -199,6 +208,9 @@ impl SceneloomApp {
             live: Live::new(config.params, config.full_params, config.warm_up),
             receipt: None,
             toasts,
+            checking: Checking::spawn(wake.clone())?,
+            recovery: None,
+            exporting: Exporting::default(),
             path: config.path,
             worker,
             dialogs: FileDialogs::new(config.native_dialogs),
@@ -290,6 +302,9 @@ impl SceneloomApp {
         if self.passes > 1 {
             self.schedule(ctx);
         }
+        self.update_checks(ctx);
+        self.update_recovery(ctx);
+        self.update_export();
         self.set_title(ctx);
         self.keep_settings(ctx);
     }
@@ -476,9 +491,11 @@ impl SceneloomApp {
                 self.state.selected = None;
                 self.state.correcting = false;
                 self.state.named = Named::default();
+                self.note_opened(&opening.what, true);
                 ctx.request_repaint();
             }
             Err(error) => {
+                self.note_opened(&opening.what, false);
                 let text = format!("{}: {}", opening.what, one_line(&error));
                 self.toasts.push(Level::Error, text, now_s);
             }
@@ -508,7 +525,8 @@ impl SceneloomApp {
             || self.dialogs.is_open()
             || self.state.keys_open
             || self.state.start_open
-            || self.palette.open;
+            || self.palette.open
+            || self.asks_to_recover();
         self.overlays(ui, &scene, &mut commands);
         if !dialog {
             let flying =
@@ -594,10 +612,20 @@ impl SceneloomApp {
             .show(ui, &mut self.keymap, &mut self.state.keys_open);
         settings_ui(ui, &mut self.settings, &mut self.state.settings_open);
         start_ui(ui, &mut self.settings, &mut self.state.start_open, commands);
+        if self.state.checks_open {
+            let input = ChecksInput {
+                findings: self.checking.findings().map(|f| f.as_slice()),
+                stale: self.checking.is_stale(self.document.settled_scene().rev),
+                selected: self.state.selected,
+            };
+            checks_window(ui, &input, &mut self.state.checks_open, commands);
+        }
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
         }
+        self.export_dialog(ui);
+        self.recovery_dialog(ui);
         if self.unsaved.is_some()
             && let Some(answer) = dialogs::unsaved_ui(ui, &scene.name)
         {

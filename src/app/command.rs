@@ -87,6 +87,8 @@ pub enum Command {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
+    /// Opens or closes the dialog that exports files for other programs.
+    ToggleExport,
     /// Asks for a file and saves the 3D view there.
     ExportScreenshot,
     /// Saves the 3D view beside the scene.
@@ -103,6 +105,12 @@ pub enum Command {
     FrameSelection,
     /// Brings everything into the view under the pointer.
     FrameAll,
+    /// Brings a place of the ego frame, m, into the middle of both large views.
+    FrameAt(glam::DVec3),
+    /// Repairs all findings of the checks that can be repaired.
+    FixAll,
+    /// Shows or hides the findings of the checks.
+    ToggleChecks,
     /// Takes a standard viewpoint in the 3D view.
     View(ViewPreset),
     /// Looks through that camera of the rig in the 3D view.

@@ -132,6 +132,10 @@ impl SceneloomApp {
                     self.canvas.frame_all_again();
                 }
             },
+            Command::ToggleExport => self.toggle_export(),
+            Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
+            Command::FixAll => self.fix_all(ctx),
+            Command::ToggleChecks => self.state.checks_open = !self.state.checks_open,
             Command::View(preset) => self.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
@@ -316,6 +320,9 @@ impl SceneloomApp {
         match next {
             Next::Quit => {
                 self.may_close = true;
+                if let Some(recovery) = &mut self.recovery {
+                    recovery.forget();
+                }
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Next::AskOpen => {
@@ -348,7 +355,7 @@ impl SceneloomApp {
     }
 
     /// Makes a scene on a thread of its own; the window goes on meanwhile.
-    fn load(
+    pub(super) fn load(
         &mut self,
         what: String,
         path: Option<PathBuf>,
@@ -428,7 +435,7 @@ impl SceneloomApp {
     }
 
     /// A path beside the scene's file, or in the working folder, named after the scene.
-    fn suggested(&self, extension: &str) -> PathBuf {
+    pub(super) fn suggested(&self, extension: &str) -> PathBuf {
         match &self.path {
             Some(path) => path.with_extension(extension),
             None => {

@@ -7,12 +7,15 @@ pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
 pub mod canvas_tools;
+pub mod checking;
 pub mod cli;
 pub mod command;
 pub mod compare;
 pub mod dock;
 mod dock_ui;
 mod execute;
+pub mod export;
+mod exporting;
 mod file_dialogs;
 mod icons;
 pub mod keymap;
@@ -24,6 +27,8 @@ pub mod panels;
 pub mod picture;
 mod pipeline;
 mod pointer;
+mod recovering;
+pub mod recovery;
 pub mod roads;
 pub mod sensing;
 pub mod settings;
@@ -94,7 +99,8 @@ pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
         ..Default::default()
     };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        let app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
+        let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
+        app.keep_copies(&cc.egui_ctx);
         Ok(Box::new(app))
     };
     eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {

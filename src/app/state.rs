@@ -231,6 +231,8 @@ pub struct UiState {
     pub holding_before: bool,
     /// Where the line of the wipe stands, 0 to 1.
     pub wipe_at: f32,
+    /// The checks' window is open.
+    pub checks_open: bool,
     /// The sensors' window is open.
     pub sensors_open: bool,
     /// The sensor chosen in it.
@@ -343,6 +345,7 @@ impl Default for UiState {
             compare: CompareMode::Off,
             holding_before: false,
             wipe_at: 0.5,
+            checks_open: false,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,

@@ -169,6 +169,11 @@ impl Document {
         self.saved = self.settled_scene().rev;
     }
 
+    /// Notes that the settled state is in no file of the user's: it was recovered.
+    pub fn mark_unsaved(&mut self) {
+        self.saved = SceneRev::fresh();
+    }
+
     /// Takes a generated occupancy of the state `rev` into that state, if it is the one shown: no new
     /// undo step, the occupancy becomes the source of what comes, painted voxels keep what was
     /// painted. Returns the state's new revision; later undo and redo visit the settled state.

@@ -1,5 +1,6 @@
-//! How a scene changes: document, undo, picking.
+//! How a scene changes: document, undo, picking, checks.
 
+pub mod checks;
 pub mod document;
 pub mod edit;
 pub mod immediate;

@@ -3,6 +3,7 @@
 mod bench;
 mod editing;
 mod files;
+mod recovery;
 mod sensors;
 mod shell;
 mod views;

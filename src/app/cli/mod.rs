@@ -1,10 +1,13 @@
 //! The command line: one subcommand per file. See README for the rules that all of them follow.
 
+mod check;
 mod dataset;
 mod demo;
+mod diff;
 mod doctor;
 mod edit;
 mod eval;
+mod export;
 mod generate;
 mod import;
 mod new;
@@ -50,6 +53,12 @@ enum Command {
     Render(render::Render),
     /// The 3D viewport alone, off screen.
     Shot(shot::Shot),
+    /// The quality checks; exit 1 if one of severity error fires.
+    Check(check::Check),
+    /// What differs between two scenes.
+    Diff(diff::Diff),
+    /// Files for other programs.
+    Export(export::Export),
     /// Training and evaluation data from procedural worlds.
     Dataset(dataset::Dataset),
     /// Held-out quality.
@@ -182,6 +191,9 @@ pub fn main() -> ExitCode {
         Some(Command::Edit(c)) => c.run(),
         Some(Command::Render(c)) => c.run(),
         Some(Command::Shot(c)) => c.run(),
+        Some(Command::Check(c)) => c.run(),
+        Some(Command::Diff(c)) => c.run(),
+        Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),

@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::anyhow;
 use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
+use crate::app::export::view_camera;
 use crate::app::{open, picture};
-use crate::viewport::{ViewCamera, ViewPreset};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -41,23 +40,7 @@ pub struct Shot {
 impl Shot {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
-        let of_rig = scene
-            .rig
-            .cameras
-            .iter()
-            .find(|c| c.name == self.view)
-            .map(ViewCamera::through);
-        let camera = ViewPreset::from_name(&self.view)
-            .map(ViewCamera::preset)
-            .or(of_rig)
-            .ok_or_else(|| {
-                let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
-                anyhow!(
-                    "--view is {:?}, expected perspective, top, front, side, ego or one of {}",
-                    self.view,
-                    cameras.join(", ")
-                )
-            })?;
+        let camera = view_camera(&scene, &self.view)?;
         let options = picture::ShotOptions {
             camera,
             size: self.size,

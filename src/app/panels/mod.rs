@@ -3,13 +3,16 @@
 pub mod box_views;
 pub mod camera_header;
 pub mod cameras;
+pub mod checks;
 pub mod dialogs;
+pub mod export;
 pub mod fields;
 pub mod layers;
 pub mod lidar_sweep;
 pub mod objects;
 pub mod palette;
 pub mod panes;
+pub mod recovery;
 pub mod sensors;
 pub mod settings;
 pub mod shortcuts;

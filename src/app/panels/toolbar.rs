@@ -118,6 +118,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Save", "Ctrl+S", true), Command::Save);
         on(item(ui, "Save as…", "Ctrl+Shift+S", true), Command::SaveAs);
         ui.separator();
+        on(item(ui, "Export…", "", true), Command::ToggleExport);
         on(item(ui, "Quick screenshot", "F12", true), Command::QuickShot);
         on(
             item(ui, "Export screenshot…", "", true),
@@ -172,6 +173,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
         on(item(ui, "Grid", "G", true), Command::ToggleGrid);
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
+        on(item(ui, "Checks…", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
     });
     ui.menu_button("Generate", |ui| {

@@ -28,6 +28,26 @@ pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
     out
 }
 
+/// Boxes around voxels `[x, y, z]` of one class that are taken to touch each other; several where they are too many
+/// for one object. The ids count from 1.
+pub fn boxes_around(class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
+    let mut columns: Vec<[usize; 2]> = voxels.iter().map(|&[x, y, _]| [x, y]).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let component = Component {
+        points_m: columns
+            .iter()
+            .map(|&[x, y]| GridSpec::center(x, y, 0).truncate())
+            .collect(),
+        top: voxels.iter().map(|v| v[2]).max().unwrap_or(0),
+    };
+    if component.points_m.is_empty() {
+        return Vec::new();
+    }
+    let parts = split(class, &component).into_iter().zip(1..);
+    parts.map(|(part, id)| part.to_box(BoxId(id), class)).collect()
+}
+
 /// Columns of one object: centres on the ground and the highest voxel.
 struct Component {
     points_m: Vec<DVec2>,

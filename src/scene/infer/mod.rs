@@ -4,5 +4,5 @@
 mod boxes;
 mod ground;
 
-pub use boxes::boxes;
+pub use boxes::{boxes, boxes_around};
 pub use ground::layout;

@@ -6,8 +6,8 @@ use anyhow::Context;
 
 use crate::app::cli::output;
 use crate::app::picture::{self, Picture};
-use crate::formats::multi_plane;
 use crate::formats::npz::{self, Array};
+use crate::formats::{multi_plane, point_cloud};
 use crate::generation::sensors::appearance::CameraImage;
 use crate::generation::sensors::color;
 use crate::scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
@@ -139,30 +139,7 @@ impl Writer {
 
     /// Points, and a picture from above.
     pub fn lidar(&mut self, sweep: &LidarSweep) -> anyhow::Result<()> {
-        self.bytes("lidar.ply", &ply(sweep))?;
+        self.bytes("lidar.ply", &point_cloud::ply(sweep))?;
         self.picture("lidar.png", &picture::lidar_top(sweep, 4))
     }
-}
-
-/// Points as a binary little-endian PLY: x, y, z in the ego frame, range, intensity, drop probability, ring, class.
-fn ply(sweep: &LidarSweep) -> Vec<u8> {
-    let mut out = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
-         property float range_m\nproperty float intensity\nproperty float drop_probability\nproperty ushort ring\n\
-         property uchar class\nend_header\n",
-        sweep.points.len()
-    )
-    .into_bytes();
-    for p in &sweep.points {
-        let floats = [p.range_m, p.intensity, p.drop_probability];
-        out.extend(
-            p.position_in_ego
-                .into_iter()
-                .chain(floats)
-                .flat_map(f32::to_le_bytes),
-        );
-        out.extend(p.ring.to_le_bytes());
-        out.push(p.class.id());
-    }
-    out
 }

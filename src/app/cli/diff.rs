@@ -1,0 +1,297 @@
+//! `sceneloom diff`: what differs between two scenes: boxes, layout cells, voxels by class, LiDAR.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde_json::{Map, Value, json};
+
+use super::{Common, Outcome, output};
+use crate::app::open;
+use crate::app::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use crate::generation::job::GenParams;
+use crate::generation::region::Region;
+use crate::generation::sensors::lidar;
+use crate::scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Diff {
+    /// Scene before.
+    a: PathBuf,
+    /// Scene after.
+    b: PathBuf,
+    /// Picture to write: both from above, and what changed between them.
+    #[arg(short, long, value_name = "SHEET.png")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// A range that differs by less did not change, m.
+const SAME_RANGE_M: f32 = 1e-3;
+/// Pixels per column on the sheet.
+const SCALE: usize = 3;
+
+impl Diff {
+    pub(super) fn run(self) -> Outcome {
+        let (a, b) = (open::scene(&self.a)?, open::scene(&self.b)?);
+        let (before, after) = (a.frame(), b.frame());
+        let mut report = Map::new();
+        report.insert("boxes".into(), boxes(before, after));
+        report.insert("layout".into(), layout(before, after));
+        // What an edit from A to B would redraw: where B's voxels may differ.
+        let region = Region::of_edit(&edited(before, after), GenParams::default().halo_columns as usize);
+        let changed = changed_voxels(before, after);
+        let inside = |(x, y, _): &(usize, usize, usize)| region.columns[x * GridSpec::NY + y];
+        let changed_inside = changed.iter().filter(|v| inside(v)).count();
+        report.insert("voxels_changed".into(), changed.len().into());
+        report.insert("voxels".into(), voxels(before, after, &changed));
+        report.insert(
+            "region".into(),
+            json!({ "columns": region.column_count(), "share": region.share() }),
+        );
+        report.insert("changed_inside_region".into(), changed_inside.into());
+        report.insert(
+            "changed_outside_region".into(),
+            (changed.len() - changed_inside).into(),
+        );
+        let sweep = |s: &Scene| lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
+        let sweeps = (sweep(&a), sweep(&b));
+        report.insert("lidar".into(), lidar_report(&a, &b, &sweeps.0, &sweeps.1));
+        report.insert(
+            "prompt".into(),
+            json!({ "changed": a.prompt != b.prompt, "a": a.prompt, "b": b.prompt }),
+        );
+        report.insert("rig_changed".into(), (a.rig != b.rig).into());
+        report.insert("frames".into(), json!([a.frames.len(), b.frames.len()]));
+        if let Some(path) = &self.output {
+            let sheet = Picture::sheet(
+                &[
+                    vec![
+                        layout_top(before, SCALE),
+                        layout_top(after, SCALE),
+                        layout_change(before, after),
+                    ],
+                    vec![
+                        occupancy_top(&before.occupancy, SCALE),
+                        occupancy_top(&after.occupancy, SCALE),
+                        voxel_change(after, &changed),
+                    ],
+                    vec![lidar_top(&sweeps.0, SCALE), lidar_top(&sweeps.1, SCALE)],
+                ],
+                6,
+            );
+            output::write_png(path, sheet.width, sheet.height, &sheet.rgba)?;
+            report.insert("files".into(), json!([path]));
+        }
+        let report = Value::Object(report);
+        output::report(&self.common, &report, || text(&report));
+        Ok(())
+    }
+}
+
+/// The report for a person.
+fn text(report: &Value) -> String {
+    let boxes = &report["boxes"];
+    let count = |key: &str| boxes[key].as_array().map_or(0, Vec::len);
+    let mut lines = vec![
+        format!(
+            "boxes: {} added, {} removed, {} changed",
+            count("added"),
+            count("removed"),
+            count("changed")
+        ),
+        format!("layout cells changed: {}", report["layout"]["cells_changed"]),
+        format!(
+            "voxels changed: {} ({} inside the region of the edit, {} outside)",
+            report["voxels_changed"], report["changed_inside_region"], report["changed_outside_region"]
+        ),
+    ];
+    for (class, of) in report["voxels"].as_object().into_iter().flatten() {
+        lines.push(format!("  {class}: +{} -{}", of["gained"], of["lost"]));
+    }
+    let lidar = &report["lidar"];
+    lines.push(format!(
+        "LiDAR: {} of {} rays changed",
+        lidar["rays_changed"], lidar["rays"]
+    ));
+    lines.join("\n")
+}
+
+/// The later frame as an edit of the earlier one.
+fn edited(before: &Frame, after: &Frame) -> Frame {
+    Frame {
+        source: Arc::new(SourceFrame {
+            layout: before.layout.clone(),
+            boxes: before.boxes.clone(),
+            occupancy: before.occupancy.clone(),
+        }),
+        ..after.clone()
+    }
+}
+
+fn boxes(before: &Frame, after: &Frame) -> Value {
+    let of = |b: &SceneBox| json!({ "id": b.id, "class": b.class, "center_m": b.center_m });
+    let only = |here: &Frame, there: &Frame| -> Vec<Value> {
+        let gone = here.boxes.values().filter(|b| !there.boxes.contains_key(&b.id));
+        gone.map(of).collect()
+    };
+    let pairs = before
+        .boxes
+        .values()
+        .filter_map(|a| Some((a, after.boxes.get(&a.id)?)));
+    let changed: Vec<Value> = pairs.filter(|(a, b)| a != b).map(|(a, b)| change(a, b)).collect();
+    json!({ "added": only(after, before), "removed": only(before, after), "changed": changed })
+}
+
+/// What differs between two boxes of one id.
+fn change(a: &SceneBox, b: &SceneBox) -> Value {
+    let mut out = Map::new();
+    out.insert("id".into(), json!(a.id));
+    let mut note = |key: &str, differs: bool, value: Value| {
+        if differs {
+            out.insert(key.into(), value);
+        }
+    };
+    note("class", a.class != b.class, json!([a.class, b.class]));
+    note(
+        "moved_m",
+        a.center_m != b.center_m,
+        json!(b.center_m - a.center_m),
+    );
+    note("resized_m", a.size_m != b.size_m, json!(b.size_m - a.size_m));
+    let turn = (b.yaw_rad - a.yaw_rad).to_degrees().rem_euclid(360.0);
+    let turn = if turn > 180.0 { turn - 360.0 } else { turn };
+    note("turned_deg", a.yaw_rad != b.yaw_rad, json!(turn));
+    note(
+        "velocity_mps",
+        a.velocity_mps != b.velocity_mps,
+        json!([a.velocity_mps, b.velocity_mps]),
+    );
+    Value::Object(out)
+}
+
+fn layout(before: &Frame, after: &Frame) -> Value {
+    let (a, b) = (before.layout.cells(), after.layout.cells());
+    let mut layers = Map::new();
+    for layer in BevLayer::MAP {
+        let count = |with: &[u32], without: &[u32]| {
+            let pairs = with.iter().zip(without);
+            pairs
+                .filter(|(w, o)| **w & layer.bit() != 0 && **o & layer.bit() == 0)
+                .count()
+        };
+        let (set, cleared) = (count(b, a), count(a, b));
+        if set + cleared > 0 {
+            layers.insert(layer.name().into(), json!({ "set": set, "cleared": cleared }));
+        }
+    }
+    let cells = a.iter().zip(b).filter(|(a, b)| a != b).count();
+    let lines = before.layout.polylines != after.layout.polylines;
+    json!({ "cells_changed": cells, "layers": layers, "polylines_changed": lines })
+}
+
+/// Voxels that differ, as indices.
+fn changed_voxels(before: &Frame, after: &Frame) -> Vec<(usize, usize, usize)> {
+    let mut out = Vec::new();
+    for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
+        let (a, b) = (before.occupancy.column(x, y), after.occupancy.column(x, y));
+        out.extend((0..GridSpec::NZ).filter(|z| a[*z] != b[*z]).map(|z| (x, y, z)));
+    }
+    out
+}
+
+/// Voxels that each class gained and lost; classes that did neither are left out.
+fn voxels(before: &Frame, after: &Frame, changed: &[(usize, usize, usize)]) -> Value {
+    let mut counts = [[0usize; 2]; Class::COUNT];
+    for &(x, y, z) in changed {
+        for (i, frame) in [after, before].into_iter().enumerate() {
+            if let Some(of) = counts.get_mut(frame.occupancy.get(x, y, z) as usize) {
+                of[i] += 1;
+            }
+        }
+    }
+    let named = Class::ALL
+        .into_iter()
+        .zip(counts)
+        .filter(|(_, [gained, lost])| gained + lost > 0);
+    let entry = |(class, [gained, lost]): (Class, [usize; 2])| {
+        (class.name().to_owned(), json!({ "gained": gained, "lost": lost }))
+    };
+    Value::Object(named.map(entry).collect())
+}
+
+/// Ray by ray, where both scenes have the same LiDAR.
+fn lidar_report(a: &Scene, b: &Scene, sweep_a: &LidarSweep, sweep_b: &LidarSweep) -> Value {
+    let same_sensor =
+        a.rig.lidars.first() == b.rig.lidars.first() && a.rig.ego_speed_mps == b.rig.ego_speed_mps;
+    let rays = sweep_a.rays.max(sweep_b.rays);
+    let rays_changed = same_sensor.then(|| {
+        let by_ray = |sweep: &LidarSweep| -> std::collections::BTreeMap<(u16, u16), (f32, Class)> {
+            let points = sweep.points.iter();
+            points
+                .map(|p| ((p.ring, p.azimuth), (p.range_m, p.class)))
+                .collect()
+        };
+        let (of_a, of_b) = (by_ray(sweep_a), by_ray(sweep_b));
+        let differs = |ray: &(u16, u16), range_m: f32, class: Class| match of_b.get(ray) {
+            Some((other_m, other)) => (range_m - other_m).abs() > SAME_RANGE_M || class != *other,
+            None => true,
+        };
+        let changed = of_a
+            .iter()
+            .filter(|(ray, (range_m, class))| differs(ray, *range_m, *class))
+            .count();
+        changed + of_b.keys().filter(|ray| !of_a.contains_key(ray)).count()
+    });
+    json!({
+        "rays": rays,
+        "returns": [sweep_a.points.len(), sweep_b.points.len()],
+        "rays_changed": rays_changed,
+    })
+}
+
+/// The later layout, dark; changed cells bright: orange where a layer went, blue where one came.
+fn layout_change(before: &Frame, after: &Frame) -> Picture {
+    let (a, b) = (before.bev_channels(), after.bev_channels());
+    marked(layout_top(after, SCALE), |x, y| {
+        let i = x * GridSpec::NY + y;
+        mark(b[i] & !a[i] != 0, a[i] & !b[i] != 0)
+    })
+}
+
+/// The later occupancy, dark; columns bright that gained (blue) or lost voxels (orange), or both (yellow).
+fn voxel_change(after: &Frame, changed: &[(usize, usize, usize)]) -> Picture {
+    let mut flags = vec![(false, false); GridSpec::COLUMNS];
+    for &(x, y, z) in changed {
+        let now_free = after.occupancy.get(x, y, z) == Class::FREE;
+        let flag = &mut flags[x * GridSpec::NY + y];
+        *flag = (flag.0 | !now_free, flag.1 | now_free);
+    }
+    marked(occupancy_top(&after.occupancy, SCALE), |x, y| {
+        let (came, went) = flags[x * GridSpec::NY + y];
+        mark(came, went)
+    })
+}
+
+/// Colours that the colour-blind tell apart, too.
+fn mark(came: bool, went: bool) -> Option<[u8; 3]> {
+    match (came, went) {
+        (true, true) => Some([250, 220, 60]),
+        (true, false) => Some([70, 160, 255]),
+        (false, true) => Some([255, 140, 40]),
+        (false, false) => None,
+    }
+}
+
+fn marked(mut picture: Picture, of: impl Fn(usize, usize) -> Option<[u8; 3]>) -> Picture {
+    for (at, pixel) in picture.rgba.chunks_exact_mut(4).enumerate() {
+        let (column, row) = (at % picture.width / SCALE, at / picture.width / SCALE);
+        // Ego x is up, ego y is left.
+        let cell = of(GridSpec::NX - 1 - row, GridSpec::NY - 1 - column);
+        for (channel, value) in pixel[..3].iter_mut().enumerate() {
+            *value = cell.map_or(*value / 3, |color| color[channel]);
+        }
+    }
+    picture
+}

@@ -1,0 +1,114 @@
+//! `sceneloom export`: a scene to files of other programs.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::{Context, anyhow};
+use serde_json::json;
+
+use super::render::size;
+use super::{Common, Outcome, output};
+use crate::app::export::{ExportOptions, Format, export, view_camera};
+use crate::app::open;
+use crate::app::picture::ShotOptions;
+use crate::app::state::{CameraSource, LidarModel};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Export {
+    /// Scene to read.
+    scene: Option<PathBuf>,
+    /// Kind of file; `list` names them all, `all` writes every kind into a folder.
+    #[arg(long, value_name = "NAME")]
+    format: String,
+    /// File or folder to write.
+    #[arg(short, long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Size of camera pictures and maps in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
+    size: [u32; 2],
+    /// What classes and depths are rendered from.
+    #[arg(long, value_name = "NAME", value_parser = ["splats", "voxels", "shapes"], default_value = "shapes")]
+    source: String,
+    /// How the LiDAR sweep comes about.
+    #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
+    lidar: String,
+    /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig.
+    #[arg(long, value_name = "NAME", default_value = "perspective")]
+    view: String,
+    /// Size of the 3D view in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x720")]
+    view_size: [u32; 2],
+    /// Supersampling of the 3D view per axis, 1 to 8.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    scale: u32,
+    /// The 3D view without background.
+    #[arg(long)]
+    transparent: bool,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Export {
+    pub(super) fn run(self) -> Outcome {
+        if self.format == "list" {
+            let list: Vec<_> = Format::ALL
+                .map(|f| json!({ "name": f.name(), "holds": f.what() }))
+                .into();
+            output::report(&self.common, &json!({ "formats": list }), || {
+                let lines = Format::ALL.map(|f| format!("{:<16} {}", f.name(), f.what()));
+                lines.join("\n")
+            });
+            return Ok(());
+        }
+        let formats = match (self.format.as_str(), Format::from_name(&self.format)) {
+            ("all", _) => Format::ALL.to_vec(),
+            (_, Some(format)) => vec![format],
+            (unknown, None) => {
+                let names = Format::ALL.map(Format::name).join(", ");
+                return Err(anyhow!("--format is {unknown:?}, expected one of {names}, all, list").into());
+            }
+        };
+        let path = self
+            .output
+            .context("-o PATH is missing: where should the files go?")?;
+        let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
+        let options = ExportOptions {
+            camera_size: self.size,
+            source: match self.source.as_str() {
+                "splats" => CameraSource::Splats,
+                "voxels" => CameraSource::Voxels,
+                _ => CameraSource::Shapes,
+            },
+            lidar: match self.lidar.as_str() {
+                "learned" => LidarModel::Learned,
+                _ => LidarModel::Exact,
+            },
+            shot: ShotOptions {
+                camera: view_camera(&scene, &self.view)?,
+                size: self.view_size,
+                supersample: self.scale,
+                transparent: self.transparent,
+                ..ShotOptions::default()
+            },
+        };
+        if self.format == "all" {
+            std::fs::create_dir_all(&path).with_context(|| format!("create {}", path.display()))?;
+        }
+        let start = Instant::now();
+        let mut files = Vec::new();
+        for format in formats {
+            files.extend(export(&scene, format, &options, &path)?);
+        }
+        let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
+        let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();
+        let report = json!({ "files": paths, "bytes": bytes, "wall_s": start.elapsed().as_secs_f64() });
+        output::report(&self.common, &report, || {
+            let lines = files
+                .iter()
+                .map(|(path, bytes)| format!("{} ({bytes} bytes)", path.display()));
+            lines.collect::<Vec<_>>().join("\n")
+        });
+        Ok(())
+    }
+}

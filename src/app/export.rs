@@ -1,0 +1,358 @@
+//! Takes a scene to files of other programs: what the command line and the window share.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow, bail};
+use serde_json::json;
+
+use super::camera_views::march;
+use super::checking;
+use super::picture::{ShotOptions, View3d};
+use super::state::{CameraSource, LidarModel};
+use crate::formats::{atomic, box_list, occ3d, png, point_cloud};
+use crate::generation::model::lidar::LidarNet;
+use crate::generation::sensors::appearance::{
+    Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer,
+};
+use crate::generation::sensors::learned::{self, Drops};
+use crate::generation::sensors::splat::{self, GaussianCloud, SplatOptions};
+use crate::generation::sensors::{color, lidar};
+use crate::scene::sensor_data::{RENDER_IDS, RenderId};
+use crate::scene::{CameraMaps, Class, LidarSweep, Scene};
+use crate::viewport::{ViewCamera, ViewPreset};
+
+/// What can be exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Occupancy as Occ3D labels.
+    Occ3d,
+    /// LiDAR sweep as nuScenes keeps it.
+    NuscenesLidar,
+    /// LiDAR sweep for viewers.
+    Ply,
+    /// Classes that the cameras see.
+    Semantic,
+    /// Depths that the cameras see.
+    Depth,
+    /// Pictures that the cameras take.
+    Pictures,
+    /// Boxes with their numbers.
+    Boxes,
+    /// Picture of the 3D view.
+    View,
+}
+
+impl Format {
+    /// Every format, in the order of lists.
+    pub const ALL: [Format; 8] = [
+        Format::Occ3d,
+        Format::Boxes,
+        Format::NuscenesLidar,
+        Format::Ply,
+        Format::Semantic,
+        Format::Depth,
+        Format::Pictures,
+        Format::View,
+    ];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Occ3d => "occ3d",
+            Format::NuscenesLidar => "nuscenes-lidar",
+            Format::Ply => "ply",
+            Format::Semantic => "semantic",
+            Format::Depth => "depth",
+            Format::Pictures => "pictures",
+            Format::Boxes => "boxes",
+            Format::View => "view",
+        }
+    }
+
+    /// The format of that name.
+    pub fn from_name(name: &str) -> Option<Format> {
+        Self::ALL.into_iter().find(|f| f.name() == name)
+    }
+
+    /// What it holds, for a person.
+    pub fn what(self) -> &'static str {
+        match self {
+            Format::Occ3d => "Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels",
+            Format::NuscenesLidar => "LiDAR: nuScenes .pcd.bin, sensor frame (x, y, z, intensity, ring)",
+            Format::Ply => "LiDAR: PLY for viewers, ego frame, with class, intensity, ring",
+            Format::Semantic => "Cameras: class maps, PNG with palette, and classes.json",
+            Format::Depth => "Cameras: depth in millimetres, 16-bit PNG",
+            Format::Pictures => "Cameras: pictures in the prompt's weather, PNG",
+            Format::Boxes => "Boxes: JSON with centre, size, heading, velocity, LiDAR points",
+            Format::View => "3D view: PNG of any size, supersampled",
+        }
+    }
+
+    /// Name of the file where only a folder is given; `None` for formats that fill a folder.
+    pub fn file_name(self) -> Option<&'static str> {
+        match self {
+            Format::Occ3d => Some("labels.npz"),
+            Format::NuscenesLidar => Some("LIDAR_TOP.pcd.bin"),
+            Format::Ply => Some("lidar.ply"),
+            Format::Boxes => Some("boxes.json"),
+            Format::View => Some("view.png"),
+            Format::Semantic | Format::Depth | Format::Pictures => None,
+        }
+    }
+}
+
+/// How to export.
+#[derive(Clone, Debug)]
+pub struct ExportOptions {
+    /// Size of camera pictures and maps in pixels.
+    pub camera_size: [u32; 2],
+    /// What classes and depths are rendered from.
+    pub source: CameraSource,
+    /// How the LiDAR sweep comes about.
+    pub lidar: LidarModel,
+    /// How the picture of the 3D view is taken.
+    pub shot: ShotOptions,
+}
+
+impl Default for ExportOptions {
+    fn default() -> Self {
+        Self {
+            camera_size: [800, 450],
+            source: CameraSource::default(),
+            lidar: LidarModel::default(),
+            shot: ShotOptions::default(),
+        }
+    }
+}
+
+/// A viewpoint by name: `perspective`, `top`, `front`, `side`, `ego`, or a camera of the scene's rig.
+pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
+    let of_rig = || {
+        scene
+            .rig
+            .cameras
+            .iter()
+            .find(|c| c.name == name)
+            .map(ViewCamera::through)
+    };
+    ViewPreset::from_name(name)
+        .map(ViewCamera::preset)
+        .or_else(of_rig)
+        .ok_or_else(|| {
+            let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+            anyhow!(
+                "--view is {name:?}, expected perspective, top, front, side, ego or one of {}",
+                cameras.join(", ")
+            )
+        })
+}
+
+/// Writes the current frame. `path` is the file, or a folder for the format's usual name; formats that fill a folder
+/// make it. Returns the files and their sizes in bytes. Errors in one line; each file is written whole or not at all.
+pub fn export(
+    scene: &Scene,
+    format: Format,
+    options: &ExportOptions,
+    path: &Path,
+) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    let mut out = Files {
+        scene,
+        path,
+        written: Vec::new(),
+    };
+    let frame = scene.frame();
+    match format {
+        Format::Occ3d => {
+            if let Some((x, y, z, label)) = frame.occupancy.iter_set().find(|(.., l)| *l > Class::FREE) {
+                bail!(
+                    "voxel {x}, {y}, {z} holds label {label}, expected 0 to {}",
+                    Class::FREE
+                );
+            }
+            out.file(format, &occ3d::to_bytes(&frame.occupancy))?;
+        }
+        Format::Boxes => {
+            let seen = checking::seen(scene);
+            let (lidar, camera) = (seen.lidar_returns.as_ref(), seen.camera_pixels.as_ref());
+            let bytes = box_list::to_bytes(&scene.name, frame, lidar, camera).map_err(|e| anyhow!(e))?;
+            out.file(format, &bytes)?;
+        }
+        Format::NuscenesLidar => {
+            let sweep = sweep(scene, options.lidar)?;
+            // The sweep is of the first one, and there is one.
+            let pattern = scene.rig.lidars.first().context("the rig has no LiDAR")?;
+            out.file(format, &point_cloud::nuscenes(&sweep, pattern))?;
+        }
+        Format::Ply => out.file(format, &point_cloud::ply(&sweep(scene, options.lidar)?))?,
+        Format::Semantic => {
+            for m in camera_maps(scene, options)? {
+                let labels = labels(&m);
+                out.picture(
+                    &format!("{}_semantic.png", m.camera),
+                    png::indexed(m.width, m.height, &labels, &palette())?,
+                )?;
+            }
+            let classes: Vec<_> = (0..=RENDER_IDS as u8)
+                .map(|id| json!({ "index": id, "name": label_name(id), "rgb": palette()[usize::from(id)] }))
+                .collect();
+            let text = serde_json::to_string_pretty(&json!({ "classes": classes }))?;
+            out.beside("classes.json", text.as_bytes())?;
+        }
+        Format::Depth => {
+            for m in camera_maps(scene, options)? {
+                let mm = color::depth_mm(&m.depth_m);
+                out.picture(
+                    &format!("{}_depth_mm.png", m.camera),
+                    png::grey16(m.width, m.height, &mm)?,
+                )?;
+            }
+        }
+        Format::Pictures => {
+            some_camera(scene)?;
+            let images = RayMarched.synthesize(&SynthesisInput {
+                frame,
+                rig: &scene.rig,
+                size: options.camera_size,
+                prompt: &scene.prompt,
+                conditions: Conditions {
+                    seed: scene.seed,
+                    ..Conditions::from_prompt(&scene.prompt)
+                },
+                quality: Quality::Full,
+            })?;
+            for image in images {
+                out.picture(
+                    &format!("{}.png", image.camera),
+                    png::rgba(image.width, image.height, &image.rgba)?,
+                )?;
+            }
+        }
+        Format::View => {
+            let shot = View3d::new()?.shot(scene, &options.shot)?;
+            let mut bytes = png::rgba(shot.width, shot.height, &shot.rgba)?;
+            tell(scene, &mut bytes);
+            out.file(format, &bytes)?;
+        }
+    }
+    Ok(out.written)
+}
+
+struct Files<'a> {
+    scene: &'a Scene,
+    path: &'a Path,
+    written: Vec<(PathBuf, u64)>,
+}
+
+impl Files<'_> {
+    /// The one file of a format.
+    fn file(&mut self, format: Format, bytes: &[u8]) -> anyhow::Result<()> {
+        let is_folder = self.path.is_dir() || self.path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+        let path = match format.file_name().filter(|_| is_folder) {
+            Some(name) => {
+                make_folder(self.path)?;
+                self.path.join(name)
+            }
+            None => self.path.to_path_buf(),
+        };
+        self.write(path, bytes)
+    }
+
+    /// One of several in the folder.
+    fn beside(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
+        make_folder(self.path)?;
+        // Cameras are named by users.
+        let tidy: String = name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "-_.".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect();
+        self.write(self.path.join(tidy), bytes)
+    }
+
+    fn picture(&mut self, name: &str, mut bytes: Vec<u8>) -> anyhow::Result<()> {
+        tell(self.scene, &mut bytes);
+        self.beside(name, &bytes)
+    }
+
+    fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {
+        atomic::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
+        self.written.push((path, bytes.len() as u64));
+        Ok(())
+    }
+}
+
+fn make_folder(path: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(path).with_context(|| format!("create {}", path.display()))
+}
+
+/// What a picture shows goes into the picture.
+fn tell(scene: &Scene, png: &mut Vec<u8>) {
+    png::add_text(png, "Prompt", &scene.prompt);
+    png::add_text(png, "Seed", &scene.seed.to_string());
+    png::add_text(png, "Scene", &scene.name);
+    png::add_text(png, "Software", concat!("sceneloom ", env!("CARGO_PKG_VERSION")));
+}
+
+fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
+    let (occupancy, rig) = (&scene.frame().occupancy, &scene.rig);
+    let none = || anyhow!("the rig {:?} has no LiDAR", rig.name);
+    match model {
+        LidarModel::Exact => lidar::rig_sweep(occupancy, rig).ok_or_else(none),
+        LidarModel::Learned if rig.lidars.is_empty() => Err(none()),
+        LidarModel::Learned => {
+            let net = LidarNet::bundled().context("the LiDAR network")?;
+            learned::rig_sweep(&net, occupancy, rig, Drops::Likely).context("the LiDAR network")
+        }
+    }
+}
+
+fn some_camera(scene: &Scene) -> anyhow::Result<()> {
+    match scene.rig.cameras.is_empty() {
+        true => bail!("the rig {:?} has no camera", scene.rig.name),
+        false => Ok(()),
+    }
+}
+
+fn camera_maps(scene: &Scene, options: &ExportOptions) -> anyhow::Result<Vec<CameraMaps>> {
+    some_camera(scene)?;
+    let [width, height] = options.camera_size;
+    let frame = scene.frame();
+    Ok(match options.source {
+        CameraSource::Splats => {
+            let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
+            splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default())
+        }
+        source => march(scene, source == CameraSource::Shapes).render_rig(&scene.rig, width, height),
+    })
+}
+
+/// Label of the class "others", which shares render id 0 with nothing at all.
+const OTHERS: u8 = RENDER_IDS as u8;
+
+/// Labels of a map: render ids, and [`OTHERS`] where a surface of that class is.
+fn labels(maps: &CameraMaps) -> Vec<u8> {
+    let others = |at: usize| maps.coverage[at] > 0.5 && maps.depth_m[at] > 0.0;
+    let of = |(at, id): (usize, &RenderId)| if *id == 0 && others(at) { OTHERS } else { *id };
+    maps.semantic.iter().enumerate().map(of).collect()
+}
+
+fn palette() -> Vec<[u8; 3]> {
+    let ids = (0..RENDER_IDS as u8).map(color::render_id_color);
+    ids.chain([Class::Others.color()]).collect()
+}
+
+fn label_name(label: u8) -> &'static str {
+    match label {
+        0 => "nothing",
+        17 => "ped_crossing",
+        18 => "road_divider",
+        19 => "lane_divider",
+        OTHERS => "others",
+        class => Class::from_id(class).map_or("unknown", Class::name),
+    }
+}

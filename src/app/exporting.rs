@@ -1,0 +1,102 @@
+//! The export that the window has under way: on a thread of its own, one at a time.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+use super::application::{SceneloomApp, one_line};
+use super::export::{ExportOptions, Format, export};
+use super::panels::export::{ExportInput, ExportPanel, export_window};
+use super::panels::toasts::Level;
+use crate::editor::checks::Severity;
+
+type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
+
+/// The dialog, and what it has started.
+#[derive(Default)]
+pub struct Exporting {
+    /// What the dialog shows; `None` while it is closed.
+    pub panel: Option<ExportPanel>,
+    running: Option<(Format, Receiver<Written>)>,
+}
+
+impl SceneloomApp {
+    /// Opens the dialog, or closes it.
+    pub(super) fn toggle_export(&mut self) {
+        self.exporting.panel = match self.exporting.panel.take() {
+            Some(_) => None,
+            None => Some(ExportPanel::new(&self.suggested("loom"))),
+        };
+    }
+
+    /// Draws the dialog and starts what it asks for.
+    pub(super) fn export_dialog(&mut self, ui: &egui::Ui) {
+        let Some(mut panel) = self.exporting.panel.take() else {
+            return;
+        };
+        let findings = self.checking.findings();
+        let input = ExportInput {
+            busy: self.exporting.running.is_some(),
+            errors: findings.map_or(0, |f| f.iter().filter(|f| f.severity == Severity::Error).count()),
+        };
+        let mut open = true;
+        let wanted = export_window(ui, &input, &mut panel, &mut open);
+        if let Some(format) = wanted {
+            let mut options = panel.options.clone();
+            options.shot.camera = self.view3d.camera.clone();
+            self.start_export(format, options, PathBuf::from(panel.path.trim()), ui.ctx());
+        }
+        self.exporting.panel = open.then_some(panel);
+    }
+
+    fn start_export(&mut self, format: Format, options: ExportOptions, path: PathBuf, ctx: &egui::Context) {
+        let (send, written) = bounded(1);
+        let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
+        let thread = std::thread::Builder::new().name("export".into()).spawn(move || {
+            // Nobody listens if the window has closed.
+            let _ = send.send(export(&scene, format, &options, &path));
+            wake.request_repaint();
+        });
+        match thread {
+            Ok(_) => self.exporting.running = Some((format, written)),
+            Err(error) => {
+                let now_s = self.now_s();
+                self.toasts
+                    .push(Level::Error, format!("Not exported: {error}"), now_s);
+            }
+        }
+    }
+
+    /// Tells how an export ended.
+    pub(super) fn update_export(&mut self) {
+        let Some((format, written)) = &self.exporting.running else {
+            return;
+        };
+        let answer = match written.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("writing it ended unexpectedly")),
+        };
+        let (name, now_s) = (format.name(), self.now_s());
+        self.exporting.running = None;
+        match answer {
+            Ok(files) => {
+                let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
+                let first = files
+                    .first()
+                    .map_or(String::new(), |(path, _)| path.display().to_string());
+                let what = match files.len() {
+                    1 => first,
+                    n => format!("{n} files, {first} and others"),
+                };
+                let text = format!("Exported {name}: {what} ({:.1} MB)", bytes as f64 / 1e6);
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(error) => {
+                let text = format!("Not exported: {}", one_line(&error));
+                self.toasts.push(Level::Error, text, now_s);
+            }
+        }
+    }
+}

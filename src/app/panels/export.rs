@@ -1,0 +1,178 @@
+//! The dialog in which a scene is exported: what, how, where to.
+
+use std::path::Path;
+
+use egui::{DragValue, Ui};
+
+use crate::app::export::{ExportOptions, Format};
+use crate::app::state::{CameraSource, LidarModel};
+use crate::app::theme;
+
+/// What the dialog shows of the application.
+pub struct ExportInput {
+    /// An export is under way.
+    pub busy: bool,
+    /// Findings of severity error.
+    pub errors: usize,
+}
+
+/// What the user has chosen so far.
+#[derive(Clone, Debug)]
+pub struct ExportPanel {
+    /// What is exported.
+    pub format: Format,
+    /// How.
+    pub options: ExportOptions,
+    /// Where to.
+    pub path: String,
+    folder: std::path::PathBuf,
+    stem: String,
+}
+
+impl ExportPanel {
+    /// With paths beside the scene's file.
+    pub fn new(scene_file: &Path) -> Self {
+        let stem = scene_file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let mut panel = Self {
+            format: Format::Occ3d,
+            options: ExportOptions::default(),
+            path: String::new(),
+            folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
+            stem,
+        };
+        panel.path = panel.suggested();
+        panel
+    }
+
+    /// A place for the chosen format: a file, or a folder for the formats that fill one.
+    fn suggested(&self) -> String {
+        let name = match self.format.file_name() {
+            Some(file) => format!("{}_{file}", self.stem),
+            None => format!("{}_{}", self.stem, self.format.name()),
+        };
+        self.folder.join(name).display().to_string()
+    }
+}
+
+/// Draws the dialog; the format once the user wants it written.
+pub fn export_window(
+    ui: &Ui,
+    input: &ExportInput,
+    panel: &mut ExportPanel,
+    open: &mut bool,
+) -> Option<Format> {
+    let mut wanted = None;
+    egui::Window::new("Export")
+        .id(egui::Id::unique("export"))
+        .open(open)
+        .default_pos(egui::pos2(380.0, 120.0))
+        .default_width(500.0)
+        .resizable(false)
+        .show(ui.ctx(), |ui| {
+            ui.set_width(500.0);
+            formats(ui, panel);
+            ui.separator();
+            options(ui, panel);
+            let caption = match panel.format.file_name() {
+                Some(_) => "File",
+                None => "Folder",
+            };
+            ui.horizontal(|ui| {
+                ui.label(caption);
+                let field = egui::TextEdit::singleline(&mut panel.path).desired_width(f32::INFINITY);
+                ui.add(field).accessible_name("Export path");
+            });
+            if panel.format.file_name().is_some() && Path::new(panel.path.trim()).is_file() {
+                ui.colored_label(
+                    ui.visuals().warn_fg_color,
+                    "The file exists and will be replaced.",
+                );
+            }
+            if input.errors > 0 {
+                let text = match input.errors {
+                    1 => "The checks found an error in this scene.".to_owned(),
+                    n => format!("The checks found {n} errors in this scene."),
+                };
+                ui.colored_label(ui.visuals().warn_fg_color, text);
+            }
+            ui.add_space(theme::GAP);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let enabled = !input.busy && !panel.path.trim().is_empty();
+                let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
+                if ui.add_enabled(enabled, button).clicked() {
+                    wanted = Some(panel.format);
+                }
+                if input.busy {
+                    ui.spinner();
+                    ui.weak("Exporting…");
+                }
+            });
+        });
+    wanted
+}
+
+fn formats(ui: &mut Ui, panel: &mut ExportPanel) {
+    let before = panel.format;
+    for format in Format::ALL {
+        ui.radio_value(&mut panel.format, format, format.what());
+    }
+    if panel.format != before {
+        panel.path = panel.suggested();
+    }
+}
+
+fn options(ui: &mut Ui, panel: &mut ExportPanel) {
+    let (format, options) = (panel.format, &mut panel.options);
+    let size = |ui: &mut Ui, size: &mut [u32; 2]| {
+        ui.horizontal(|ui| {
+            ui.label("Size");
+            for (value, name) in size.iter_mut().zip(["Width", "Height"]) {
+                ui.add(DragValue::new(value).range(1..=8192).suffix(" px"))
+                    .accessible_name(name);
+            }
+        });
+    };
+    match format {
+        Format::Semantic | Format::Depth => {
+            size(ui, &mut options.camera_size);
+            ui.horizontal(|ui| {
+                ui.label("From");
+                ui.radio_value(&mut options.source, CameraSource::Shapes, "shapes");
+                ui.radio_value(&mut options.source, CameraSource::Voxels, "voxels");
+                ui.radio_value(&mut options.source, CameraSource::Splats, "splats");
+            });
+        }
+        Format::Pictures => {
+            size(ui, &mut options.camera_size);
+            ui.weak("Some twenty seconds for six pictures of 800 x 450.");
+        }
+        Format::NuscenesLidar | Format::Ply => {
+            ui.horizontal(|ui| {
+                ui.label("Sweep");
+                ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
+                ui.radio_value(
+                    &mut options.lidar,
+                    LidarModel::Learned,
+                    "learned, with intensity and lost echoes",
+                );
+            });
+        }
+        Format::View => {
+            size(ui, &mut options.shot.size);
+            ui.horizontal(|ui| {
+                ui.label("Samples per axis");
+                ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
+                    .accessible_name("Samples per axis");
+                ui.checkbox(&mut options.shot.transparent, "Transparent");
+                ui.checkbox(&mut options.shot.boxes, "Boxes");
+                ui.checkbox(&mut options.shot.lidar, "LiDAR");
+            });
+            ui.weak("Seen as the 3D view shows it now.");
+        }
+        Format::Occ3d | Format::Boxes => {}
+    }
+}

@@ -1,0 +1,60 @@
+//! Boxes in whose place no voxel of their class stands.
+
+use super::{Context, Finding, Fix, Severity, name_of};
+use crate::editor::Edit;
+use crate::scene::draft::box_columns;
+use crate::scene::raster::box_cells;
+use crate::scene::{GridSpec, SceneBox, VoxelGrid};
+
+pub const NAME: &str = "box_without_occupancy";
+/// Voxels this far outside a box still belong to it, m.
+const MARGIN_M: f64 = 0.3;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    let grid = &context.frame.occupancy;
+    for b in &context.boxes {
+        let columns = box_columns(b);
+        // A box outside the grid cannot have voxels.
+        if columns.is_empty() || voxels(grid, b) > 0 {
+            continue;
+        }
+        let cells = columns
+            .iter()
+            .flat_map(|&(x, y, layers)| (0..layers).map(move |z| [x, y, z]));
+        out.push(Finding {
+            check: NAME,
+            severity: Severity::Error,
+            where_m: b.center_m,
+            box_id: Some(b.id),
+            text: format!("{} has no voxel of its class", name_of(b)),
+            fixes: vec![
+                Fix {
+                    label: "Fill the box with voxels",
+                    edits: vec![Edit::PaintVoxels {
+                        cells: cells.collect(),
+                        class: b.class,
+                    }],
+                },
+                Fix {
+                    label: "Remove the box",
+                    edits: vec![Edit::RemoveBox { id: b.id }],
+                },
+            ],
+        });
+    }
+}
+
+/// Voxels of a box's class in the columns of its footprint, up to its top.
+pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
+    let top_m = b.center_m.z + b.size_m.z / 2.0 + GridSpec::VOXEL_M;
+    let mut count = 0;
+    box_cells(b, MARGIN_M, |x, y| {
+        let column = grid.column(x, y).iter().enumerate();
+        count += column
+            .filter(|(z, l)| {
+                **l == b.class.id() && GridSpec::center(x, y, *z).z <= top_m.max(GridSpec::MIN_M[2] + 0.4)
+            })
+            .count();
+    });
+    count
+}

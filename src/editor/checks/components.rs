@@ -1,0 +1,149 @@
+//! Groups of voxels that touch each other, and what of the occupancy stands on the ground.
+
+use crate::scene::{Class, GridSpec, VoxelGrid};
+
+/// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
+const GROUND_BINS: u16 = 0b111;
+
+/// One word per column `[x][y]`, one bit per bin that is not free.
+pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
+    let mut out = vec![0; GridSpec::COLUMNS];
+    for (x, y, z, _) in grid.iter_set() {
+        out[x * GridSpec::NY + y] |= 1 << z;
+    }
+    out
+}
+
+/// What of `occupied` is connected to the ground bins through voxels that touch by a face, an edge or a corner.
+pub fn supported(occupied: &[u16]) -> Vec<u16> {
+    let mut out: Vec<u16> = occupied
+        .iter()
+        .map(|bits| fill(bits & GROUND_BINS, *bits))
+        .collect();
+    // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
+    let mut queue: Vec<usize> = (0..out.len())
+        .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
+        .collect();
+    while let Some(c) = queue.pop() {
+        let reach = out[c] | out[c] << 1 | out[c] >> 1;
+        for near in neighbours(c) {
+            let gained = fill(out[near] | reach & occupied[near], occupied[near]);
+            if gained != out[near] {
+                out[near] = gained;
+                queue.push(near);
+            }
+        }
+    }
+    out
+}
+
+/// Spreads set bits over the runs of `within` that they lie in.
+fn fill(mut bits: u16, within: u16) -> u16 {
+    loop {
+        let spread = (bits | bits << 1 | bits >> 1) & within;
+        if spread == bits {
+            return bits;
+        }
+        bits = spread;
+    }
+}
+
+/// The up to eight columns around one.
+pub fn neighbours(column: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (column / GridSpec::NY, column % GridSpec::NY);
+    let xs = x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1);
+    let ys = y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1);
+    xs.flat_map(move |i| ys.clone().map(move |j| i * GridSpec::NY + j))
+        .filter(move |c| *c != column)
+}
+
+/// Connected groups of voxels (26 neighbours) among the given ones; the groups in the order of their first voxel,
+/// voxels in order within each.
+pub fn groups(mut cells: Vec<[usize; 3]>) -> Vec<Vec<[usize; 3]>> {
+    cells.sort_unstable();
+    let mut left = vec![0u16; GridSpec::COLUMNS];
+    for &[x, y, z] in &cells {
+        left[x * GridSpec::NY + y] |= 1 << z;
+    }
+    let mut out = Vec::new();
+    for first in cells {
+        let [x, y, z] = first;
+        if left[x * GridSpec::NY + y] >> z & 1 == 0 {
+            continue;
+        }
+        left[x * GridSpec::NY + y] &= !(1 << z);
+        let mut group = vec![first];
+        let mut next = 0;
+        while next < group.len() {
+            let [x, y, z] = group[next];
+            next += 1;
+            let own = x * GridSpec::NY + y;
+            let reach = 1u16 << z | (1u16 << z) << 1 | (1u16 << z) >> 1;
+            for c in neighbours(own).chain([own]) {
+                let taken = left[c] & reach;
+                left[c] &= !taken;
+                let bins = (0..GridSpec::NZ).filter(|k| taken >> k & 1 == 1);
+                group.extend(bins.map(|k| [c / GridSpec::NY, c % GridSpec::NY, k]));
+            }
+        }
+        group.sort_unstable();
+        out.push(group);
+    }
+    out
+}
+
+/// The class that most of the voxels have; of several, the one with the lowest id.
+pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
+    let mut votes = [0usize; Class::COUNT];
+    for &[x, y, z] in cells {
+        if let Some(votes) = votes.get_mut(grid.get(x, y, z) as usize) {
+            *votes += 1;
+        }
+    }
+    let most = votes.iter().copied().max().unwrap_or(0);
+    let first = votes.iter().position(|v| *v == most).unwrap_or(0);
+    Class::from_id(first as u8).unwrap_or(Class::Others)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn support_climbs_bridges_and_stops_at_gaps() {
+        let mut grid = VoxelGrid::new();
+        let put = |grid: &mut VoxelGrid, cells: &[[usize; 3]]| {
+            cells
+                .iter()
+                .for_each(|c| grid.set(c[0], c[1], c[2], Class::Manmade.id()));
+        };
+        // A post, an arm that leaves it over a corner and dips down again: all of it stands.
+        let post: Vec<_> = (0..9).map(|z| [10, 10, z]).collect();
+        put(&mut grid, &post);
+        put(&mut grid, &[[11, 11, 9], [12, 11, 9], [13, 11, 8], [13, 11, 7]]);
+        // Two bins above the post: floats.
+        put(&mut grid, &[[10, 10, 11], [10, 11, 11]]);
+        put(&mut grid, &[[199, 199, 6]]);
+        let all = occupied(&grid);
+        let stands = supported(&all);
+        assert_eq!(stands[13 * 200 + 11], 1 << 8 | 1 << 7);
+        assert_eq!(stands[10 * 200 + 10], (1 << 9) - 1);
+        assert_eq!(stands[199 * 200 + 199], 0);
+        let floating: u32 = all.iter().zip(&stands).map(|(a, s)| (a & !s).count_ones()).sum();
+        assert_eq!(floating, 3);
+    }
+
+    #[test]
+    fn groups_are_apart_and_whole() {
+        let cells = vec![[5, 5, 5], [0, 0, 0], [6, 6, 6], [0, 1, 0], [8, 5, 5]];
+        assert_eq!(
+            groups(cells),
+            [
+                vec![[0, 0, 0], [0, 1, 0]],
+                vec![[5, 5, 5], [6, 6, 6]],
+                vec![[8, 5, 5]]
+            ]
+        );
+        assert!(groups(Vec::new()).is_empty());
+    }
+}

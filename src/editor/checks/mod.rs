@@ -1,0 +1,194 @@
+//! Quality checks of a scene: what is probably a mistake, where, and how to repair it. One check per file; each looks
+//! at the frame being edited and never panics, whatever the frame holds.
+
+mod against_lane;
+mod box_without_occupancy;
+mod components;
+mod floating_voxels;
+mod geometry;
+mod lanes;
+mod occupancy_without_box;
+mod off_road;
+mod out_of_range;
+mod overlapping_boxes;
+mod unseen;
+mod unsound;
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::Edit;
+use crate::scene::draft::ground_class;
+use crate::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox};
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Probably a mistake; the scene can be used.
+    Warning,
+    /// Wrong: labels, layout or boxes contradict each other or themselves.
+    Error,
+}
+
+impl Severity {
+    /// As in reports: `warning`, `error`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        }
+    }
+}
+
+/// One way to repair a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fix {
+    /// What it does, for a button and for the history: `Drop to the ground`.
+    pub label: &'static str,
+    /// The edits, to be applied as one undo step.
+    pub edits: Vec<Edit>,
+}
+
+/// Something that a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Name of the check, as in reports: `overlapping_boxes`.
+    pub check: &'static str,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Where, in the ego frame, m; always finite.
+    pub where_m: DVec3,
+    /// The box it is about, if it is about one.
+    pub box_id: Option<BoxId>,
+    /// One line for a person.
+    pub text: String,
+    /// Ways to repair it, the best first; none where a person has to decide.
+    pub fixes: Vec<Fix>,
+}
+
+/// What the sensors return of each box; a box that is missing counts as 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Pixels of all cameras together; `None` if no camera was rendered.
+    pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
+    /// LiDAR returns; `None` if there was no sweep.
+    pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
+}
+
+/// What the checks share.
+struct Context<'a> {
+    scene: &'a Scene,
+    frame: &'a Frame,
+    /// Boxes whose numbers can be relied on, by id.
+    boxes: Vec<SceneBox>,
+    seen: Option<&'a Seen>,
+    /// Next id that is neither in the frame nor in its source.
+    next_id: std::cell::Cell<u32>,
+}
+
+type Check = fn(&Context<'_>, &mut Vec<Finding>);
+
+/// Every check, in the order of reports.
+const CHECKS: [(&str, Check); 10] = [
+    (unsound::NAME, unsound::check),
+    (out_of_range::NAME, out_of_range::check),
+    (overlapping_boxes::NAME, overlapping_boxes::check),
+    (box_without_occupancy::NAME, box_without_occupancy::check),
+    (occupancy_without_box::NAME, occupancy_without_box::check),
+    (off_road::NAME, off_road::check),
+    (against_lane::NAME, against_lane::check),
+    (floating_voxels::NAME, floating_voxels::check),
+    (unseen::NO_CAMERA, unseen::by_cameras),
+    (unseen::NO_LIDAR, unseen::by_lidar),
+];
+
+/// Names of all checks, in the order of reports.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    CHECKS.iter().map(|(name, _)| *name)
+}
+
+/// Runs every check on the frame being edited; errors first, else in the order of [`names`]. Without `seen` the two
+/// checks that need sensors are left out.
+pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
+    let Some(frame) = scene.frames.get(scene.current) else {
+        return Vec::new();
+    };
+    let highest = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.keys().next_back().map_or(0, |id| id.0);
+    let context = Context {
+        scene,
+        frame,
+        boxes: frame
+            .boxes
+            .iter()
+            .filter(|(id, b)| **id == b.id && b.problem().is_none())
+            .map(|(_, b)| *b)
+            .collect(),
+        seen,
+        next_id: highest(&frame.boxes)
+            .max(highest(&frame.source.boxes))
+            .saturating_add(1)
+            .into(),
+    };
+    let mut findings = Vec::new();
+    for (_, check) in CHECKS {
+        check(&context, &mut findings);
+    }
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    findings
+}
+
+/// The first fix of every finding that has one, as edits to be applied together. A fix that no longer applies after
+/// those before it (the box is gone already) is left out.
+pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
+    let mut scratch = scene.clone();
+    let mut edits = Vec::new();
+    for fix in findings.iter().filter_map(|f| f.fixes.first()) {
+        let mut next = scratch.clone();
+        if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
+            scratch = next;
+            edits.extend(fix.edits.iter().cloned());
+        }
+    }
+    edits
+}
+
+impl Context<'_> {
+    /// An id that no box has, nor had when the frame was last generated; another one each time.
+    fn fresh_id(&self) -> BoxId {
+        let id = self.next_id.get();
+        self.next_id.set(id.saturating_add(1));
+        BoxId(id)
+    }
+}
+
+/// `car 7`
+fn name_of(b: &SceneBox) -> String {
+    format!("{} {}", b.class.label(), b.id.0)
+}
+
+/// Edits that take voxels away; where the lowest bin is emptied, the ground that the layout asks for is laid.
+fn removal(frame: &Frame, cells: &[[usize; 3]]) -> Vec<Edit> {
+    let mut of_class: BTreeMap<Class, Vec<[usize; 3]>> = BTreeMap::new();
+    for &[x, y, z] in cells {
+        let class = match z {
+            0 => ground_class(frame.layout.cell(x, y)),
+            _ => Class::Free,
+        };
+        of_class.entry(class).or_default().push([x, y, z]);
+    }
+    of_class
+        .into_iter()
+        .map(|(class, cells)| Edit::PaintVoxels { cells, class })
+        .collect()
+}
+
+/// Mean of the centres of voxels, ego frame, m; the origin for none.
+fn middle(cells: &[[usize; 3]]) -> DVec3 {
+    let sum: DVec3 = cells.iter().map(|&[x, y, z]| GridSpec::center(x, y, z)).sum();
+    sum / (cells.len().max(1) as f64)
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

@@ -1,0 +1,74 @@
+//! Voxels of a movable class that belong to no box.
+
+use super::{Context, Finding, Fix, Severity, middle, removal};
+use crate::editor::Edit;
+use crate::scene::raster::box_cells;
+use crate::scene::{Class, GridSpec, infer};
+
+pub const NAME: &str = "occupancy_without_box";
+/// Voxels this far outside a box still belong to it, m: networks draw objects up to a voxel and a half too wide.
+const MARGIN_M: f64 = 0.6;
+/// Smaller groups are noise of labels, voxels.
+const LEAST_VOXELS: usize = 4;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    let frame = context.frame;
+    // Bit per class: columns in which it is explained by a box.
+    let mut explained = vec![0u32; GridSpec::COLUMNS];
+    for b in &context.boxes {
+        box_cells(b, MARGIN_M, |x, y| {
+            explained[x * GridSpec::NY + y] |= 1 << b.class.id()
+        });
+    }
+    let mut left: Vec<Vec<[usize; 3]>> = vec![Vec::new(); Class::COUNT];
+    for (x, y, z, label) in frame.occupancy.iter_set() {
+        let is_object = Class::from_id(label).is_some_and(Class::is_object);
+        if is_object && explained[x * GridSpec::NY + y] >> label & 1 == 0 {
+            left[label as usize].push([x, y, z]);
+        }
+    }
+    for class in Class::OBJECTS {
+        let cells = std::mem::take(&mut left[class as usize]);
+        if cells.len() < LEAST_VOXELS {
+            continue;
+        }
+        for group in super::components::groups(cells) {
+            if group.len() < LEAST_VOXELS {
+                continue;
+            }
+            out.push(Finding {
+                check: NAME,
+                severity: Severity::Warning,
+                where_m: middle(&group),
+                box_id: None,
+                text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
+                fixes: vec![
+                    Fix {
+                        label: "Add a box",
+                        edits: boxes_for(context, class, &group),
+                    },
+                    Fix {
+                        label: "Remove these voxels",
+                        edits: removal(frame, &group),
+                    },
+                ],
+            });
+        }
+    }
+}
+
+/// Boxes around the voxels, as a correction: the voxels stay as they are.
+fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<Edit> {
+    let found = infer::boxes_around(class, group);
+    let add = |b: crate::scene::SceneBox| Edit::Correct {
+        edit: Box::new(Edit::AddBox {
+            class,
+            center_m: b.center_m,
+            size_m: b.size_m,
+            yaw_deg: b.yaw_rad.to_degrees(),
+            velocity_mps: None,
+            id: Some(context.fresh_id()),
+        }),
+    };
+    found.into_iter().map(add).collect()
+}

@@ -1,0 +1,79 @@
+//! Boxes that stick in the ground, hover over it, or leave the grid at its top or sides.
+
+use super::{Context, Finding, Fix, Severity, name_of};
+use crate::editor::Edit;
+use crate::scene::{GridSpec, SceneBox};
+
+pub const NAME: &str = "out_of_range";
+/// How far a bottom may lie from the ground at height 0, m: roads are not flat, and real boxes follow them.
+const TOLERANCE_M: f64 = 0.6;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    for b in &context.boxes {
+        let Some((severity, problem, may_drop)) = problem(b) else {
+            continue;
+        };
+        let dropped = b.center_m.truncate().extend(b.size_m.z / 2.0);
+        let fixes = may_drop.then(|| Fix {
+            label: "Drop to the ground",
+            edits: vec![Edit::MoveBox {
+                id: b.id,
+                center_m: Some(dropped),
+                yaw_deg: None,
+                size_m: None,
+            }],
+        });
+        out.push(Finding {
+            check: NAME,
+            severity,
+            where_m: b.center_m,
+            box_id: Some(b.id),
+            text: format!("{} {problem}", name_of(b)),
+            fixes: fixes.into_iter().collect(),
+        });
+    }
+}
+
+/// What is wrong with a box's place, and whether putting it on the ground helps.
+fn problem(b: &SceneBox) -> Option<(Severity, String, bool)> {
+    let half_m = b.size_m.z / 2.0;
+    let (bottom_m, top_m) = (b.center_m.z - half_m, b.center_m.z + half_m);
+    let (roof_m, fits) = (GridSpec::MAX_M[2], b.size_m.z <= GridSpec::MAX_M[2]);
+    let center = b.center_m;
+    if GridSpec::column_at(center.x, center.y).is_none() {
+        let text = format!("stands outside the map, at {:.1}, {:.1} m", center.x, center.y);
+        return Some((Severity::Warning, text, false));
+    }
+    if top_m <= 0.0 {
+        return Some((
+            Severity::Error,
+            format!("lies under the ground, its top at {top_m:.1} m"),
+            fits,
+        ));
+    }
+    if bottom_m >= roof_m {
+        return Some((
+            Severity::Error,
+            format!("flies above the grid, its bottom at {bottom_m:.1} m"),
+            fits,
+        ));
+    }
+    if top_m > roof_m {
+        return Some((
+            Severity::Warning,
+            format!("is cut off at {roof_m} m, its top is at {top_m:.1} m"),
+            fits && bottom_m > 0.0,
+        ));
+    }
+    if bottom_m < -TOLERANCE_M {
+        return Some((
+            Severity::Warning,
+            format!("sticks {:.1} m in the ground", -bottom_m),
+            fits,
+        ));
+    }
+    (bottom_m > TOLERANCE_M).then(|| {
+        let text = format!("hovers {bottom_m:.1} m above the ground");
+        (Severity::Warning, text, fits)
+    })
+}

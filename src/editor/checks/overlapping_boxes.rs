@@ -1,0 +1,69 @@
+//! Boxes that stand in each other.
+
+use glam::DVec2;
+
+use super::geometry::{area_m2, shared_area_m2, shared_height_m, way_out_m};
+use super::unsound::are_duplicates;
+use super::{Context, Finding, Fix, Severity, name_of};
+use crate::editor::Edit;
+
+pub const NAME: &str = "overlapping_boxes";
+/// Boxes may share this part of the smaller footprint, and this height, without a word: labels are not exact.
+const TOLERATED_SHARE: f64 = 0.05;
+const TOLERATED_HEIGHT_M: f64 = 0.2;
+/// From this part of the smaller footprint on one of the two cannot be right.
+const WRONG_SHARE: f64 = 0.3;
+/// Room that is left between boxes that are moved apart, m.
+const GAP_M: f64 = 0.1;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    for (i, a) in context.boxes.iter().enumerate() {
+        for b in &context.boxes[i + 1..] {
+            let reach = (a.size_m.truncate().length() + b.size_m.truncate().length()) / 2.0;
+            let (pa, pb) = (a.center_m.truncate(), b.center_m.truncate());
+            if pa.distance_squared(pb) >= reach * reach
+                || shared_height_m(a, b) <= TOLERATED_HEIGHT_M
+                || are_duplicates(a, b)
+            {
+                continue;
+            }
+            let share = shared_area_m2(a, b) / area_m2(a).min(area_m2(b));
+            if share <= TOLERATED_SHARE {
+                continue;
+            }
+            let wrong = share > WRONG_SHARE;
+            let remove = Fix {
+                label: "Remove the later box",
+                edits: vec![Edit::RemoveBox { id: b.id }],
+            };
+            let shift = way_out_m(a, b);
+            let shift = shift + shift.normalize_or(DVec2::ZERO) * GAP_M;
+            let apart = Fix {
+                label: "Move apart",
+                edits: vec![Edit::MoveBox {
+                    id: b.id,
+                    center_m: Some(b.center_m + shift.extend(0.0)),
+                    yaw_deg: None,
+                    size_m: None,
+                }],
+            };
+            out.push(Finding {
+                check: NAME,
+                severity: if wrong { Severity::Error } else { Severity::Warning },
+                where_m: (a.center_m + b.center_m) / 2.0,
+                box_id: Some(b.id),
+                text: format!(
+                    "{} and {} overlap by {:.0} % of the smaller one",
+                    name_of(a),
+                    name_of(b),
+                    100.0 * share.min(1.0)
+                ),
+                fixes: if wrong {
+                    vec![remove, apart]
+                } else {
+                    vec![apart, remove]
+                },
+            });
+        }
+    }
+}

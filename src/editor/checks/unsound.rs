@@ -1,0 +1,94 @@
+//! What must not be in a scene at all: numbers that are not finite, labels outside the palette, boxes under a wrong
+//! id, the same object twice.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::{Context, Finding, Fix, Severity, middle, name_of, removal};
+use crate::editor::Edit;
+use crate::scene::{BoxId, Class, SceneBox};
+
+pub const NAME: &str = "unsound";
+/// Boxes of one class whose centres, edges and headings differ by less are the same object.
+const SAME_M: f64 = 0.15;
+const SAME_RAD: f64 = 0.1;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    let frame = context.frame;
+    for (id, b) in &frame.boxes {
+        let problem = match b.problem() {
+            None if *id == b.id => continue,
+            None => format!("box {} is filed under id {}", b.id.0, id.0),
+            Some(problem) => problem,
+        };
+        let fix = ("Remove the box", Edit::RemoveBox { id: *id });
+        out.push(error(b.center_m, Some(*id), problem, vec![fix]));
+    }
+    for (i, a) in context.boxes.iter().enumerate() {
+        for b in context.boxes[i + 1..].iter().filter(|b| are_duplicates(a, b)) {
+            let text = format!("{} is there twice, as {} too", name_of(a), b.id.0);
+            let fix = ("Remove the copy", Edit::RemoveBox { id: b.id });
+            out.push(error(b.center_m, Some(b.id), text, vec![fix]));
+        }
+    }
+    for (i, line) in frame.layout.polylines.iter().enumerate() {
+        if let Some(p) = line.points_m.iter().find(|p| !p.is_finite()) {
+            let text = format!("polyline {i} has a vertex at {p}, expected finite numbers");
+            out.push(error(DVec3::ZERO, None, text, Vec::new()));
+        }
+    }
+    if !frame.time_s.is_finite() || !frame.world_from_ego.translation_m.is_finite() {
+        let text = "time or pose of the frame is not finite".to_owned();
+        out.push(error(DVec3::ZERO, None, text, Vec::new()));
+    }
+    if let Some(problem) = context.scene.rig.problem() {
+        out.push(error(
+            DVec3::ZERO,
+            None,
+            format!("sensors: {problem}"),
+            Vec::new(),
+        ));
+    }
+    let mut outside: BTreeMap<u8, Vec<[usize; 3]>> = BTreeMap::new();
+    for (x, y, z, label) in frame.occupancy.iter_set().filter(|(.., l)| *l > Class::FREE) {
+        outside.entry(label).or_default().push([x, y, z]);
+    }
+    for (label, cells) in outside {
+        let text = format!(
+            "{} voxels hold label {label}, expected 0 to {}",
+            cells.len(),
+            Class::FREE
+        );
+        let mut finding = error(middle(&cells), None, text, Vec::new());
+        finding.fixes.push(Fix {
+            label: "Remove these voxels",
+            edits: removal(frame, &cells),
+        });
+        out.push(finding);
+    }
+}
+
+fn error(at_m: DVec3, id: Option<BoxId>, text: String, fixes: Vec<(&'static str, Edit)>) -> Finding {
+    let fixes = fixes.into_iter().map(|(label, edit)| Fix {
+        label,
+        edits: vec![edit],
+    });
+    Finding {
+        check: NAME,
+        severity: Severity::Error,
+        where_m: if at_m.is_finite() { at_m } else { DVec3::ZERO },
+        box_id: id,
+        text,
+        fixes: fixes.collect(),
+    }
+}
+
+/// True if two boxes are one object, entered twice.
+pub fn are_duplicates(a: &SceneBox, b: &SceneBox) -> bool {
+    let turn = (a.yaw_rad - b.yaw_rad).rem_euclid(std::f64::consts::TAU);
+    a.class == b.class
+        && a.center_m.distance(b.center_m) < SAME_M
+        && (a.size_m - b.size_m).abs().max_element() < SAME_M
+        && turn.min(std::f64::consts::TAU - turn) < SAME_RAD
+}
