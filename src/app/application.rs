@@ -17,10 +17,10 @@ use crate::scene::{Scene, SceneRev};
 
 use super::camera_views::Wanted;
 use super::canvas::Canvas;
+use super::checking::Checking;
 use super::command::Command;
 use super::compare::Compare;
 use super::dock::Dock;
-use super::checking::Checking;
 use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
