@@ -473,7 +473,7 @@ impl SceneloomApp {
                     self.settings.remember(path);
                 }
                 self.path = opening.path;
-                self.state.selected = None;
+                self.state.choose(&[], super::tools::Choose::Only);
                 self.state.correcting = false;
                 self.state.named = Named::default();
                 ctx.request_repaint();
@@ -508,7 +508,8 @@ impl SceneloomApp {
             || self.dialogs.is_open()
             || self.state.keys_open
             || self.state.start_open
-            || self.palette.open;
+            || self.palette.open
+            || self.state.tools.row_open;
         self.overlays(ui, &scene, &mut commands);
         if !dialog {
             let flying =
@@ -587,6 +588,7 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
+        super::tools::dialogs::show(ui, &mut self.state, commands);
         let recent = &self.settings.recent;
         self.palette
             .show(ui, &self.keymap, recent, &mut self.state, commands);

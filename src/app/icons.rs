@@ -40,6 +40,10 @@ pub enum Icon {
     Close,
     /// Camera.
     Camera,
+    /// Ruler.
+    Measure,
+    /// Closed lock.
+    Lock,
 }
 
 impl Icon {
@@ -177,6 +181,16 @@ impl Icon {
                     (2.0, 12.8),
                 ]);
                 painter.circle_stroke(at(8.0, 8.8), 2.4 * scale, stroke);
+            }
+            Icon::Measure => {
+                closed(&[(1.8, 10.6), (10.6, 1.8), (14.2, 5.4), (5.4, 14.2)]);
+                line(&[(4.4, 8.0), (6.0, 9.6)]);
+                line(&[(6.6, 5.8), (8.2, 7.4)]);
+                line(&[(8.8, 3.6), (10.4, 5.2)]);
+            }
+            Icon::Lock => {
+                closed(&[(3.5, 7.2), (12.5, 7.2), (12.5, 13.6), (3.5, 13.6)]);
+                arc((8.0, 6.8), 3.1, 180.0, 360.0);
             }
         }
     }

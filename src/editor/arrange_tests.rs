@@ -141,3 +141,10 @@ fn boxes_are_set_down_and_follow_their_lane() {
     assert_eq!((b.center_m, b.yaw_rad), (DVec3::new(-5.0, 2.0, 0.85), 0.0));
     assert_eq!(lane.boxes[&BoxId(2)], frame.boxes[&BoxId(2)], "too far from any");
 }
+
+#[test]
+fn angles_stay_in_range() {
+    for (from, to) in [(0.0, 0.0), (181.0, -179.0), (-190.0, 170.0), (720.5, 0.5)] {
+        assert!((wrapped_deg(from) - to).abs() < 1e-9, "{from}");
+    }
+}

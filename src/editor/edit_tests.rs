@@ -592,7 +592,8 @@ fn lines_bring_the_cells_of_their_layer_and_bad_ones_are_named() {
     assert_ne!(scene.rev, before);
     let layout = &scene.frame().layout;
     assert_eq!(layout.polylines.len(), 2);
-    assert_eq!(layout.count(BevLayer::RoadDivider), 50);
+    // 20 m of cells, and perhaps one more at either end.
+    assert!((50..=52).contains(&layout.count(BevLayer::RoadDivider)));
     assert_eq!(layout.count(BevLayer::DrivableArea), 0);
     let refused = |lines: Vec<Polyline>, scene: &mut Scene| {
         let error = Edit::AddPolylines { lines }.apply(scene).expect_err("bad");

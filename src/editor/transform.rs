@@ -356,9 +356,11 @@ mod tests {
             ground: true,
         };
         let mut t = start(Kind::Move);
-        assert_eq!(first(&t.edits(&frame(), &pull, &both)), (DVec3::new(0.07, 3.0, 0.85), Some(0.0), None));
+        let (at, yaw, _) = first(&t.edits(&frame(), &pull, &both));
+        assert!(at.distance(DVec3::new(0.07, 3.0, 0.85)) < 1e-9 && yaw == Some(0.0), "{at}");
         t.axis = Some(Axis::Z);
-        assert_eq!(first(&t.edits(&frame(), &pull, &both)), (DVec3::new(0.07, 2.03, 1.85), None, None));
+        let (at, yaw, _) = first(&t.edits(&frame(), &pull, &both));
+        assert!(at.distance(DVec3::new(0.07, 2.03, 1.85)) < 1e-9 && yaw.is_none(), "{at}");
     }
 
     #[test]

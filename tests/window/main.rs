@@ -4,4 +4,5 @@ mod bench;
 mod editing;
 mod files;
 mod sensors;
+mod tools;
 mod views;
