@@ -117,7 +117,7 @@ impl Canvas {
             Tool::Brush if state.tools.is_locked(state.layer) => CursorIcon::NotAllowed,
             Tool::Brush if state.tools.shape == PaintShape::Stroke => CursorIcon::None,
             Tool::Brush => CursorIcon::Crosshair,
-            Tool::AddBox | Tool::Measure => CursorIcon::Crosshair,
+            Tool::AddBox | Tool::Measure | Tool::Region => CursorIcon::Crosshair,
             Tool::Voxel => CursorIcon::NotAllowed,
             Tool::Select => {
                 let selected = state.selected.and_then(|id| scene.frame().boxes.get(&id));
@@ -156,7 +156,7 @@ impl Canvas {
                 at_m,
                 yaw_rad: lane_heading(scene.frame(), at_m).unwrap_or(0.0),
             },
-            Tool::Voxel | Tool::Measure => Gesture::Ignored,
+            Tool::Voxel | Tool::Measure | Tool::Region => Gesture::Ignored,
             // What is left to the canvas is the corner of the one chosen box.
             Tool::Select => {
                 let chosen = state.selected.and_then(|id| scene.frame().boxes.get(&id));

@@ -234,12 +234,16 @@ impl SceneloomApp {
         }
         let scene = self.document.settled_scene().clone();
         let now_s = self.now_s();
-        if !full && self.live.look(&scene, now_s).is_empty {
+        let anew = !full && !self.state.tools.region.is_empty();
+        if !full && !anew && self.live.look(&scene, now_s).is_empty {
             self.toasts
                 .push(Level::Info, "Nothing was edited since the last generation", now_s);
             return;
         }
-        let params = self.live.params_for(&scene, full);
+        let mut params = self.live.params_for(&scene, full);
+        if anew {
+            self.state.tools.draw_anew(&mut params);
+        }
         let same = |r: &super::live::Running| r.key.rev == scene.rev && r.key.params == params;
         if !self.live.running.as_ref().is_some_and(same) {
             self.live.look(&scene, now_s);

@@ -25,16 +25,19 @@ pub enum Tool {
     Voxel,
     /// Measures on the ground.
     Measure,
+    /// Marks what is drawn anew.
+    Region,
 }
 
 impl Tool {
     /// Every tool with its name and key.
-    pub const ALL: [(Tool, &'static str, &'static str); 5] = [
+    pub const ALL: [(Tool, &'static str, &'static str); 6] = [
         (Tool::Select, "Select", "V"),
         (Tool::Brush, "Brush", "B"),
         (Tool::AddBox, "Add box", "A"),
         (Tool::Voxel, "Voxels", "B in 3D"),
         (Tool::Measure, "Measure", "M"),
+        (Tool::Region, "Region", "N: draw anew"),
     ];
 }
 

@@ -112,7 +112,7 @@ impl View3d {
         if response.hovered() && self.gesture == Gesture3d::None {
             let icon = match state.tool {
                 Tool::Select => egui::CursorIcon::Default,
-                Tool::Measure => egui::CursorIcon::NotAllowed,
+                Tool::Measure | Tool::Region => egui::CursorIcon::NotAllowed,
                 _ => egui::CursorIcon::Crosshair,
             };
             ui.ctx().set_cursor_icon(icon);
@@ -137,7 +137,7 @@ impl View3d {
         }
         let shift = modifiers.shift;
         match state.tool {
-            Tool::Select | Tool::Measure => Gesture3d::Ignored,
+            Tool::Select | Tool::Measure | Tool::Region => Gesture3d::Ignored,
             Tool::AddBox => Gesture3d::Place {
                 pressed: at,
                 moved: false,

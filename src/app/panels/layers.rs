@@ -17,6 +17,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
             Tool::Select => tools::select(ui, state, commands),
             Tool::Brush => brush_options(ui, state, commands),
             Tool::Measure => tools::measure(ui, state),
+            Tool::Region => tools::region(ui, state, commands),
             Tool::AddBox => {
                 section(ui, "Add box");
                 caption(ui, "Click to place, drag to set the heading. Boxes follow the nearest lane.");

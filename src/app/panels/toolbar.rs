@@ -48,6 +48,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
                 Tool::AddBox => Icon::AddBox,
                 Tool::Voxel => Icon::Voxel,
                 Tool::Measure => Icon::Measure,
+                Tool::Region => Icon::Region,
             };
             if icons::button(ui, icon, name, key, state.tool == tool, true).clicked() {
                 commands.push(Command::Tool(tool));

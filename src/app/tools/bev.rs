@@ -50,6 +50,15 @@ pub enum BevGesture {
         /// Adds to the selection.
         add: bool,
     },
+    /// Marks what is drawn anew.
+    Region {
+        /// Where the pointer went down, m.
+        from_m: DVec2,
+        /// Where it is, m.
+        to_m: DVec2,
+        /// Marks, or takes the mark away.
+        on: bool,
+    },
     /// Moves, turns or scales boxes.
     Transform {
         /// What becomes of them.
@@ -86,6 +95,11 @@ pub(in crate::app) fn begin(
             commands.push(Command::Tools(ToolCommand::Point(at_m)));
             Some(Gesture::Ignored)
         }
+        Tool::Region => Some(Gesture::Tool(BevGesture::Region {
+            from_m: at_m,
+            to_m: at_m,
+            on: !modifiers.shift,
+        })),
         Tool::AddBox | Tool::Voxel => None,
     }
 }
@@ -276,7 +290,7 @@ pub(in crate::app) fn drag(
                 pointer::preview(commands, vec![edit]);
             }
         }
-        BevGesture::Marquee { to_m, .. } => *to_m = at_m,
+        BevGesture::Marquee { to_m, .. } | BevGesture::Region { to_m, .. } => *to_m = at_m,
         BevGesture::Lasso { points_m, .. } => {
             let apart_m = 2.0 / map.scale;
             if points_m.last().is_none_or(|p| p.distance(at_m) > apart_m) {
@@ -373,6 +387,12 @@ pub(in crate::app) fn end(
             } else if !add {
                 commands.push(Command::Select(None));
             }
+        }
+        BevGesture::Region { from_m, to_m, on } => {
+            // A click marks the cell under it.
+            let around = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+            let (min_m, max_m) = (from_m.min(to_m) - around, from_m.max(to_m) + around);
+            commands.push(Command::Tools(ToolCommand::Region(min_m, max_m, on)));
         }
         BevGesture::Lasso { points_m, add } => {
             if points_m.len() >= 3 {

@@ -9,7 +9,7 @@ use crate::app::state::{Tool, UiState};
 use crate::app::theme;
 use crate::editor::measure;
 use crate::editor::transform::{Axis, Kind};
-use crate::scene::Scene;
+use crate::scene::{GridSpec, Scene};
 
 use super::bev::{BevGesture, pull};
 use super::gizmo::{Gizmo, Part};
@@ -34,8 +34,13 @@ pub(in crate::app) fn draw(
     {
         gizmo.draw(painter, pointer.and_then(|p| gizmo.at(p)));
     }
+    if state.tool == Tool::Region || !state.tools.region.is_empty() {
+        region(painter, map, state);
+    }
     match gesture {
-        Gesture::Tool(BevGesture::Marquee { from_m, to_m, .. }) => {
+        Gesture::Tool(
+            BevGesture::Marquee { from_m, to_m, .. } | BevGesture::Region { from_m, to_m, .. },
+        ) => {
             let rect = Rect::from_two_pos(map.to_screen(*from_m), map.to_screen(*to_m));
             marquee(painter, rect);
         }
@@ -73,6 +78,16 @@ pub(in crate::app) fn draw(
     if state.tool == Tool::Measure {
         let next = pointer.map(|p| measure::snapped(frame, map.to_ego(p), 8.0 / map.scale));
         measured(painter, map, state, next);
+    }
+}
+
+/// The cells that are to be drawn anew.
+fn region(painter: &Painter, map: &ScreenMap, state: &UiState) {
+    const CELL_M: f64 = 1.6;
+    for [i, j] in state.tools.region.cells() {
+        let corner_m = DVec2::new(GridSpec::MIN_M[0] + i as f64 * CELL_M, GridSpec::MIN_M[1] + j as f64 * CELL_M);
+        let rect = map.rect_of(corner_m, corner_m + CELL_M);
+        painter.rect_filled(rect.shrink(0.5), 0.0, theme::ACCENT.gamma_multiply(0.28));
     }
 }
 

@@ -8,6 +8,7 @@ use crate::app::panels::toasts::Level;
 use crate::app::state::{Pane, Tool};
 use crate::editor::arrange::{self, Added, Clipboard};
 use crate::editor::{Edit, Shape, voxel_ops};
+use crate::generation::redraw::RedrawMask;
 use crate::scene::Frame;
 
 use super::{Choose, PaintShape, ToolCommand};
@@ -135,6 +136,11 @@ impl SceneloomApp {
             ToolCommand::ClearPoints => {
                 self.state.tools.points_m.clear();
                 self.state.tools.measure.points_m.clear();
+            }
+            ToolCommand::Region(a_m, b_m, on) => {
+                for [i, j] in RedrawMask::of_rect(a_m, b_m).cells() {
+                    self.state.tools.region.set(i, j, on);
+                }
             }
             ToolCommand::Note(text) => self.note(&text),
         }

@@ -83,6 +83,8 @@ pub enum ToolCommand {
     DropPoint,
     /// Drops all points of what is being drawn or measured.
     ClearPoints,
+    /// Marks a rectangle of the ego frame (m) to be drawn anew, or takes the mark away.
+    Region(DVec2, DVec2, bool),
     /// Says something to the user.
     Note(String),
 }

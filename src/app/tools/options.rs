@@ -13,6 +13,8 @@ use crate::editor::measure::Measure;
 use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
 use crate::editor::Edit;
+use crate::generation::job::GenParams;
+use crate::generation::redraw::RedrawMask;
 use crate::scene::{BevLayer, BoxId, Class, Frame, SceneBox, variants};
 
 use super::Choose;
@@ -121,6 +123,12 @@ pub struct ToolState {
     pub symmetry: bool,
     /// Voxels chosen by the wand.
     pub voxels: Vec<Cell>,
+    /// Cells to be drawn anew although nothing was edited there.
+    pub region: RedrawMask,
+    /// How far they leave what is there, 0 to 1.
+    pub region_strength: f64,
+    /// How often cells were drawn anew: each time other noise.
+    pub region_draws: u64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,
     /// Bit per map layer that is not painted.
@@ -159,6 +167,9 @@ impl Default for ToolState {
             voxel_height: 1,
             symmetry: false,
             voxels: Vec::new(),
+            region: RedrawMask::default(),
+            region_strength: 0.8,
+            region_draws: 0,
             variants: BTreeMap::new(),
             layers_locked: 0,
             layers_opacity: 0.5,
@@ -183,6 +194,14 @@ impl ToolState {
             lane: self.snap_lane && !ctrl,
             ground: self.snap_ground,
         }
+    }
+
+    /// Makes parameters draw the region anew.
+    pub fn draw_anew(&mut self, params: &mut GenParams) {
+        self.region_draws += 1;
+        params.redraw = self.region;
+        params.strength = self.region_strength;
+        params.seed = params.seed.wrapping_add(self.region_draws);
     }
 
     /// Voxels with their mirror images, if symmetry is on.

@@ -183,6 +183,27 @@ pub fn measure(ui: &mut Ui, state: &UiState) {
     }
 }
 
+/// Of the region tool.
+pub fn region(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+    section(ui, "Region to draw anew");
+    caption(
+        ui,
+        "Drag a rectangle in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
+    );
+    let n = state.tools.region.count();
+    let area_m2 = n as f64 * 2.56;
+    caption(ui, &format!("{area_m2:.0} m² marked"));
+    slider(ui, "Strength", &mut state.tools.region_strength, 0.05..=1.0);
+    ui.horizontal(|ui| {
+        if button(ui, "Draw anew", "each time from other noise", n > 0) {
+            commands.push(Command::Generate { full: false });
+        }
+        if button(ui, "Clear region", "", n > 0) {
+            state.tools.region = Default::default();
+        }
+    });
+}
+
 /// Modes of the voxel tool.
 pub fn voxels(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     let mut mode = state.tools.voxel_mode;

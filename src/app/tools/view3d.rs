@@ -123,7 +123,7 @@ pub(in crate::app) fn begin(
     match state.tool {
         Tool::Select => Some(Gesture3d::Tool(select(view, input, state, at, modifiers)?)),
         Tool::Voxel => voxels(view, input, state, at, modifiers, commands),
-        Tool::Measure => Some(Gesture3d::Ignored),
+        Tool::Measure | Tool::Region => Some(Gesture3d::Ignored),
         Tool::Brush | Tool::AddBox => None,
     }
 }
