@@ -217,7 +217,7 @@ fn solo(state: &mut UiState, layer: BevLayer) {
 /// How much of the voxels the layers hide.
 fn opacity_row(ui: &mut Ui, state: &mut UiState) {
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Opacity").color(theme::TEXT_WEAK));
+        ui.label(egui::RichText::new("Opacity").color(theme::text_weak()));
         ui.spacing_mut().slider_width = 90.0;
         let slider = egui::Slider::new(&mut state.tools.layers_opacity, 0.0..=1.0).fixed_decimals(2);
         ui.add(slider).accessible_name("Opacity of the layers");
@@ -228,10 +228,10 @@ fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(16.0, theme::ROW), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, locked, name));
     let color = match (locked, response.hovered()) {
-        (true, _) => theme::WARN,
-        (false, true) => theme::TEXT_WEAK,
+        (true, _) => theme::warn(),
+        (false, true) => theme::text_weak(),
         // Seen only where it is needed: a lock beside every layer would be noise.
-        (false, false) => theme::FIELD_HOVER,
+        (false, false) => theme::field_hover(),
     };
     Icon::Lock.paint(ui, rect.shrink2(vec2(2.0, 6.0)), color);
     icons::focus_ring(ui, &response, rect);

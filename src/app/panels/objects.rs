@@ -276,7 +276,7 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
         return;
     };
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(format!("{} boxes chosen", boxes.len())).color(theme::TEXT_STRONG));
+        ui.label(egui::RichText::new(format!("{} boxes chosen", boxes.len())).color(theme::text_strong()));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             if icons::button(ui, Icon::Trash, "Delete boxes", "Del", false, true).clicked() {

@@ -87,29 +87,29 @@ fn region(painter: &Painter, map: &ScreenMap, state: &UiState) {
     for [i, j] in state.tools.region.cells() {
         let corner_m = DVec2::new(GridSpec::MIN_M[0] + i as f64 * CELL_M, GridSpec::MIN_M[1] + j as f64 * CELL_M);
         let rect = map.rect_of(corner_m, corner_m + CELL_M);
-        painter.rect_filled(rect.shrink(0.5), 0.0, theme::ACCENT.gamma_multiply(0.28));
+        painter.rect_filled(rect.shrink(0.5), 0.0, theme::accent().gamma_multiply(0.28));
     }
 }
 
 /// A rectangle that chooses.
 pub(in crate::app) fn marquee(painter: &Painter, rect: Rect) {
-    painter.rect_filled(rect, 0.0, theme::ACCENT.gamma_multiply(0.12));
-    painter.rect_stroke(rect, 0.0, Stroke::new(1.2, theme::ACCENT), StrokeKind::Middle);
+    painter.rect_filled(rect, 0.0, theme::accent().gamma_multiply(0.12));
+    painter.rect_stroke(rect, 0.0, Stroke::new(1.2, theme::accent()), StrokeKind::Middle);
 }
 
 /// An outline that chooses.
 pub(in crate::app) fn lasso(painter: &Painter, mut points: Vec<Pos2>) {
     points.extend(points.first().copied());
-    painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, theme::ACCENT), 5.0, 4.0));
+    painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, theme::accent()), 5.0, 4.0));
 }
 
 /// A line of text beside a point.
 pub(in crate::app) fn tag(painter: &Painter, at: Pos2, text: &str) {
     let font = egui::FontId::proportional(13.0);
-    let galley = painter.layout_no_wrap(text.to_owned(), font, theme::TEXT_STRONG);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, theme::ON_CANVAS);
     let rect = Rect::from_min_size(at + vec2(16.0, 14.0), galley.size()).expand2(vec2(6.0, 3.0));
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(200));
-    painter.galley(rect.min + vec2(6.0, 3.0), galley, theme::TEXT_STRONG);
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, theme::ON_CANVAS);
 }
 
 /// The outline or street that is being drawn, on to the pointer.
@@ -126,7 +126,7 @@ fn outline(painter: &Painter, map: &ScreenMap, state: &UiState, pointer: Option<
         return;
     }
     let color = match state.erase {
-        true => theme::BAD,
+        true => theme::bad(),
         false => theme::rgb(state.layer.color()),
     };
     if state.tools.shape == PaintShape::Street {
@@ -138,10 +138,10 @@ fn outline(painter: &Painter, map: &ScreenMap, state: &UiState, pointer: Option<
         painter.extend(Shape::dashed_line(&closed, Stroke::new(1.5, color), 5.0, 4.0));
     }
     for pair in points.windows(2) {
-        painter.line_segment([pair[0], pair[1]], Stroke::new(2.0, theme::TEXT_STRONG));
+        painter.line_segment([pair[0], pair[1]], Stroke::new(2.0, theme::ON_CANVAS));
     }
     for p in &points[..drawn] {
-        painter.circle(*p, 3.5, color, Stroke::new(1.2, theme::TEXT_STRONG));
+        painter.circle(*p, 3.5, color, Stroke::new(1.2, theme::ON_CANVAS));
     }
 }
 
@@ -157,19 +157,19 @@ fn measured(painter: &Painter, map: &ScreenMap, state: &UiState, next_m: Option<
     let on_screen: Vec<Pos2> = points.iter().map(|p| map.to_screen(*p)).collect();
     for pair in on_screen.windows(2) {
         painter.line_segment([pair[0], pair[1]], Stroke::new(3.5, Color32::from_black_alpha(160)));
-        painter.line_segment([pair[0], pair[1]], Stroke::new(1.6, theme::WARN));
+        painter.line_segment([pair[0], pair[1]], Stroke::new(1.6, theme::warn()));
     }
     for (p, m) in on_screen.windows(2).zip(points.windows(2)) {
         let middle = p[0].lerp(p[1], 0.5);
         let font = egui::FontId::proportional(12.0);
         let text = format!("{:.2} m", m[0].distance(m[1]));
-        let galley = painter.layout_no_wrap(text, font, theme::TEXT_STRONG);
+        let galley = painter.layout_no_wrap(text, font, theme::ON_CANVAS);
         let rect = Align2::CENTER_CENTER.anchor_size(middle, galley.size()).expand(3.0);
         painter.rect_filled(rect, 3.0, Color32::from_black_alpha(200));
-        painter.galley(rect.min + vec2(3.0, 3.0), galley, theme::TEXT_STRONG);
+        painter.galley(rect.min + vec2(3.0, 3.0), galley, theme::ON_CANVAS);
     }
     for p in &on_screen {
-        painter.circle(*p, 3.5, theme::WARN, Stroke::new(1.2, theme::BACKGROUND));
+        painter.circle(*p, 3.5, theme::warn(), Stroke::new(1.2, theme::CANVAS));
     }
     if let (Some(text), Some(last)) = (measure.text(next_m), on_screen.last()) {
         tag(painter, *last, &text);

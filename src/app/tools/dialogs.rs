@@ -44,7 +44,7 @@ pub fn show(ui: &Ui, state: &mut UiState, commands: &mut Vec<Command>) {
             });
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let add = ui.add(egui::Button::new("Add copies").fill(theme::ACCENT_FILL));
+                let add = ui.add(egui::Button::new("Add copies").fill(theme::accent_fill()));
                 let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
                 if add.clicked() || enter {
                     done = Some(true);

@@ -114,7 +114,7 @@ impl<'a> Gizmo<'a> {
             let Some([from, to]) = self.arrow(axis) else { continue };
             let is_hot = hot == Some(Part::Axis(axis));
             let color = match is_hot {
-                true => theme::TEXT_STRONG,
+                true => theme::ON_CANVAS,
                 false => COLORS[axis as usize],
             };
             painter.line_segment([from, to], Stroke::new(if is_hot { 3.5 } else { 2.2 }, color));

@@ -136,7 +136,7 @@ fn slider<N: egui::emath::Numeric>(
         let (rect, _) = ui.allocate_exact_size(egui::vec2(80.0, theme::ROW), egui::Sense::hover());
         let font = egui::TextStyle::Body.resolve(ui.style());
         let at = rect.left_center();
-        ui.painter().text(at, egui::Align2::LEFT_CENTER, name, font, theme::TEXT_WEAK);
+        ui.painter().text(at, egui::Align2::LEFT_CENTER, name, font, theme::text_weak());
         ui.spacing_mut().slider_width = 60.0;
         ui.add(egui::Slider::new(value, range).max_decimals(1)).accessible_name(name);
     });
@@ -179,7 +179,7 @@ pub fn measure(ui: &mut Ui, state: &UiState) {
         "Click points in the bird's-eye view: two give a distance, a third the angle. Box corners catch them, Esc clears.",
     );
     if let Some(text) = text {
-        ui.label(egui::RichText::new(text).color(theme::TEXT_STRONG));
+        ui.label(egui::RichText::new(text).color(theme::text_strong()));
     }
 }
 
