@@ -85,7 +85,6 @@ impl Canvas {
             }
             self.gesture = Gesture::Ignored;
         }
-        bev::keys(ui, response, &mut self.gesture, scene.frame(), state, commands);
         let held = ui.input(|i| i.modifiers);
         for step in pointer::steps(ui, response) {
             match step {
@@ -105,6 +104,8 @@ impl Canvas {
                 _ => {}
             }
         }
+        // After the pointer: the click that ends an outline is one of its points.
+        bev::keys(ui, response, &mut self.gesture, scene.frame(), state, commands);
     }
 
     fn set_cursor(&self, ui: &Ui, map: &ScreenMap, scene: &Scene, state: &UiState, at_m: DVec2) {

@@ -42,7 +42,8 @@ impl SceneloomApp {
             Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
             Command::SelectNext(step) => {
                 let ids: Vec<_> = self.document.scene().frame().boxes.keys().copied().collect();
-                self.state.selected = neighbour(&ids, self.state.selected, step);
+                let next = neighbour(&ids, self.state.selected, step);
+                self.state.choose(next.as_slice(), Choose::Only);
             }
             Command::Escape => self.escape(),
             Command::AddBox { class, at_m, yaw_rad } => {

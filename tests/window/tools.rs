@@ -11,6 +11,7 @@ use sceneloom::app::tools::{PaintShape, ToolCommand, VoxelMode};
 use sceneloom::editor::Edit;
 use sceneloom::editor::arrange::{Row, RowAlong};
 use sceneloom::editor::transform::Kind;
+use sceneloom::generation::job::RegionMode;
 use sceneloom::scene::{BevLayer, BoxId, Class, GridSpec, PolylineKind, SceneBox};
 
 use super::bench::Bench;
@@ -363,4 +364,29 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
         bench.key(Modifiers::CTRL, Key::Z);
     }
     assert_eq!(bench.frame(), before);
+}
+
+#[test]
+fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.click("Region");
+    let corners = [bench.bev(-20.0, 20.0), bench.bev(-12.0, 28.0)];
+    bench.drag(&corners, Modifiers::NONE);
+    let marked = bench.app().state.tools.region.count();
+    assert!((25..=49).contains(&marked), "{marked}");
+    let corner = [bench.bev(-20.0, 20.0), bench.bev(-17.0, 23.0)];
+    bench.drag(&corner, Modifiers::SHIFT);
+    assert!(bench.app().state.tools.region.count() < marked);
+    assert_eq!(bench.history(), ["Open"]);
+    bench.click("Draw anew");
+    let params = bench.app().live.running.as_ref().expect("asked for").key.params;
+    assert_eq!(params.redraw, bench.app().state.tools.region);
+    assert!(params.strength > 0.0);
+    assert_eq!(bench.started.recv_timeout(super::bench::PATIENCE), Ok(RegionMode::Auto));
+    bench.orders.send(super::bench::Do::Finish).expect("the pipeline listens");
+    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    assert!(bench.app().receipt.is_some(), "a result, not a warm-up");
+    bench.click("Clear region");
+    assert!(bench.app().state.tools.region.is_empty());
 }
