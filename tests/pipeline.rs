@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use sceneloom::editor::{Document, Edit};
 use sceneloom::generation::job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use sceneloom::generation::model::OccModels;
 use sceneloom::generation::pipeline::OccPipeline;
+use sceneloom::generation::redraw::RedrawMask;
 use sceneloom::generation::world::voxelize::{Vertical, complete};
 use sceneloom::generation::world::{World, template, traffic};
 use sceneloom::scene::raster::box_cells;
-use sceneloom::scene::{BoxId, Class, Frame, Scene, SensorRig};
+use sceneloom::scene::{BoxId, Class, Frame, GridSpec, Scene, SensorRig};
 
 fn scene() -> Scene {
     let layout = template::layout("intersection", 4).expect("a template");
@@ -157,4 +158,37 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let one = generate(1);
     assert_eq!(one, generate(2));
     assert_eq!(one, generate(5));
+}
+
+#[test]
+fn a_region_is_drawn_anew_and_nothing_outside_it() {
+    let document = Document::new(scene());
+    let source = document.scene().frame().source.occupancy.clone();
+    let redraw = RedrawMask::of_rect(DVec2::new(-12.0, 8.0), DVec2::new(4.0, 24.0));
+    let draw = |seed: u64| {
+        let params = GenParams {
+            redraw,
+            strength: 0.9,
+            seed,
+            ..params()
+        };
+        let job = Job {
+            scene: document.scene().clone(),
+            params,
+        };
+        pipeline().run(&job, &JobCtx::detached()).expect("a result")
+    };
+    let result = draw(1);
+    assert!(result.report.network_calls > 0);
+    assert_eq!(result.report.untouched_voxels_changed, 0);
+    let mut changed = 0;
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            let differs = result.occupancy.column(x, y) != source.column(x, y);
+            assert!(!differs || redraw.has(x / 4, y / 4), "column ({x}, {y})");
+            changed += usize::from(differs);
+        }
+    }
+    assert!(changed > 0, "something new");
+    assert_ne!(draw(2).occupancy, result.occupancy, "other noise, another result");
 }

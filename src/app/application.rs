@@ -488,7 +488,7 @@ impl SceneloomApp {
                     self.settings.remember(path);
                 }
                 self.path = opening.path;
-                self.state.selected = None;
+                self.state.choose(&[], super::tools::Choose::Only);
                 self.state.correcting = false;
                 self.state.named = Named::default();
                 self.note_opened(&opening.what, true);
@@ -526,7 +526,8 @@ impl SceneloomApp {
             || self.state.keys_open
             || self.state.start_open
             || self.palette.open
-            || self.asks_to_recover();
+            || self.asks_to_recover()
+            || self.state.tools.row_open;
         self.overlays(ui, &scene, &mut commands);
         if !dialog {
             let flying =
@@ -605,6 +606,7 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
+        super::tools::dialogs::show(ui, &mut self.state, commands);
         let recent = &self.settings.recent;
         self.palette
             .show(ui, &self.keymap, recent, &mut self.state, commands);

@@ -21,6 +21,7 @@ use super::command::Command;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
+use super::tools::PaintShape;
 
 /// From the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +66,7 @@ pub struct Canvas {
     unobserved: Option<(SceneRev, TextureHandle)>,
 }
 
-type LayersKey = (SceneRev, u32, bool);
+type LayersKey = (SceneRev, u32, u8);
 
 /// What the canvas draws.
 pub struct CanvasInput<'a> {
@@ -117,6 +118,7 @@ impl Canvas {
         }
         let steps = pointer::steps(ui, &response);
         let map = self.navigate(ui, &response, &steps, state);
+        state.tools.pointer_m = response.hover_pos().map(|p| map.to_ego(p));
         self.interact(ui, &response, &map, input.scene, state, commands);
         let map = ScreenMap {
             center_m: self.center_m,
@@ -260,14 +262,16 @@ impl Canvas {
         draw_unsettled(ui, map, input);
         self.draw_tool(ui, response, map, scene, state);
         draw_scale_bar(ui, map);
+        super::tools::bev_draw::draw(ui, response, map, scene, state, &self.gesture);
     }
 
     fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
         let both = state.underlay == Underlay::Both;
-        let key = (scene.rev, state.layers_shown, both);
+        let veil = if both { state.tools.layers_opacity } else { 1.0 };
+        let key = (scene.rev, state.layers_shown, (veil * 255.0) as u8);
         // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
         let (opacity, behind) = if both {
-            (0.5, Color32::TRANSPARENT)
+            (veil, Color32::TRANSPARENT)
         } else {
             (1.0, GROUND)
         };
@@ -287,7 +291,7 @@ impl Canvas {
             return;
         };
         match (state.tool, &self.gesture) {
-            (Tool::Brush, Gesture::None | Gesture::Stroke { .. }) => {
+            (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_)) if draws_a_line(state) => {
                 let erase = match &self.gesture {
                     Gesture::Stroke { erase, .. } => *erase,
                     _ => state.erase || shift,
@@ -314,15 +318,18 @@ impl Canvas {
                         )
                     }
                 };
-                if let Some(ghost) =
-                    super::canvas_tools::new_box(scene.frame(), state.box_class, at_m, yaw_rad)
-                {
+                if let Some(ghost) = state.new_box(scene.frame(), state.box_class, at_m, yaw_rad) {
                     draw_box(ui, map, &ghost, BoxLook::Ghost);
                 }
             }
             _ => {}
         }
     }
+}
+
+/// True if the brush has a width.
+fn draws_a_line(state: &UiState) -> bool {
+    matches!(state.tools.shape, PaintShape::Stroke | PaintShape::Line)
 }
 
 fn texture<K: PartialEq>(

@@ -137,6 +137,7 @@ pub(super) enum BoxLook {
     Plain,
     Hovered,
     Selected,
+    Chosen,
     Ghost,
 }
 
@@ -148,7 +149,9 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
         .and_then(|p| pick::box_at(frame, map.to_ego(p)));
     for b in frame.boxes.values() {
         if Some(b.id) != state.selected {
-            let look = if Some(b.id) == hovered {
+            let look = if state.is_chosen(b.id) {
+                BoxLook::Chosen
+            } else if Some(b.id) == hovered {
                 BoxLook::Hovered
             } else {
                 BoxLook::Plain
@@ -175,6 +178,7 @@ pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, look: BoxLook) {
             Stroke::new(1.8, theme::rgb(color.map(|c| c.saturating_add(40)))),
         ),
         BoxLook::Selected => (0.62, Stroke::new(2.0, Color32::WHITE)),
+        BoxLook::Chosen => (0.62, Stroke::new(2.0, theme::accent())),
         BoxLook::Ghost => (0.28, Stroke::new(1.3, theme::rgba(color, 0.8))),
     };
     painter.add(Shape::convex_polygon(corners, theme::rgba(color, opacity), edge));

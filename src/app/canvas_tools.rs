@@ -1,17 +1,21 @@
 //! What the pointer does on the bird's-eye view: strokes, boxes moved, turned, resized and placed.
 //! Every drag starts over from the settled state each frame; release commits one undo step.
 
-use egui::{Key, PointerButton, Response, Ui};
+use egui::{Key, Modifiers, PointerButton, Response, Ui};
 use glam::{DVec2, DVec3};
 
+use crate::editor::arrange::LANE_REACH_M;
+use crate::editor::lanes::nearest_lane;
 use crate::editor::pick::{self, Handle};
 use crate::editor::{Edit, Shape};
-use crate::scene::{BevLayer, BoxId, Class, Frame, PolylineKind, Scene, SceneBox};
+use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox};
 
 use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;
 use super::pointer::{self, Step};
 use super::state::{Tool, UiState};
+use super::tools::PaintShape;
+use super::tools::bev::{self, BevGesture};
 
 /// What the pointer is doing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,12 +36,14 @@ pub enum Gesture {
         /// Clears instead of setting.
         erase: bool,
     },
-    /// Takes hold of a box.
+    /// Of the tools in `tools/bev.rs`.
+    Tool(BevGesture),
+    /// Takes hold of the corner of a box.
     Box {
         /// The box as it was.
         start: SceneBox,
-        /// By what.
-        handle: Handle,
+        /// Index of the corner.
+        corner: usize,
         /// Where the pointer went down, ego frame, m.
         grabbed_m: DVec2,
         /// The pointer has left the place where it went down.
@@ -72,35 +78,34 @@ impl Canvas {
             state.readout = readout(scene, map.to_ego(pointer));
             self.set_cursor(ui, map, scene, state, map.to_ego(pointer));
         }
-        let (space, shift, escape) = ui.input(|i| {
-            (
-                i.key_down(Key::Space),
-                i.modifiers.shift,
-                i.key_pressed(Key::Escape),
-            )
-        });
+        let (space, escape) = ui.input(|i| (i.key_down(Key::Space), i.key_pressed(Key::Escape)));
         if escape && self.gesture != Gesture::None {
             if self.gesture != Gesture::Ignored {
                 commands.push(Command::CancelDrag);
             }
             self.gesture = Gesture::Ignored;
         }
+        let held = ui.input(|i| i.modifiers);
         for step in pointer::steps(ui, response) {
             match step {
                 Step::Press(PointerButton::Primary, at, modifiers) if !space => {
                     let at_m = map.to_ego(at);
-                    self.gesture = self.begin(map, scene, state, at_m, modifiers.shift, commands);
-                    self.drag(map, scene, at_m, modifiers.shift, commands);
+                    self.gesture = self.begin(map, scene, state, at_m, modifiers, commands);
+                    self.drag(map, scene, state, at_m, modifiers, commands);
                 }
-                Step::Move(at) => self.drag(map, scene, map.to_ego(at), shift, commands),
+                Step::Move(at) => self.drag(map, scene, state, map.to_ego(at), held, commands),
                 Step::Release(PointerButton::Primary, at) if self.gesture != Gesture::None => {
-                    self.drag(map, scene, map.to_ego(at), shift, commands);
-                    let gesture = std::mem::take(&mut self.gesture);
-                    end(gesture, state, commands);
+                    self.drag(map, scene, state, map.to_ego(at), held, commands);
+                    match std::mem::take(&mut self.gesture) {
+                        Gesture::Tool(gesture) => bev::end(gesture, map, scene.frame(), state, commands),
+                        gesture => end(gesture, state, commands),
+                    }
                 }
                 _ => {}
             }
         }
+        // After the pointer: the click that ends an outline is one of its points.
+        bev::keys(ui, response, &mut self.gesture, scene.frame(), state, commands);
     }
 
     fn set_cursor(&self, ui: &Ui, map: &ScreenMap, scene: &Scene, state: &UiState, at_m: DVec2) {
@@ -110,8 +115,10 @@ impl Canvas {
             return;
         }
         let icon = match state.tool {
-            Tool::Brush => CursorIcon::None,
-            Tool::AddBox => CursorIcon::Crosshair,
+            Tool::Brush if state.tools.is_locked(state.layer) => CursorIcon::NotAllowed,
+            Tool::Brush if state.tools.shape == PaintShape::Stroke => CursorIcon::None,
+            Tool::Brush => CursorIcon::Crosshair,
+            Tool::AddBox | Tool::Measure | Tool::Region => CursorIcon::Crosshair,
             Tool::Voxel => CursorIcon::NotAllowed,
             Tool::Select => {
                 let selected = state.selected.and_then(|id| scene.frame().boxes.get(&id));
@@ -133,47 +140,36 @@ impl Canvas {
         scene: &Scene,
         state: &UiState,
         at_m: DVec2,
-        shift: bool,
+        modifiers: Modifiers,
         commands: &mut Vec<Command>,
     ) -> Gesture {
+        if let Some(gesture) = bev::begin(map, scene, state, at_m, modifiers, commands) {
+            return gesture;
+        }
         match state.tool {
             Tool::Brush => Gesture::Stroke {
                 points_m: Vec::new(),
                 layer: state.layer,
                 width_m: state.brush_m,
-                erase: state.erase || shift,
+                erase: state.erase || modifiers.shift,
             },
             Tool::AddBox => Gesture::Place {
                 at_m,
                 yaw_rad: lane_heading(scene.frame(), at_m).unwrap_or(0.0),
             },
-            Tool::Voxel => Gesture::Ignored,
+            Tool::Voxel | Tool::Measure | Tool::Region => Gesture::Ignored,
+            // What is left to the canvas is the corner of the one chosen box.
             Tool::Select => {
-                let boxes = &scene.frame().boxes;
-                let reach_m = HANDLE_REACH / map.scale;
-                let selected = state.selected.and_then(|id| boxes.get(&id));
-                if let Some(b) = selected
-                    && let Some(handle) = pick::handle_at(b, at_m, reach_m)
-                {
-                    return Gesture::Box {
+                let chosen = state.selected.and_then(|id| scene.frame().boxes.get(&id));
+                let handle = chosen.and_then(|b| pick::handle_at(b, at_m, HANDLE_REACH / map.scale));
+                match (chosen, handle) {
+                    (Some(b), Some(Handle::Corner(corner))) => Gesture::Box {
                         start: *b,
-                        handle,
-                        grabbed_m: at_m,
-                        moved: false,
-                    };
-                }
-                let hit = pick::box_at(scene.frame(), at_m);
-                if hit != state.selected {
-                    commands.push(Command::Select(hit));
-                }
-                match hit.and_then(|id| boxes.get(&id)) {
-                    Some(b) => Gesture::Box {
-                        start: *b,
-                        handle: Handle::Body,
+                        corner,
                         grabbed_m: at_m,
                         moved: false,
                     },
-                    None => Gesture::Ignored,
+                    _ => Gesture::Ignored,
                 }
             }
         }
@@ -183,12 +179,16 @@ impl Canvas {
         &mut self,
         map: &ScreenMap,
         scene: &Scene,
+        state: &UiState,
         at_m: DVec2,
-        shift: bool,
+        modifiers: Modifiers,
         commands: &mut Vec<Command>,
     ) {
         match &mut self.gesture {
             Gesture::None | Gesture::Ignored => {}
+            Gesture::Tool(gesture) => {
+                bev::drag(gesture, map, scene.frame(), state, at_m, modifiers, commands);
+            }
             Gesture::Stroke {
                 points_m,
                 layer,
@@ -217,12 +217,19 @@ impl Canvas {
             }
             Gesture::Box {
                 start,
-                handle,
+                corner,
                 grabbed_m,
                 moved,
             } => {
                 *moved |= grabbed_m.distance(at_m) * map.scale > CLICK_SLACK;
-                if *moved && let Some(edit) = dragged(start, *handle, *grabbed_m, at_m, shift) {
+                if *moved {
+                    let (center_m, size_m) = pick::resized_by_corner(start, *corner, at_m);
+                    let edit = Edit::MoveBox {
+                        id: start.id,
+                        center_m: Some(center_m),
+                        yaw_deg: None,
+                        size_m: Some(size_m),
+                    };
                     pointer::preview(commands, vec![edit]);
                 }
             }
@@ -231,7 +238,7 @@ impl Canvas {
                 yaw_rad,
             } => {
                 if place_m.distance(at_m) * map.scale > 3.0 * CLICK_SLACK {
-                    *yaw_rad = snapped((at_m - *place_m).to_angle(), shift);
+                    *yaw_rad = snapped((at_m - *place_m).to_angle(), modifiers.shift);
                 } else {
                     *yaw_rad = lane_heading(scene.frame(), *place_m).unwrap_or(0.0);
                 }
@@ -246,14 +253,8 @@ fn end(gesture: Gesture, state: &UiState, commands: &mut Vec<Command>) {
         Gesture::Stroke { erase, .. } => {
             commands.push(Command::Commit(if erase { "Erase layer" } else { "Paint layer" }));
         }
-        Gesture::Box {
-            handle, moved: true, ..
-        } => commands.push(Command::Commit(match handle {
-            Handle::Body => "Move box",
-            Handle::Rotate => "Turn box",
-            Handle::Corner(_) => "Resize box",
-        })),
-        Gesture::Box { .. } => {}
+        Gesture::Box { moved: true, .. } => commands.push(Command::Commit("Resize box")),
+        Gesture::Tool(_) | Gesture::Box { .. } => {}
         Gesture::Place { at_m, yaw_rad } => commands.push(Command::AddBox {
             class: state.box_class,
             at_m,
@@ -272,61 +273,9 @@ fn snapped(yaw_rad: f64, snap: bool) -> f64 {
     }
 }
 
-/// The edit that a drag of a box asks for.
-fn dragged(start: &SceneBox, handle: Handle, grabbed_m: DVec2, at_m: DVec2, snap: bool) -> Option<Edit> {
-    let id = start.id;
-    let change = |center_m: Option<DVec3>, yaw_deg: Option<f64>, size_m: Option<DVec3>| {
-        Some(Edit::MoveBox {
-            id,
-            center_m,
-            yaw_deg,
-            size_m,
-        })
-    };
-    match handle {
-        Handle::Body => {
-            let mut delta = at_m - grabbed_m;
-            if snap {
-                // Shift keeps to the axis that was moved along most.
-                if delta.x.abs() > delta.y.abs() {
-                    delta.y = 0.0
-                } else {
-                    delta.x = 0.0
-                }
-            }
-            change(Some(start.center_m + delta.extend(0.0)), None, None)
-        }
-        Handle::Rotate => {
-            let yaw_deg = pick::yaw_deg_towards(start, at_m)?;
-            change(None, Some(snapped(yaw_deg.to_radians(), snap).to_degrees()), None)
-        }
-        Handle::Corner(corner) => {
-            let (center_m, size_m) = pick::resized_by_corner(start, corner, at_m);
-            change(Some(center_m), None, Some(size_m))
-        }
-    }
-}
-
 /// Heading of the nearest lane, if one is within reach of a point, rad.
 pub(super) fn lane_heading(frame: &Frame, at_m: DVec2) -> Option<f64> {
-    const REACH_M: f64 = 6.0;
-    let lanes = frame
-        .layout
-        .polylines
-        .iter()
-        .filter(|l| l.kind == PolylineKind::LaneCenter);
-    let pieces = lanes.flat_map(|l| l.points_m.array_windows::<2>());
-    let measured = pieces.filter_map(|[a, b]| {
-        let along = *b - *a;
-        let length_squared = along.length_squared();
-        if !length_squared.is_finite() || length_squared == 0.0 {
-            return None;
-        }
-        let t = ((at_m - *a).dot(along) / length_squared).clamp(0.0, 1.0);
-        Some((at_m.distance(*a + along * t), along.to_angle()))
-    });
-    let (distance_m, yaw_rad) = measured.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (distance_m <= REACH_M).then_some(yaw_rad)
+    nearest_lane(&frame.layout, at_m, LANE_REACH_M).map(|lane| lane.yaw_rad)
 }
 
 /// A box of typical size that stands on the ground; `None` for a class that is no object.
@@ -352,7 +301,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::{BevLayout, Polyline, VoxelGrid};
+    use crate::scene::{BevLayout, Polyline, PolylineKind, VoxelGrid};
 
     #[test]
     fn new_boxes_follow_the_nearest_lane() {
@@ -370,27 +319,5 @@ mod tests {
         let car = new_box(&frame, Class::Car, DVec2::new(1.0, 2.0), 0.0).expect("an object");
         assert!((car.center_m.z - car.size_m.z / 2.0).abs() < 1e-12 && car.problem().is_none());
         assert!(new_box(&frame, Class::Terrain, DVec2::ZERO, 0.0).is_none());
-    }
-
-    #[test]
-    fn shift_keeps_to_an_axis_and_to_steps() {
-        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
-        let b = new_box(&frame, Class::Car, DVec2::ZERO, 0.0).expect("an object");
-        let edit = dragged(&b, Handle::Body, DVec2::ZERO, DVec2::new(3.0, 1.0), true);
-        let Some(Edit::MoveBox {
-            center_m: Some(c), ..
-        }) = edit
-        else {
-            panic!()
-        };
-        assert_eq!(c.truncate(), DVec2::new(3.0, 0.0));
-        let edit = dragged(&b, Handle::Rotate, DVec2::ZERO, DVec2::new(3.0, 1.0), true);
-        let Some(Edit::MoveBox {
-            yaw_deg: Some(yaw), ..
-        }) = edit
-        else {
-            panic!()
-        };
-        assert!((yaw - 15.0).abs() < 1e-9, "{yaw}");
     }
 }

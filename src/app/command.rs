@@ -27,6 +27,8 @@ pub enum Command {
     Redo,
     /// Shows that state of the history.
     JumpTo(usize),
+    /// What the tools are asked for.
+    Tools(super::tools::ToolCommand),
     /// Chooses a box, or none.
     Select(Option<BoxId>),
     /// Chooses the next (1) or previous (-1) box by id.

@@ -9,7 +9,6 @@ use crate::editor::Edit;
 use crate::scene::SceneBox;
 
 use super::application::{Next, Opening, SceneloomApp, one_line};
-use super::canvas_tools::new_box;
 use super::command::Command;
 use super::compare::CompareMode;
 use super::dock::Dock;
@@ -18,6 +17,7 @@ use super::open;
 use super::panels::objects::neighbour;
 use super::panels::toasts::Level;
 use super::state::{Pane, Tool};
+use super::tools::{Choose, ToolCommand};
 
 impl SceneloomApp {
     /// Carries out one command.
@@ -38,35 +38,24 @@ impl SceneloomApp {
             Command::Undo => drop(self.document.undo()),
             Command::Redo => drop(self.document.redo()),
             Command::JumpTo(index) => drop(self.document.jump_to(index)),
-            Command::Select(id) => self.state.selected = id,
+            Command::Tools(command) => self.tool_command(command, ctx),
+            Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
             Command::SelectNext(step) => {
                 let ids: Vec<_> = self.document.scene().frame().boxes.keys().copied().collect();
-                self.state.selected = neighbour(&ids, self.state.selected, step);
+                let next = neighbour(&ids, self.state.selected, step);
+                self.state.choose(next.as_slice(), Choose::Only);
             }
             Command::Escape => self.escape(),
             Command::AddBox { class, at_m, yaw_rad } => {
-                let made = new_box(self.document.scene().frame(), class, at_m, yaw_rad);
+                let made = self.state.new_box(self.document.scene().frame(), class, at_m, yaw_rad);
                 if let Some(b) = made {
                     self.add(&b, "Add box");
                 }
             }
-            Command::DeleteSelected => {
-                if let Some(b) = self.selected_box() {
-                    self.apply("Delete box", &[Edit::RemoveBox { id: b.id }]);
-                }
-            }
-            Command::DuplicateSelected => self.duplicate(),
-            Command::Nudge(step_m) => {
-                if let Some(b) = self.selected_box() {
-                    self.move_box(&b, "Nudge box", Some(b.center_m + step_m), None);
-                }
-            }
-            Command::Turn(degrees) => {
-                if let Some(b) = self.selected_box() {
-                    let yaw_deg = wrapped_deg(b.yaw_rad.to_degrees() + degrees);
-                    self.move_box(&b, "Turn box", None, Some(yaw_deg));
-                }
-            }
+            Command::DeleteSelected => self.tool_command(ToolCommand::Delete, ctx),
+            Command::DuplicateSelected => self.tool_command(ToolCommand::Duplicate, ctx),
+            Command::Nudge(step_m) => self.tool_command(ToolCommand::Nudge(step_m), ctx),
+            Command::Turn(degrees) => self.tool_command(ToolCommand::Turn(degrees), ctx),
             Command::Tool(tool) => self.state.tool = tool,
             Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
             Command::BrushSize(step) => self.state.step_brush(step),
@@ -174,8 +163,7 @@ impl SceneloomApp {
         // Without a guess there is nothing to correct, and no switch to see it by.
         self.state.correcting &= self.document.scene().frame().inferred.any();
         // A box that an edit or undo took away is not selected any more.
-        let boxes = &self.document.scene().frame().boxes;
-        self.state.selected = self.state.selected.filter(|id| boxes.contains_key(id));
+        self.state.tidy_selection(&self.document.scene().frame().boxes);
     }
 
     /// A version becomes the present state; its result is there already.
@@ -191,7 +179,10 @@ impl SceneloomApp {
         self.toasts.push(Level::Error, text, now_s);
     }
 
-    fn apply(&mut self, label: &'static str, edits: &[Edit]) {
+    pub(super) fn apply(&mut self, label: &'static str, edits: &[Edit]) {
+        if let Some(layer) = self.state.locked_layer(edits) {
+            return self.fail(format!("Layer {:?} is locked", layer.label()));
+        }
         let edits = self.state.as_meant(edits.to_vec());
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
@@ -211,22 +202,6 @@ impl SceneloomApp {
         self.document.scene().frame().boxes.get(&id).copied()
     }
 
-    fn move_box(
-        &mut self,
-        b: &SceneBox,
-        label: &'static str,
-        center_m: Option<glam::DVec3>,
-        yaw_deg: Option<f64>,
-    ) {
-        let edit = Edit::MoveBox {
-            id: b.id,
-            center_m,
-            yaw_deg,
-            size_m: None,
-        };
-        self.apply(label, &[edit]);
-    }
-
     fn add(&mut self, b: &SceneBox, label: &'static str) {
         self.apply(
             label,
@@ -242,27 +217,13 @@ impl SceneloomApp {
         self.state.selected = Some(b.id);
     }
 
-    fn duplicate(&mut self) {
-        let Some(b) = self.selected_box() else { return };
-        let frame = self.document.scene().frame();
-        // Beside the original, to its left.
-        let left = b.heading().perp() * (b.size_m.y + 0.6);
-        let at_m = b.center_m.truncate() + left;
-        if let Some(place) = new_box(frame, b.class, at_m, b.yaw_rad) {
-            let copy = SceneBox {
-                id: place.id,
-                center_m: b.center_m + left.extend(0.0),
-                ..b
-            };
-            self.add(&copy, "Duplicate box");
-        }
-    }
-
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
         } else if self.state.inspected.is_some() {
             self.state.inspected = None;
+        } else if !self.state.tools.voxels.is_empty() {
+            self.state.tools.voxels.clear();
         } else if self.state.tool != Tool::Select {
             self.state.tool = Tool::Select;
         } else if self.state.selected.is_some() {
@@ -278,12 +239,16 @@ impl SceneloomApp {
         }
         let scene = self.document.settled_scene().clone();
         let now_s = self.now_s();
-        if !full && self.live.look(&scene, now_s).is_empty {
+        let anew = !full && !self.state.tools.region.is_empty();
+        if !full && !anew && self.live.look(&scene, now_s).is_empty {
             self.toasts
                 .push(Level::Info, "Nothing was edited since the last generation", now_s);
             return;
         }
-        let params = self.live.params_for(&scene, full);
+        let mut params = self.live.params_for(&scene, full);
+        if anew {
+            self.state.tools.draw_anew(&mut params);
+        }
         let same = |r: &super::live::Running| r.key.rev == scene.rev && r.key.params == params;
         if !self.live.running.as_ref().is_some_and(same) {
             self.live.look(&scene, now_s);
@@ -468,12 +433,6 @@ impl SceneloomApp {
     }
 }
 
-/// An angle within -180 to 180 degrees.
-fn wrapped_deg(degrees: f64) -> f64 {
-    let turned = degrees.rem_euclid(360.0);
-    if turned > 180.0 { turned - 360.0 } else { turned }
-}
-
 /// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
 fn free_name(path: &Path) -> PathBuf {
     let stem = path
@@ -504,12 +463,5 @@ mod tests {
         assert_eq!(free_name(&first), first);
         std::fs::write(&first, "").expect("a file");
         assert_eq!(free_name(&first), folder.path().join("a_1.png"));
-    }
-
-    #[test]
-    fn angles_stay_in_range() {
-        for (from, to) in [(0.0, 0.0), (181.0, -179.0), (-190.0, 170.0), (720.5, 0.5)] {
-            assert!((wrapped_deg(from) - to).abs() < 1e-9, "{from}");
-        }
     }
 }

@@ -35,6 +35,7 @@ pub mod settings;
 pub mod state;
 pub mod theme;
 pub mod versions;
+pub mod tools;
 pub mod view3d;
 mod view3d_tools;
 

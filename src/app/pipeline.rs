@@ -2,7 +2,7 @@
 
 use crate::generation::job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use crate::generation::pipeline::OccPipeline;
-use crate::generation::region::Region;
+use crate::generation::redraw;
 
 /// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
 /// so that the first edit finds both ready.
@@ -19,7 +19,7 @@ impl Pipeline for WarmPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
         let nothing_edited = job.params.region == RegionMode::Auto
-            && Region::of_edit(frame, job.params.halo_columns as usize).is_empty();
+            && redraw::region_of(frame, &job.params).is_empty();
         if !nothing_edited {
             return self.0.run(job, ctx);
         }

@@ -23,15 +23,21 @@ pub enum Tool {
     AddBox,
     /// Paints voxels in the 3D view.
     Voxel,
+    /// Measures on the ground.
+    Measure,
+    /// Marks what is drawn anew.
+    Region,
 }
 
 impl Tool {
     /// Every tool with its name and key.
-    pub const ALL: [(Tool, &'static str, &'static str); 4] = [
+    pub const ALL: [(Tool, &'static str, &'static str); 6] = [
         (Tool::Select, "Select", "V"),
         (Tool::Brush, "Brush", "B"),
         (Tool::AddBox, "Add box", "A"),
         (Tool::Voxel, "Voxels", "B in 3D"),
+        (Tool::Measure, "Measure", "M"),
+        (Tool::Region, "Region", "N: draw anew"),
     ];
 }
 
@@ -179,8 +185,12 @@ pub enum Underlay {
 pub struct UiState {
     /// Tool in hand.
     pub tool: Tool,
-    /// Chosen box.
+    /// The box chosen last.
     pub selected: Option<BoxId>,
+    /// All chosen boxes; see [`UiState::chosen`].
+    pub selection: std::collections::BTreeSet<BoxId>,
+    /// What the tools hold.
+    pub tools: super::tools::ToolState,
     /// Layer that the brush paints.
     pub layer: BevLayer,
     /// Diameter of the brush, m.
@@ -320,6 +330,8 @@ impl Default for UiState {
         Self {
             tool: Tool::Select,
             selected: None,
+            selection: std::collections::BTreeSet::new(),
+            tools: super::tools::ToolState::default(),
             layer: BevLayer::DrivableArea,
             brush_m: 3.2,
             erase: false,

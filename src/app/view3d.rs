@@ -18,6 +18,8 @@ use super::command::Command;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, VoxelVerb, position_text};
 use super::theme;
+use super::tools::VoxelMode;
+use super::tools::view3d::ViewGesture;
 use super::view3d_tools::Gesture3d;
 
 /// Turn per point that the pointer moves, rad.
@@ -158,6 +160,7 @@ impl View3d {
             self.last_motion_s = now_s;
         }
         self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
+        super::tools::view3d::draw(ui, self, input, state);
         response
     }
 
@@ -203,6 +206,17 @@ impl View3d {
         Ray::new(origin, direction).map(|ray| Pointer { ray })
     }
 
+    /// Where a point of the ego frame appears; `None` behind the eye.
+    pub(super) fn project(&self, p_m: DVec3) -> Option<Pos2> {
+        let size = self.size_px();
+        let pixel = self.camera.project(p_m, size)?;
+        let part = egui::vec2(
+            (pixel.x / f64::from(size[0])) as f32,
+            (pixel.y / f64::from(size[1])) as f32,
+        );
+        Some(self.rect.min + part * self.rect.size())
+    }
+
     /// Camera motion by pointer and keys; true if the view changed.
     fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], input: &View3dInput<'_>) -> bool {
         let before = self.camera;
@@ -229,7 +243,9 @@ impl View3d {
                 self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
             }
         }
-        if let Some(at) = response.hover_pos() {
+        // A block that is being drawn takes the wheel for its height.
+        let wheel_taken = matches!(self.gesture, Gesture3d::Tool(ViewGesture::Block { .. }));
+        if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);
             if (factor - 1.0).abs() > 1e-4 {
@@ -305,7 +321,7 @@ impl View3d {
         }
         let ghost = self.ghost(input.scene, state, pointer, hit);
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
-        let selected: Vec<BoxId> = state.selected.into_iter().chain(ghost.map(|b| b.id)).collect();
+        let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
             // On a software rasteriser a new picture for every box the pointer crosses is too much.
             Some(Hit::Box { id, .. }) if state.tool == Tool::Select && !self.is_software() => Some(*id),
@@ -364,6 +380,9 @@ impl View3d {
         pointer: Option<&Pointer>,
         hit: Option<&Hit>,
     ) -> (Vec<[usize; 3]>, [u8; 3]) {
+        if state.tool == Tool::Voxel && state.tools.voxel_mode == VoxelMode::Wand {
+            return (state.tools.voxels.clone(), [255, 220, 90]);
+        }
         let Some(pointer) = pointer else {
             return (Vec::new(), [0; 3]);
         };
@@ -374,7 +393,8 @@ impl View3d {
                     _ if state.voxel_class == Class::Free => [200; 3],
                     _ => state.voxel_class.color(),
                 };
-                (self.voxel_target(input, state, &pointer.ray), color)
+                let cells = self.voxel_target(input, state, &pointer.ray);
+                (state.tools.both_sides(cells), color)
             }
             Tool::Brush => {
                 let cells = hit.map_or_else(Vec::new, |hit| {
@@ -407,7 +427,7 @@ impl View3d {
         let at_m = point_of(hit?, &pointer?.ray).truncate();
         let frame = scene.frame();
         let yaw_rad = super::canvas_tools::lane_heading(frame, at_m).unwrap_or(0.0);
-        super::canvas_tools::new_box(frame, state.box_class, at_m, yaw_rad)
+        state.new_box(frame, state.box_class, at_m, yaw_rad)
     }
 
     /// The view as an image, `width` x `height` pixels, RGBA.

@@ -3,17 +3,18 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Key, PointerButton, Pos2, Response, Ui};
-use glam::{DVec2, DVec3};
+use egui::{Key, Modifiers, PointerButton, Pos2, Response, Ui};
+use glam::DVec2;
 
 use crate::editor::pick::{self, Hit, Ray, VoxelHit};
-use crate::editor::{Edit, Shape};
+use crate::editor::{Edit, Shape, voxel_ops};
 use crate::scene::raster::disc_cells;
-use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
+use crate::scene::{BevLayer, Class, Frame, GridSpec};
 
 use super::command::Command;
 use super::pointer::{self, Step};
 use super::state::{Tool, UiState, VoxelVerb};
+use super::tools::view3d::{self as tools, ViewGesture};
 use super::view3d::{View3d, View3dInput, point_of};
 
 /// What the pointer is doing.
@@ -24,12 +25,12 @@ pub enum Gesture3d {
     None,
     /// Was cancelled, or turns the camera; waits for the button to come up.
     Ignored,
-    /// Chooses on release, unless the pointer moves: then a box is moved over the ground.
-    Select {
+    /// Of the tools in `tools/view3d.rs`.
+    Tool(ViewGesture),
+    /// Places a box on release, unless the pointer moves.
+    Place {
         /// Where the pointer went down.
         pressed: Pos2,
-        /// The box under it, as it was, and where it was taken hold of, m.
-        grabbed: Option<(SceneBox, DVec3)>,
         /// The pointer has left the place where it went down.
         moved: bool,
     },
@@ -73,26 +74,35 @@ impl View3d {
         state: &UiState,
         commands: &mut Vec<Command>,
     ) {
-        let (space, escape) = ui.input(|i| (i.key_down(Key::Space), i.key_pressed(Key::Escape)));
+        let (space, ctrl, escape) = ui.input(|i| {
+            let escape = i.key_pressed(Key::Escape);
+            (i.key_down(Key::Space), i.modifiers.ctrl, escape)
+        });
         if escape && self.gesture != Gesture3d::None {
             if self.gesture != Gesture3d::Ignored {
                 commands.push(Command::CancelDrag);
             }
             self.gesture = Gesture3d::Ignored;
         }
+        let mut held = std::mem::take(&mut self.gesture);
+        tools::keys(ui, self, &mut held, input, state, commands);
+        self.gesture = held;
         for step in steps {
             match *step {
                 Step::Press(PointerButton::Primary, at, modifiers) => {
                     let camera = modifiers.alt || space;
+                    if modifiers.alt && state.tool == Tool::Voxel {
+                        tools::pick_class(self, input, at, commands);
+                    }
                     self.gesture = match camera {
                         true => Gesture3d::Ignored,
-                        false => self.begin(input, state, at, modifiers.shift),
+                        false => self.begin(input, state, at, modifiers, commands),
                     };
-                    self.drag(input, state, at, commands);
+                    self.drag(input, state, at, ctrl, commands);
                 }
-                Step::Move(at) => self.drag(input, state, at, commands),
+                Step::Move(at) => self.drag(input, state, at, ctrl, commands),
                 Step::Release(PointerButton::Primary, at) if self.gesture != Gesture3d::None => {
-                    self.drag(input, state, at, commands);
+                    self.drag(input, state, at, ctrl, commands);
                     let gesture = std::mem::take(&mut self.gesture);
                     self.end(gesture, input, state, at, commands);
                 }
@@ -102,6 +112,7 @@ impl View3d {
         if response.hovered() && self.gesture == Gesture3d::None {
             let icon = match state.tool {
                 Tool::Select => egui::CursorIcon::Default,
+                Tool::Measure | Tool::Region => egui::CursorIcon::NotAllowed,
                 _ => egui::CursorIcon::Crosshair,
             };
             ui.ctx().set_cursor_icon(icon);
@@ -113,24 +124,25 @@ impl View3d {
         Some((pick::pick(frame, &ray)?, ray))
     }
 
-    fn begin(&self, input: &View3dInput<'_>, state: &UiState, at: Pos2, shift: bool) -> Gesture3d {
+    fn begin(
+        &self,
+        input: &View3dInput<'_>,
+        state: &UiState,
+        at: Pos2,
+        modifiers: Modifiers,
+        commands: &mut Vec<Command>,
+    ) -> Gesture3d {
+        if let Some(gesture) = tools::begin(self, input, state, at, modifiers, commands) {
+            return gesture;
+        }
+        let shift = modifiers.shift;
         match state.tool {
-            Tool::Select | Tool::AddBox => {
-                let grabbed = self
-                    .hit(input.scene.frame(), at)
-                    .and_then(|(hit, ray)| match hit {
-                        Hit::Box { id, .. } if state.tool == Tool::Select => {
-                            let b = input.scene.frame().boxes.get(&id)?;
-                            Some((*b, point_of(&hit, &ray)))
-                        }
-                        _ => None,
-                    });
-                Gesture3d::Select {
-                    pressed: at,
-                    grabbed,
-                    moved: false,
-                }
-            }
+            Tool::Select | Tool::Measure | Tool::Region => Gesture3d::Ignored,
+            Tool::AddBox => Gesture3d::Place {
+                pressed: at,
+                moved: false,
+            },
+            Tool::Brush if state.tools.is_locked(state.layer) => Gesture3d::Ignored,
             Tool::Brush => Gesture3d::Stroke {
                 points_m: Vec::new(),
                 layer: state.layer,
@@ -154,32 +166,20 @@ impl View3d {
         }
     }
 
-    fn drag(&mut self, input: &View3dInput<'_>, state: &UiState, at: Pos2, commands: &mut Vec<Command>) {
+    fn drag(
+        &mut self,
+        input: &View3dInput<'_>,
+        state: &UiState,
+        at: Pos2,
+        ctrl: bool,
+        commands: &mut Vec<Command>,
+    ) {
         // Taken out so that picking can borrow the view.
         let mut gesture = std::mem::take(&mut self.gesture);
         match &mut gesture {
             Gesture3d::None | Gesture3d::Ignored => {}
-            Gesture3d::Select {
-                pressed,
-                grabbed,
-                moved,
-            } => {
-                *moved |= pressed.distance(at) > CLICK_SLACK;
-                if let (true, Some((start, grabbed_m)), Some(p)) = (*moved, grabbed, self.pointer(at))
-                    && let Some(now_m) = pick::ray_ground(&p.ray, grabbed_m.z)
-                    && now_m.truncate().length() < 400.0
-                {
-                    pointer::preview(
-                        commands,
-                        vec![Edit::MoveBox {
-                            id: start.id,
-                            center_m: Some(start.center_m + (now_m - *grabbed_m)),
-                            yaw_deg: None,
-                            size_m: None,
-                        }],
-                    );
-                }
-            }
+            Gesture3d::Tool(held) => tools::drag(held, self, input, state, at, ctrl, commands),
+            Gesture3d::Place { pressed, moved } => *moved |= pressed.distance(at) > CLICK_SLACK,
             Gesture3d::Stroke {
                 points_m,
                 layer,
@@ -216,12 +216,14 @@ impl View3d {
                 for i in 1..=samples {
                     let between = last.lerp(at, i as f32 / samples as f32);
                     if let Some(p) = self.pointer(between) {
-                        cells.extend(target(input.settled.frame(), *verb, state.voxel_size, &p.ray));
+                        cells.extend(target(input.settled.frame(), *verb, size(state), &p.ray));
                     }
                 }
                 *last = at;
                 if cells.len() > before {
-                    let cells = cells.iter().copied().collect();
+                    let both = state.tools.both_sides(cells.iter().copied().collect());
+                    let grid = &input.settled.frame().occupancy;
+                    let cells = voxel_ops::only(grid, both, *verb == VoxelVerb::Attach);
                     pointer::preview(commands, vec![Edit::PaintVoxels { cells, class: *class }]);
                 }
             }
@@ -239,29 +241,17 @@ impl View3d {
     ) {
         match gesture {
             Gesture3d::None | Gesture3d::Ignored => {}
-            Gesture3d::Select {
-                moved: true,
-                grabbed: Some((start, _)),
-                ..
-            } => {
-                commands.push(Command::Select(Some(start.id)));
-                commands.push(Command::Commit("Move box"));
-            }
-            Gesture3d::Select { moved: true, .. } => {}
-            Gesture3d::Select { .. } => {
-                let hit = self.hit(input.scene.frame(), at);
-                match (state.tool, hit) {
-                    (Tool::AddBox, Some((hit, ray))) => {
-                        let at_m = point_of(&hit, &ray).truncate();
-                        let lane = super::canvas_tools::lane_heading(input.scene.frame(), at_m);
-                        commands.push(Command::AddBox {
-                            class: state.box_class,
-                            at_m,
-                            yaw_rad: lane.unwrap_or(0.0),
-                        });
-                    }
-                    (_, Some((Hit::Box { id, .. }, _))) => commands.push(Command::Select(Some(id))),
-                    _ => commands.push(Command::Select(None)),
+            Gesture3d::Tool(held) => tools::end(held, self, input, at, commands),
+            Gesture3d::Place { moved: true, .. } => {}
+            Gesture3d::Place { .. } => {
+                if let Some((hit, ray)) = self.hit(input.scene.frame(), at) {
+                    let at_m = point_of(&hit, &ray).truncate();
+                    let lane = super::canvas_tools::lane_heading(input.scene.frame(), at_m);
+                    commands.push(Command::AddBox {
+                        class: state.box_class,
+                        at_m,
+                        yaw_rad: lane.unwrap_or(0.0),
+                    });
                 }
             }
             Gesture3d::Stroke { erase, .. } => {
@@ -282,13 +272,18 @@ impl View3d {
         state: &UiState,
         ray: &Ray,
     ) -> Vec<[usize; 3]> {
-        target(input.settled.frame(), state.verb, state.voxel_size, ray)
+        target(input.settled.frame(), state.verb, size(state), ray)
     }
+}
+
+/// Edge of the brush across the face, and its height along the normal, voxels.
+fn size(state: &UiState) -> [usize; 2] {
+    [state.voxel_size, state.voxel_size.max(state.tools.voxel_height)]
 }
 
 /// Voxels of the first face along the ray that the brush covers: free ones in front of it to attach,
 /// others behind it to remove or recolour.
-fn target(frame: &Frame, verb: VoxelVerb, size: usize, ray: &Ray) -> Vec<[usize; 3]> {
+pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray) -> Vec<[usize; 3]> {
     let Some(hit) = pick::ray_voxels(ray, &frame.occupancy, |_, _| true) else {
         // On empty ground voxels are attached to the floor of the grid.
         if verb != VoxelVerb::Attach {
@@ -312,12 +307,19 @@ fn target(frame: &Frame, verb: VoxelVerb, size: usize, ray: &Ray) -> Vec<[usize;
     }
 }
 
-/// A cube of voxels that begins at `cell` and reaches along `direction`, centred across it; only the
+/// A block of voxels that begins at `cell` and reaches along `direction`, centred across it; only the
 /// voxels that are free, or only those that are not.
-fn cube(frame: &Frame, cell: [usize; 3], direction: [i32; 3], size: usize, free: bool) -> Vec<[usize; 3]> {
-    let (size, limit) = (size as i64, [GridSpec::NX, GridSpec::NY, GridSpec::NZ]);
+fn cube(
+    frame: &Frame,
+    cell: [usize; 3],
+    direction: [i32; 3],
+    [across, height]: [usize; 2],
+    free: bool,
+) -> Vec<[usize; 3]> {
+    let limit = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
     let range = |axis: usize| {
         let at = cell[axis] as i64;
+        let size = if direction[axis] == 0 { across } else { height } as i64;
         let low = match direction[axis] {
             0 => at - (size - 1) / 2,
             d if d > 0 => at,
@@ -375,7 +377,7 @@ mod tests {
     #[test]
     fn attaching_builds_up_and_removing_digs_down() {
         let frame = frame();
-        let at = |verb, size, x, y| target(&frame, verb, size, &down(x, y));
+        let at = |verb, size, x, y| target(&frame, verb, [size; 2], &down(x, y));
         assert_eq!(at(VoxelVerb::Attach, 1, 100, 100), vec![[100, 100, 2]]);
         assert_eq!(at(VoxelVerb::Remove, 1, 100, 100), vec![[100, 100, 1]]);
         assert_eq!(at(VoxelVerb::Recolour, 1, 95, 95), vec![[95, 95, 0]]);
@@ -398,12 +400,13 @@ mod tests {
         let frame = frame();
         let from = GridSpec::center(80, 100, 1);
         let ray = Ray::new(from, DVec3::X).expect("a direction");
-        assert_eq!(target(&frame, VoxelVerb::Attach, 1, &ray), vec![[99, 100, 1]]);
-        assert_eq!(target(&frame, VoxelVerb::Remove, 2, &ray).len(), 1);
+        assert_eq!(target(&frame, VoxelVerb::Attach, [1, 1], &ray), vec![[99, 100, 1]]);
+        assert_eq!(target(&frame, VoxelVerb::Attach, [1, 3], &ray).len(), 3);
+        assert_eq!(target(&frame, VoxelVerb::Remove, [2, 2], &ray).len(), 1);
         // The top of the grid is a limit, not an error.
         let mut tall = frame.clone();
         tall.occupancy.set(50, 50, 15, 1);
-        assert!(target(&tall, VoxelVerb::Attach, 1, &down(50, 50)).is_empty());
+        assert!(target(&tall, VoxelVerb::Attach, [1, 1], &down(50, 50)).is_empty());
     }
 
     #[test]

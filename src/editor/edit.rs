@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
-    BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SensorRig, SourceFrame, VoxelGrid, VoxelPaint,
+    BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, Polyline, Scene, SceneBox, SensorRig, SourceFrame,
+    VoxelGrid, VoxelPaint, raster,
 };
 
 use super::Shape;
@@ -71,6 +72,11 @@ pub enum Edit {
         shape: Shape,
         /// True sets, false clears.
         value: bool,
+    },
+    /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
+    AddPolylines {
+        /// What they mean and where they run, ego frame, m; at least two vertices each.
+        lines: Vec<Polyline>,
     },
     /// Sets voxels to a class (`free` removes them) and locks them.
     PaintVoxels {
@@ -278,6 +284,10 @@ impl Edit {
                     immediate::lay_ground(frame, &cells);
                 }
             }
+            Self::AddPolylines { lines } => {
+                check_lines(lines)?;
+                add_lines(&mut frame.layout, lines);
+            }
             Self::PaintVoxels { cells, class } => {
                 check_voxels(cells)?;
                 for &[x, y, z] in cells {
@@ -360,6 +370,7 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
                 source.layout.set(*layer, x, y, *value);
             }
         }
+        Edit::AddPolylines { lines } => add_lines(&mut source.layout, lines),
         _ => return Err(EditError::NoCorrection),
     }
     Ok(())
@@ -390,6 +401,30 @@ fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) 
     take_box(frame, id)?;
     immediate::clear_box(frame, &old);
     put_box(frame, new)
+}
+
+fn add_lines(layout: &mut BevLayout, lines: &[Polyline]) {
+    for line in lines {
+        raster::draw_polyline(layout, line);
+    }
+    Arc::make_mut(&mut layout.polylines).extend_from_slice(lines);
+}
+
+fn check_lines(lines: &[Polyline]) -> Result<(), EditError> {
+    at_least("lines", lines.len(), 1)?;
+    for line in lines {
+        at_least("points_m", line.points_m.len(), 2)?;
+        let limit = DVec2::splat(SceneBox::LIMIT_M);
+        // Written so that NaN fails too.
+        if let Some(p) = line.points_m.iter().find(|p| !p.abs().cmple(limit).all()) {
+            return Err(EditError::Number {
+                field: "points_m",
+                found: format!("[{}, {}]", p.x, p.y),
+                expected: "finite numbers within 1000 m",
+            });
+        }
+    }
+    Ok(())
 }
 
 fn check_voxels(cells: &[[usize; 3]]) -> Result<(), EditError> {

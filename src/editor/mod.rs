@@ -1,11 +1,19 @@
-//! How a scene changes: document, undo, picking, checks.
+//! How a scene changes: document, undo, picking, checks, and the arithmetic of the tools.
 
+pub mod arrange;
 pub mod checks;
+pub mod choose;
 pub mod document;
 pub mod edit;
+pub mod flood;
 pub mod immediate;
+pub mod lane_strip;
+pub mod lanes;
+pub mod measure;
 pub mod pick;
 pub mod shape;
+pub mod transform;
+pub mod voxel_ops;
 
 pub use document::{Document, Stale};
 pub use edit::{Edit, EditError};

@@ -5,6 +5,7 @@ use std::hash::{Hash, Hasher};
 use serde::{Deserialize, Serialize};
 
 use super::job::GenError;
+use super::redraw::RedrawMask;
 use super::solver::{Guidance, SolverKind};
 use crate::scene::Density;
 
@@ -88,6 +89,9 @@ pub struct GenParams {
     pub seed: u64,
     /// What is regenerated.
     pub region: RegionMode,
+    /// Cells that are regenerated in automatic mode although nothing was edited there; something new comes only
+    /// with a `strength` above 0.
+    pub redraw: RedrawMask,
     /// How far the region's noise leaves the inverted one, 0 to 1 (see `RegionNoise`).
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.
@@ -116,6 +120,7 @@ impl Default for GenParams {
             guidance_rescale: 0.0,
             seed: 0,
             region: RegionMode::Auto,
+            redraw: RedrawMask::default(),
             strength: 0.0,
             inversion_iterations: 0,
             halo_columns: 2,
@@ -130,7 +135,7 @@ impl Default for GenParams {
 
 /// Counts, numbers, named numbers, choices.
 type Bits = ([u32; 4], [u64; 4], [Option<u32>; 4], Choices);
-type Choices = (SolverKind, RegionMode, Quality, [bool; 2]);
+type Choices = (SolverKind, RegionMode, RedrawMask, Quality, [bool; 2]);
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
@@ -154,6 +159,7 @@ impl GenParams {
             (
                 self.solver,
                 self.region,
+                self.redraw,
                 self.quality,
                 [self.keep_objects, self.local],
             ),
@@ -224,7 +230,8 @@ mod tests {
         };
         let same = GenParams { strength: -0.0, ..a };
         assert_eq!((a, hash(&a)), (same, hash(&same)));
-        let changes: [fn(&mut GenParams); 11] = [
+        let changes: [fn(&mut GenParams); 12] = [
+            |p| p.redraw.set(3, 4, true),
             |p| p.steps = 11,
             |p| p.guidance = 1.0 + f64::EPSILON,
             |p| p.guidance_rescale = 0.7,

@@ -14,6 +14,7 @@ pub mod rig;
 pub mod rig_presets;
 pub mod sensor_data;
 pub mod splats;
+pub mod variants;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

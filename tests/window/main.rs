@@ -6,4 +6,5 @@ mod files;
 mod recovery;
 mod sensors;
 mod shell;
+mod tools;
 mod views;

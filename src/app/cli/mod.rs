@@ -13,6 +13,7 @@ mod import;
 mod new;
 mod output;
 mod progress;
+mod region_arg;
 mod render;
 mod shot;
 
@@ -23,6 +24,7 @@ pub(in crate::app) use generate::full_params;
 
 use clap::{Args, Parser, Subcommand};
 
+use self::region_arg::RegionArg;
 use crate::app::open;
 use crate::generation::job::{GenParams, Named, RegionMode};
 use crate::generation::solver::SolverKind;
@@ -111,9 +113,10 @@ struct Gen {
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// What is regenerated: what an edit touches, or everything from fresh noise.
-    #[arg(long, value_parser = ["auto", "full"])]
-    region: Option<String>,
+    /// What is regenerated: `auto`, what an edit touches; `full`, everything from fresh noise; or `X0,Y0,X1,Y1`, what
+    /// an edit touches and a rectangle (ego frame, m; give it a strength above 0).
+    #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
+    region: Option<RegionArg>,
     /// Number of fixed-point updates per inversion step.
     #[arg(long, value_name = "N", default_value_t = 0)]
     inversion_iterations: u32,
@@ -143,10 +146,14 @@ impl Gen {
             }
             .or_else(&default.named),
             seed: self.seed,
-            region: match self.region.as_deref() {
-                Some("full") => RegionMode::Full,
+            region: match self.region {
+                Some(RegionArg::Full) => RegionMode::Full,
                 Some(_) => RegionMode::Auto,
                 None => default.region,
+            },
+            redraw: match self.region {
+                Some(RegionArg::Rect(mask)) => mask,
+                _ => default.redraw,
             },
             inversion_iterations: self.inversion_iterations,
             strength: self.strength,

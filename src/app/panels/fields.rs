@@ -50,14 +50,19 @@ pub fn numbers(
 
 /// Dragging previews, letting go commits, typing applies.
 pub fn field(response: &egui::Response, label: &'static str, edit: Edit, commands: &mut Vec<Command>) {
+    fields(response, label, vec![edit], commands);
+}
+
+/// The same for several edits.
+pub fn fields(response: &egui::Response, label: &'static str, edits: Vec<Edit>, commands: &mut Vec<Command>) {
     if response.dragged() {
         if response.changed() {
-            commands.push(Command::Preview(vec![edit]));
+            commands.push(Command::Preview(edits));
         }
     } else if response.drag_stopped() {
         commands.push(Command::Commit(label));
     } else if response.changed() {
-        commands.push(Command::Apply(label, vec![edit]));
+        commands.push(Command::Apply(label, edits));
     }
 }
 

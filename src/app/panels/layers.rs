@@ -5,22 +5,24 @@ use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
-use crate::app::state::{Tool, UiState, VoxelVerb};
+use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::app::theme;
+use crate::app::tools::panel as tools;
 use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         match state.tool {
-            Tool::Select => {
-                section(ui, "Select");
-                caption(ui, "Click a box to choose it, drag to move it. The round handle turns it, corners resize it.");
-            }
-            Tool::Brush => brush_options(ui, state),
+            Tool::Select => tools::select(ui, state, commands),
+            Tool::Brush => brush_options(ui, state, commands),
+            Tool::Measure => tools::measure(ui, state),
+            Tool::Region => tools::region(ui, state, commands),
             Tool::AddBox => {
                 section(ui, "Add box");
                 caption(ui, "Click to place, drag to set the heading. Boxes follow the nearest lane.");
+                ui.add_space(4.0);
+                tools::variants_ui(ui, state);
                 ui.add_space(4.0);
                 classes(ui, &Class::OBJECTS, &mut state.box_class, "Add");
             }
@@ -30,6 +32,9 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         section(ui, "Map layers");
         for layer in BevLayer::MAP {
             layer_row(ui, &frame.layout, layer, state, commands);
+        }
+        if state.underlay == Underlay::Both {
+            opacity_row(ui, state);
         }
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
@@ -75,12 +80,14 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     });
 }
 
-fn caption(ui: &mut Ui, text: &str) {
+/// A hint in small letters.
+pub fn caption(ui: &mut Ui, text: &str) {
     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
-fn brush_options(ui: &mut Ui, state: &mut UiState) {
+fn brush_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     section(ui, "Brush");
+    tools::brush(ui, state, commands);
     icons::segments(
         ui,
         &mut state.erase,
@@ -101,6 +108,7 @@ fn brush_options(ui: &mut Ui, state: &mut UiState) {
 
 fn voxel_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     section(ui, "Voxel brush");
+    tools::voxels(ui, state, commands);
     let mut verb = state.verb;
     let verbs = VoxelVerb::ALL.map(|(verb, name, key)| (verb, name, key));
     if icons::segments(ui, &mut verb, &verbs) {
@@ -165,8 +173,16 @@ fn layer_row(
     let chosen = state.tool == Tool::Brush && state.layer == layer;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        if eye(ui, shown, &format!("Show {label}")).clicked() {
+        let shows = eye(ui, shown, &format!("Show {label}")).on_hover_text("Alt+click shows it alone");
+        if shows.clicked() && ui.input(|i| i.modifiers.alt) {
+            solo(state, layer);
+        } else if shows.clicked() {
             state.layers_shown ^= layer.bit();
+            state.tools.before_solo = None;
+        }
+        let locked = state.tools.is_locked(layer);
+        if lock(ui, locked, &format!("Lock {label}")).clicked() {
+            state.tools.layers_locked ^= layer.bit();
         }
         let share = layout.count(layer) as f64 * 100.0 / GridSpec::COLUMNS as f64;
         let right = match share {
@@ -182,6 +198,44 @@ fn layer_row(
             commands.push(Command::Tool(Tool::Brush));
         }
     });
+}
+
+/// Shows one layer alone, or if it is, what was shown before.
+fn solo(state: &mut UiState, layer: BevLayer) {
+    match state.tools.before_solo {
+        Some(before) if state.layers_shown == layer.bit() => {
+            state.layers_shown = before;
+            state.tools.before_solo = None;
+        }
+        before => {
+            state.tools.before_solo = before.or(Some(state.layers_shown));
+            state.layers_shown = layer.bit();
+        }
+    }
+}
+
+/// How much of the voxels the layers hide.
+fn opacity_row(ui: &mut Ui, state: &mut UiState) {
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new("Opacity").color(theme::text_weak()));
+        ui.spacing_mut().slider_width = 90.0;
+        let slider = egui::Slider::new(&mut state.tools.layers_opacity, 0.0..=1.0).fixed_decimals(2);
+        ui.add(slider).accessible_name("Opacity of the layers");
+    });
+}
+
+fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(16.0, theme::ROW), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, locked, name));
+    let color = match (locked, response.hovered()) {
+        (true, _) => theme::warn(),
+        (false, true) => theme::text_weak(),
+        // Seen only where it is needed: a lock beside every layer would be noise.
+        (false, false) => theme::field_hover(),
+    };
+    Icon::Lock.paint(ui, rect.shrink2(vec2(2.0, 6.0)), color);
+    icons::focus_ring(ui, &response, rect);
+    response
 }
 
 fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {

@@ -1,13 +1,16 @@
 //! The right panel: the chosen box in numbers, the list of boxes, the history.
 
 use egui::{DragValue, Ui};
+use glam::DVec3;
 
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
-use crate::app::panels::fields::{caption, field, numbers};
+use crate::app::panels::fields::{caption, field, fields, number, numbers};
 use crate::app::state::UiState;
 use crate::app::theme;
-use crate::editor::{Document, Edit};
+use crate::app::tools::{Choose, ToolCommand};
+use crate::editor::transform::Orientation;
+use crate::editor::{Document, Edit, arrange};
 use crate::scene::{BoxId, Class, Frame, SceneBox};
 
 /// What the history and its title take at the bottom, points.
@@ -19,7 +22,8 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     inferred(ui, frame, state, commands);
     section(ui, "Inspector");
     match state.selected.and_then(|id| frame.boxes.get(&id)) {
-        Some(b) => inspector(ui, b, commands),
+        Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
+        Some(b) => inspector(ui, b, state, commands),
         None => {
             ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
         }
@@ -42,7 +46,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     list.show_rows(ui, theme::ROW, boxes.len(), |ui, range| {
         for b in &boxes[range] {
             let guess = frame.inferred.boxes.contains(&b.id);
-            box_row(ui, b, guess, state.selected == Some(b.id), commands);
+            box_row(ui, b, guess, state.is_chosen(b.id), commands);
         }
     });
     ui.add_space(theme::GAP);
@@ -110,7 +114,10 @@ fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut 
     let right = format!("{mark}#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
     let label = format!("Box {} {}", b.id.0, b.class.label());
     let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
-    if row.clicked() {
+    let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+    if row.clicked() && adds {
+        commands.push(Command::Tools(ToolCommand::Choose(vec![b.id], Choose::Toggle)));
+    } else if row.clicked() {
         commands.push(Command::Select(Some(b.id)));
     }
     if row.double_clicked() {
@@ -118,7 +125,7 @@ fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut 
     }
 }
 
-fn inspector(ui: &mut Ui, b: &SceneBox, commands: &mut Vec<Command>) {
+fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut class = b.class;
         let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
@@ -151,9 +158,21 @@ fn inspector(ui: &mut Ui, b: &SceneBox, commands: &mut Vec<Command>) {
         });
     });
     ui.add_space(2.0);
+    let local = state.tools.orientation == Orientation::Local;
     let [mut center, mut size] = [b.center_m, b.size_m];
     let limit = SceneBox::LIMIT_M;
-    let position = numbers(ui, "Position", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    // In the box's own axes there is no place but where it is: the fields shift it.
+    let position = match local {
+        false => numbers(ui, "Position", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05),
+        true => {
+            let start = shift_start(ui, b);
+            let mut shift = start.to_local(b.center_m);
+            let names = ["Ahead", "Left", "Up"];
+            let fields = numbers(ui, "Shift", names, &mut shift, -limit..=limit, 0.05);
+            center = start.to_ego(shift);
+            fields
+        }
+    };
     let dimensions = numbers(
         ui,
         "Size",
@@ -234,6 +253,75 @@ fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
             }
         }
     });
+}
+
+/// The box as it was when it was chosen: what shifts along its own axes are counted from.
+fn shift_start(ui: &Ui, b: &SceneBox) -> SceneBox {
+    let memory = egui::Id::unique("box when chosen");
+    let kept: Option<SceneBox> = ui.data(|d| d.get_temp(memory)).flatten();
+    match kept.filter(|k| k.id == b.id && k.yaw_rad == b.yaw_rad) {
+        Some(kept) => kept,
+        None => {
+            ui.data_mut(|d| d.insert_temp(memory, Some(*b)));
+            *b
+        }
+    }
+}
+
+/// Several boxes in numbers: the middle between them shifts all, sizes and headings are set for all.
+fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Command>) {
+    let ids = state.chosen();
+    let boxes = arrange::boxes_of(frame, &ids);
+    let (Some(first), Some(middle_m)) = (boxes.first(), arrange::middle_m(&boxes)) else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new(format!("{} boxes chosen", boxes.len())).color(theme::text_strong()));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            if icons::button(ui, Icon::Trash, "Delete boxes", "Del", false, true).clicked() {
+                commands.push(Command::DeleteSelected);
+            }
+            if icons::button(ui, Icon::Copy, "Duplicate boxes", "Ctrl+D", false, true).clicked() {
+                commands.push(Command::DuplicateSelected);
+            }
+        });
+    });
+    let one_class = boxes.iter().all(|b| b.class == first.class);
+    let mut class = one_class.then_some(first.class);
+    let name = class.map_or("Several classes".to_owned(), |c| theme::sentence(&c.label()));
+    let combo = egui::ComboBox::from_id_salt("class of several").width(150.0).selected_text(name);
+    combo.show_ui(ui, |ui| {
+        for other in Class::OBJECTS {
+            ui.selectable_value(&mut class, Some(other), theme::sentence(&other.label()));
+        }
+    });
+    if let Some(class) = class.filter(|_| !one_class || class != Some(first.class)) {
+        let edits = ids.iter().map(|id| Edit::SetBoxClass { id: *id, class });
+        commands.push(Command::Apply("Change class", edits.collect()));
+    }
+    let limit = SceneBox::LIMIT_M;
+    let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, first.yaw_rad.to_degrees());
+    let position = numbers(ui, "Middle", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    let names = ["Length", "Width", "Height"];
+    let dimensions = numbers(ui, "Size", names, &mut size, 0.1..=60.0, 0.05);
+    let turned = number(ui, "Heading", "Heading", &mut yaw_deg, -360.0..=360.0, "°", 1);
+    let of_each = |edit: &dyn Fn(&SceneBox) -> [Option<DVec3>; 2], yaw_deg: Option<f64>| {
+        let one = |b: &SceneBox| {
+            let [center_m, size_m] = edit(b);
+            Edit::MoveBox {
+                id: b.id,
+                center_m,
+                yaw_deg,
+                size_m,
+            }
+        };
+        boxes.iter().map(one).collect::<Vec<_>>()
+    };
+    let moved = of_each(&|b| [Some(b.center_m + (center - middle_m)), None], None);
+    fields(&position, "Move boxes", moved, commands);
+    fields(&dimensions, "Resize boxes", of_each(&|_| [None, Some(size)], None), commands);
+    fields(&turned, "Turn boxes", of_each(&|_| [None, None], Some(yaw_deg)), commands);
 }
 
 /// The box after (1) or before (-1) the chosen one, by id, round about.

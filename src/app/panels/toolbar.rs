@@ -47,6 +47,8 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
                 Tool::Brush => Icon::Brush,
                 Tool::AddBox => Icon::AddBox,
                 Tool::Voxel => Icon::Voxel,
+                Tool::Measure => Icon::Measure,
+                Tool::Region => Icon::Region,
             };
             if icons::button(ui, icon, name, key, state.tool == tool, true).clicked() {
                 commands.push(Command::Tool(tool));

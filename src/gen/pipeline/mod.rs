@@ -14,6 +14,7 @@ use crate::generation::job::{
 };
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
+use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::{RegionNoise, edit_with_replay};
 use crate::generation::rng::{Stream, normal_field};
@@ -391,7 +392,7 @@ impl OccPipeline {
     fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let mut report = GenReport::default();
         let region = report.timed(Stage::Composite, |_| {
-            Region::of_edit(job.scene.frame(), job.params.halo_columns as usize)
+            redraw::region_of(job.scene.frame(), &job.params)
         });
         self.redraw(job, region, report, ctx)
     }

@@ -1,0 +1,58 @@
+//! The value of `--region`: a word or a rectangle.
+
+use glam::DVec2;
+
+use crate::generation::redraw::RedrawMask;
+
+/// What is regenerated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RegionArg {
+    /// What an edit touches.
+    Auto,
+    /// Everything, from fresh noise.
+    Full,
+    /// What an edit touches, and the cells of a rectangle.
+    Rect(RedrawMask),
+}
+
+impl std::str::FromStr for RegionArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => return Ok(Self::Auto),
+            "full" => return Ok(Self::Full),
+            _ => {}
+        }
+        let wanted = || format!("found {text:?}, expected auto, full or four numbers X0,Y0,X1,Y1 in metres");
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
+        let numbers = numbers.map_err(|_| wanted())?;
+        let [x0, y0, x1, y1] = numbers[..] else {
+            return Err(wanted());
+        };
+        if numbers.iter().any(|n| !n.is_finite()) {
+            return Err(wanted());
+        }
+        let mask = RedrawMask::of_rect(DVec2::new(x0, y0), DVec2::new(x1, y1));
+        match mask.is_empty() {
+            true => Err("the rectangle covers no cell of the grid".into()),
+            false => Ok(Self::Rect(mask)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_rectangles_and_what_is_neither() {
+        assert_eq!("auto".parse(), Ok(RegionArg::Auto));
+        assert_eq!("full".parse(), Ok(RegionArg::Full));
+        let rect = RedrawMask::of_rect(DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
+        assert_eq!("-10, 5,10,-5".parse(), Ok(RegionArg::Rect(rect)));
+        for bad in ["", "some", "1,2,3", "1,2,3,4,5", "1,2,3,nan", "100,100,200,200"] {
+            assert!(bad.parse::<RegionArg>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! The tools of the window: what they hold, what they do in either view, their options.
+
+pub mod bev;
+pub mod bev_draw;
+mod boxes;
+pub mod command;
+pub mod dialogs;
+pub mod gizmo;
+pub mod options;
+pub mod panel;
+pub mod view3d;
+
+pub use command::{Choose, ToolCommand};
+pub use options::{PaintShape, ToolState, VoxelMode};

@@ -1,0 +1,310 @@
+//! Several boxes at once: copied, pasted, put in rows, mirrored, turned, set down. Each function makes the
+//! edits of one undo step; boxes that are not in the frame are left out.
+
+use glam::{DVec2, DVec3};
+
+use crate::scene::{BoxId, Frame, SceneBox};
+
+use super::Edit;
+use super::lanes::{along, nearest_lane};
+
+/// How far a lane may be from what is to follow it, m.
+pub const LANE_REACH_M: f64 = 6.0;
+/// Most copies of one row.
+pub const MAX_COPIES: usize = 200;
+
+/// Edits that add boxes, and the names that these get.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Added {
+    /// One for each box.
+    pub edits: Vec<Edit>,
+    /// Names of the boxes, in the same order.
+    pub ids: Vec<BoxId>,
+}
+
+/// Boxes taken along, to be put down elsewhere.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clipboard {
+    /// As they were.
+    pub boxes: Vec<SceneBox>,
+}
+
+/// About what several boxes turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Pivot {
+    /// Each about its own centre.
+    #[default]
+    Own,
+    /// All about the middle between them.
+    Middle,
+}
+
+/// Along what a row of copies runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RowAlong {
+    /// The heading of each box.
+    #[default]
+    Heading,
+    /// The lane under each box; the heading where there is none.
+    Lane,
+    /// To the left of the heading.
+    Side,
+}
+
+/// A row of copies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Copies of each box, the original not counted.
+    pub copies: usize,
+    /// From one to the next, centre to centre, m; negative goes backward.
+    pub spacing_m: f64,
+    /// Which way.
+    pub along: RowAlong,
+}
+
+impl Default for Row {
+    fn default() -> Self {
+        Self {
+            copies: 4,
+            spacing_m: 7.0,
+            along: RowAlong::Heading,
+        }
+    }
+}
+
+/// The boxes of those names that are there, in the order of the names.
+pub fn boxes_of(frame: &Frame, ids: &[BoxId]) -> Vec<SceneBox> {
+    ids.iter().filter_map(|id| frame.boxes.get(id).copied()).collect()
+}
+
+/// Middle of the upright rectangle around the centres, ego frame, m; `None` without boxes.
+pub fn middle_m(boxes: &[SceneBox]) -> Option<DVec3> {
+    let centers = || boxes.iter().map(|b| b.center_m);
+    let (low, high) = (centers().reduce(DVec3::min)?, centers().reduce(DVec3::max)?);
+    Some((low + high) / 2.0)
+}
+
+/// Takes boxes out.
+pub fn remove(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
+    let there = ids.iter().filter(|id| frame.boxes.contains_key(id));
+    there.map(|id| Edit::RemoveBox { id: *id }).collect()
+}
+
+/// Shifts boxes in the ego frame, m.
+pub fn shift(frame: &Frame, ids: &[BoxId], step_m: DVec3) -> Vec<Edit> {
+    let moved = boxes_of(frame, ids).into_iter();
+    moved
+        .map(|b| place(&b, b.center_m + step_m, None))
+        .collect()
+}
+
+/// Turns boxes counter-clockwise, degrees.
+pub fn turn(frame: &Frame, ids: &[BoxId], degrees: f64, pivot: Pivot) -> Vec<Edit> {
+    let boxes = boxes_of(frame, ids);
+    turned(&boxes, degrees, pivot)
+}
+
+/// The same for boxes as they were.
+pub fn turned(boxes: &[SceneBox], degrees: f64, pivot: Pivot) -> Vec<Edit> {
+    let Some(middle_m) = middle_m(boxes) else {
+        return Vec::new();
+    };
+    let by = DVec2::from_angle(degrees.to_radians());
+    let turn = |b: &SceneBox| {
+        let yaw_deg = Some(wrapped_deg(b.yaw_rad.to_degrees() + degrees));
+        let center_m = (pivot == Pivot::Middle && boxes.len() > 1).then(|| {
+            let arm = (b.center_m - middle_m).truncate();
+            (middle_m.truncate() + by.rotate(arm)).extend(b.center_m.z)
+        });
+        Edit::MoveBox {
+            id: b.id,
+            center_m,
+            yaw_deg,
+            size_m: None,
+        }
+    };
+    boxes.iter().map(turn).collect()
+}
+
+/// An angle within -180 to 180 degrees.
+pub fn wrapped_deg(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    if turned > 180.0 { turned - 360.0 } else { turned }
+}
+
+/// Copies boxes beside themselves: all to the left of the first one's heading, clear of each other.
+pub fn duplicate(frame: &Frame, ids: &[BoxId]) -> Added {
+    let boxes = boxes_of(frame, ids);
+    let shift_m = beside_m(&boxes);
+    let copies = boxes.into_iter().map(|b| SceneBox {
+        center_m: b.center_m + shift_m,
+        ..b
+    });
+    add(frame, copies.collect())
+}
+
+/// A step to the left of the first box's heading that clears all of them, m.
+fn beside_m(boxes: &[SceneBox]) -> DVec3 {
+    let Some(first) = boxes.first() else {
+        return DVec3::ZERO;
+    };
+    let left = first.heading().perp();
+    let across = |p: DVec2| p.dot(left);
+    let corners = || boxes.iter().flat_map(|b| b.footprint()).map(across);
+    let extent_m = corners().fold(f64::NEG_INFINITY, f64::max) - corners().fold(f64::INFINITY, f64::min);
+    (left * (extent_m + 0.6)).extend(0.0)
+}
+
+/// Puts the boxes of a clipboard down with the middle of them at a point of the ground, or beside where they were.
+pub fn paste(frame: &Frame, clipboard: &Clipboard, at_m: Option<DVec2>) -> Added {
+    let Some(middle_m) = middle_m(&clipboard.boxes) else {
+        return Added::default();
+    };
+    let shift_m = match at_m.filter(|p| p.is_finite()) {
+        Some(at_m) => (at_m - middle_m.truncate()).extend(0.0),
+        None => beside_m(&clipboard.boxes),
+    };
+    let copies = clipboard.boxes.iter().map(|b| SceneBox {
+        center_m: b.center_m + shift_m,
+        ..*b
+    });
+    add(frame, copies.collect())
+}
+
+/// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
+/// lane's middle and turns with it.
+pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
+    let mut copies = Vec::new();
+    if !row.spacing_m.is_finite() {
+        return Added::default();
+    }
+    for b in boxes_of(frame, ids) {
+        let lane = (row.along == RowAlong::Lane)
+            .then(|| nearest_lane(&frame.layout, b.center_m.truncate(), LANE_REACH_M))
+            .flatten();
+        for i in 1..=row.copies.min(MAX_COPIES) {
+            let way_m = row.spacing_m * i as f64;
+            let (at_m, yaw_rad) = match (&lane, row.along) {
+                (Some(from), _) => {
+                    let (at_m, yaw_rad) = along(&frame.layout, from, way_m);
+                    let turn = yaw_rad - from.yaw_rad;
+                    let aside = b.center_m.truncate() - from.at_m;
+                    (at_m + DVec2::from_angle(turn).rotate(aside), b.yaw_rad + turn)
+                }
+                (None, RowAlong::Side) => (b.center_m.truncate() + b.heading().perp() * way_m, b.yaw_rad),
+                (None, _) => (b.center_m.truncate() + b.heading() * way_m, b.yaw_rad),
+            };
+            let by = DVec2::from_angle(yaw_rad - b.yaw_rad);
+            copies.push(SceneBox {
+                center_m: at_m.extend(b.center_m.z),
+                yaw_rad,
+                velocity_mps: by.rotate(b.velocity_mps),
+                ..b
+            });
+        }
+    }
+    // Beyond what a box may have there is no room for more.
+    copies.retain(|b| b.problem().is_none());
+    add(frame, copies)
+}
+
+/// Mirrors boxes about the ego x axis. With `keep_direction` one that changes sides is turned by 180 degrees,
+/// so that it drives with the traffic of its new side.
+pub fn mirror(frame: &Frame, ids: &[BoxId], keep_direction: bool) -> Vec<Edit> {
+    let boxes = boxes_of(frame, ids);
+    let pairs = boxes.iter().map(|b| (b, mirrored(b, keep_direction)));
+    pairs.flat_map(|(old, new)| replace(old, &new)).collect()
+}
+
+/// Adds mirrored copies instead.
+pub fn mirror_copy(frame: &Frame, ids: &[BoxId], keep_direction: bool) -> Added {
+    let boxes = boxes_of(frame, ids);
+    add(frame, boxes.iter().map(|b| mirrored(b, keep_direction)).collect())
+}
+
+fn mirrored(b: &SceneBox, keep_direction: bool) -> SceneBox {
+    const ON_THE_AXIS_M: f64 = 0.05;
+    let turns = keep_direction && b.center_m.y.abs() > ON_THE_AXIS_M;
+    let (half_turn, sign) = if turns { (180.0, -1.0) } else { (0.0, 1.0) };
+    SceneBox {
+        center_m: DVec3::new(b.center_m.x, -b.center_m.y + 0.0, b.center_m.z),
+        yaw_rad: wrapped_deg(half_turn - b.yaw_rad.to_degrees()).to_radians(),
+        velocity_mps: DVec2::new(b.velocity_mps.x, -b.velocity_mps.y) * sign,
+        ..*b
+    }
+}
+
+/// Lets boxes stand on the ground plane z = 0 of the ego frame.
+pub fn drop_to_ground(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
+    let boxes = boxes_of(frame, ids).into_iter();
+    boxes
+        .map(|b| place(&b, standing(&b, b.center_m.truncate()), None))
+        .collect()
+}
+
+/// Puts boxes on the middle of their nearest lane, in its direction, on the ground. A box further than
+/// [`LANE_REACH_M`] from any lane is only set down.
+pub fn to_lane(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
+    let boxes = boxes_of(frame, ids).into_iter();
+    let edit = |b: SceneBox| {
+        let at_m = b.center_m.truncate();
+        match nearest_lane(&frame.layout, at_m, LANE_REACH_M) {
+            Some(lane) => {
+                let yaw_deg = wrapped_deg(lane.yaw_rad.to_degrees());
+                place(&b, standing(&b, lane.at_m), Some(yaw_deg))
+            }
+            None => place(&b, standing(&b, at_m), None),
+        }
+    };
+    boxes.map(edit).collect()
+}
+
+/// Centre of a box that stands on the ground at a point, m.
+pub fn standing(b: &SceneBox, at_m: DVec2) -> DVec3 {
+    at_m.extend(b.size_m.z / 2.0)
+}
+
+fn place(b: &SceneBox, center_m: DVec3, yaw_deg: Option<f64>) -> Edit {
+    Edit::MoveBox {
+        id: b.id,
+        center_m: Some(center_m),
+        yaw_deg,
+        size_m: None,
+    }
+}
+
+/// The edits that make one box another of the same name, its velocity included.
+fn replace(old: &SceneBox, new: &SceneBox) -> Vec<Edit> {
+    if old.velocity_mps == new.velocity_mps {
+        return vec![place(old, new.center_m, Some(new.yaw_rad.to_degrees()))];
+    }
+    vec![Edit::RemoveBox { id: old.id }, add_edit(new, old.id)]
+}
+
+fn add_edit(b: &SceneBox, id: BoxId) -> Edit {
+    Edit::AddBox {
+        class: b.class,
+        center_m: b.center_m,
+        size_m: b.size_m,
+        yaw_deg: b.yaw_rad.to_degrees(),
+        velocity_mps: (b.velocity_mps != DVec2::ZERO).then_some(b.velocity_mps),
+        id: Some(id),
+    }
+}
+
+/// Adds boxes under names that are free; those for which none is left are left out.
+pub fn add(frame: &Frame, boxes: Vec<SceneBox>) -> Added {
+    let highest = frame.boxes.keys().next_back().map_or(0, |id| id.0);
+    let above = (highest..u32::MAX).map(|id| BoxId(id + 1));
+    let gaps = (1..highest).map(BoxId).filter(|id| !frame.boxes.contains_key(id));
+    let mut added = Added::default();
+    for (b, id) in boxes.iter().zip(above.chain(gaps)) {
+        added.edits.push(add_edit(b, id));
+        added.ids.push(id);
+    }
+    added
+}
+
+#[cfg(test)]
+#[path = "arrange_tests.rs"]
+mod tests;

@@ -1,0 +1,150 @@
+//! Tests of what is done to several boxes.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use super::*;
+use crate::editor::Document;
+use crate::scene::{BevLayout, Class, Polyline, PolylineKind, Scene, VoxelGrid};
+
+fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
+    SceneBox {
+        id: BoxId(id),
+        class: Class::Car,
+        center_m: DVec3::new(x, y, 0.85),
+        size_m: DVec3::new(4.6, 1.9, 1.7),
+        yaw_rad,
+        velocity_mps: DVec2::new(5.0, 1.0),
+    }
+}
+
+fn frame(boxes: &[SceneBox]) -> Frame {
+    let line = |points: &[[f64; 2]]| Polyline {
+        kind: PolylineKind::LaneCenter,
+        points_m: points.iter().map(|p| DVec2::from_array(*p)).collect(),
+    };
+    let lines = vec![line(&[[-30.0, 2.0], [10.0, 2.0], [10.0, 30.0]])];
+    let layout = BevLayout::from_cells(vec![0; 40_000], lines).expect("the right size");
+    let boxes = boxes.iter().map(|b| (b.id, *b)).collect();
+    Frame::new(layout, boxes, VoxelGrid::new())
+}
+
+fn after(frame: &Frame, edits: &[Edit]) -> Frame {
+    let scene = Scene::single("test", frame.clone(), Arc::default(), 1);
+    let mut document = Document::new(scene);
+    document.apply_all("test", edits).expect("sound edits");
+    assert_eq!(document.history().len(), 2, "one step");
+    Frame::clone(document.scene().frame())
+}
+
+#[test]
+fn several_are_removed_shifted_and_turned_at_once() {
+    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 10.0, 4.0, 0.5), car(5, -20.0, 0.0, 0.0)]);
+    let ids = [BoxId(1), BoxId(2), BoxId(77)];
+    let left = after(&frame, &remove(&frame, &ids));
+    assert_eq!(left.boxes.keys().copied().collect::<Vec<_>>(), [BoxId(5)]);
+    let moved = after(&frame, &shift(&frame, &ids, DVec3::new(1.0, -2.0, 0.5)));
+    assert_eq!(moved.boxes[&BoxId(2)].center_m, DVec3::new(11.0, 2.0, 1.35));
+    assert_eq!(moved.boxes[&BoxId(5)], frame.boxes[&BoxId(5)]);
+    let own = after(&frame, &turn(&frame, &ids, 90.0, Pivot::Own));
+    assert_eq!(own.boxes[&BoxId(1)].center_m, DVec3::new(0.0, 0.0, 0.85));
+    let group = after(&frame, &turn(&frame, &ids, 90.0, Pivot::Middle));
+    // About (5, 2): the first goes from (-5, -2) to (2, -5).
+    let first = group.boxes[&BoxId(1)];
+    assert!(first.center_m.distance(DVec3::new(7.0, -3.0, 0.85)) < 1e-9, "{first:?}");
+    assert!((first.yaw_rad - FRAC_PI_2).abs() < 1e-9);
+    assert!(turn(&frame, &[BoxId(77)], 3.0, Pivot::Middle).is_empty());
+}
+
+#[test]
+fn copies_get_free_names_and_a_place_of_their_own() {
+    let mut top = car(u32::MAX, 0.0, 0.0, 0.0);
+    top.velocity_mps = DVec2::ZERO;
+    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 0.0, 5.0, 0.0), top]);
+    let added = duplicate(&frame, &[BoxId(1), BoxId(2)]);
+    assert_eq!(added.ids, [BoxId(3), BoxId(4)]);
+    let now = after(&frame, &added.edits);
+    assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(0.0, 5.0 + 1.9 + 0.6, 0.85));
+    assert_eq!(now.boxes[&BoxId(4)].velocity_mps, DVec2::new(5.0, 1.0));
+    let clipboard = Clipboard {
+        boxes: boxes_of(&frame, &[BoxId(1), BoxId(2)]),
+    };
+    let pasted = paste(&frame, &clipboard, Some(DVec2::new(10.0, 10.0)));
+    let now = after(&frame, &pasted.edits);
+    assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(10.0, 7.5, 0.85));
+    assert_eq!(paste(&frame, &Clipboard::default(), None), Added::default());
+    assert_eq!(paste(&frame, &clipboard, Some(DVec2::NAN)).ids.len(), 2);
+}
+
+#[test]
+fn rows_run_along_headings_and_lanes() {
+    let frame = frame(&[car(1, -4.0, 1.0, 0.0)]);
+    let row_of = |along| {
+        let row = super::row(
+            &frame,
+            &[BoxId(1)],
+            &Row {
+                copies: 3,
+                spacing_m: 6.0,
+                along,
+            },
+        );
+        let now = after(&frame, &row.edits);
+        now.boxes.values().skip(1).copied().collect::<Vec<_>>()
+    };
+    let straight = row_of(RowAlong::Heading);
+    assert_eq!(straight.len(), 3);
+    assert_eq!(straight[2].center_m, DVec3::new(14.0, 1.0, 0.85));
+    assert_eq!(row_of(RowAlong::Side)[0].center_m, DVec3::new(-4.0, 7.0, 0.85));
+    // 14 m to the corner, then 4 m up; one metre right of the lane stays one metre right of it.
+    let bent = row_of(RowAlong::Lane)[2];
+    assert!(bent.center_m.distance(DVec3::new(11.0, 6.0, 0.85)) < 1e-9, "{bent:?}");
+    assert!((bent.yaw_rad - FRAC_PI_2).abs() < 1e-9);
+    assert!(bent.velocity_mps.distance(DVec2::new(-1.0, 5.0)) < 1e-9);
+    let many = Row {
+        copies: usize::MAX,
+        spacing_m: 1e300,
+        along: RowAlong::Lane,
+    };
+    assert!(super::row(&frame, &[BoxId(1)], &many).edits.is_empty());
+    let nan = Row { spacing_m: f64::NAN, ..many };
+    assert!(super::row(&frame, &[BoxId(1)], &nan).edits.is_empty());
+}
+
+#[test]
+fn mirrored_boxes_drive_with_the_other_side() {
+    let frame = frame(&[car(1, 3.0, -4.0, 0.3), car(2, 8.0, 0.0, 0.3)]);
+    let ids = [BoxId(1), BoxId(2)];
+    let now = after(&frame, &mirror(&frame, &ids, true));
+    let b = now.boxes[&BoxId(1)];
+    assert_eq!(b.center_m, DVec3::new(3.0, 4.0, 0.85));
+    assert!((b.yaw_rad - (PI - 0.3)).abs() < 1e-9);
+    assert_eq!(b.velocity_mps, DVec2::new(-5.0, 1.0));
+    // On the axis nothing changes sides.
+    assert!((now.boxes[&BoxId(2)].yaw_rad + 0.3).abs() < 1e-9);
+    let plain = after(&frame, &mirror(&frame, &ids, false));
+    assert!((plain.boxes[&BoxId(1)].yaw_rad + 0.3).abs() < 1e-9);
+    let copies = mirror_copy(&frame, &ids[..1], false);
+    assert_eq!(after(&frame, &copies.edits).boxes.len(), 3);
+}
+
+#[test]
+fn boxes_are_set_down_and_follow_their_lane() {
+    let mut high = car(1, -5.0, 4.0, 2.0);
+    high.center_m.z = 3.0;
+    let frame = frame(&[high, car(2, -5.0, 20.0, 2.0)]);
+    let ids = [BoxId(1), BoxId(2)];
+    let down = after(&frame, &drop_to_ground(&frame, &ids));
+    assert_eq!(down.boxes[&BoxId(1)].center_m, DVec3::new(-5.0, 4.0, 0.85));
+    let lane = after(&frame, &to_lane(&frame, &ids));
+    let b = lane.boxes[&BoxId(1)];
+    assert_eq!((b.center_m, b.yaw_rad), (DVec3::new(-5.0, 2.0, 0.85), 0.0));
+    assert_eq!(lane.boxes[&BoxId(2)], frame.boxes[&BoxId(2)], "too far from any");
+}
+
+#[test]
+fn angles_stay_in_range() {
+    for (from, to) in [(0.0, 0.0), (181.0, -179.0), (-190.0, 170.0), (720.5, 0.5)] {
+        assert!((wrapped_deg(from) - to).abs() < 1e-9, "{from}");
+    }
+}

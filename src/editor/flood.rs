@@ -1,0 +1,74 @@
+//! Flood fill on the bird's-eye view.
+
+use crate::scene::{BevLayer, BevLayout, GridSpec};
+
+/// What bounds a fill.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FillBounds {
+    /// Cells of exactly the same map layers as the first.
+    #[default]
+    AnyLayer,
+    /// Cells that have, or have not, the painted layer as the first.
+    OwnLayer,
+}
+
+/// Cells `[x, y]` that connect to `start` by their sides and are alike, sorted; at most all 40,000. Empty if
+/// the start is outside the grid.
+pub fn flood(layout: &BevLayout, layer: BevLayer, start: [usize; 2], bounds: FillBounds) -> Vec<[usize; 2]> {
+    let [x, y] = start;
+    if x >= GridSpec::NX || y >= GridSpec::NY {
+        return Vec::new();
+    }
+    let mask = match bounds {
+        FillBounds::AnyLayer => u32::MAX,
+        FillBounds::OwnLayer => layer.bit(),
+    };
+    let wanted = layout.cell(x, y) & mask;
+    let mut seen = vec![false; GridSpec::COLUMNS];
+    let mut open = vec![start];
+    seen[x * GridSpec::NY + y] = true;
+    while let Some([x, y]) = open.pop() {
+        let neighbours = [
+            [x.wrapping_sub(1), y],
+            [x + 1, y],
+            [x, y.wrapping_sub(1)],
+            [x, y + 1],
+        ];
+        for [x, y] in neighbours {
+            if x >= GridSpec::NX || y >= GridSpec::NY || seen[x * GridSpec::NY + y] {
+                continue;
+            }
+            if layout.cell(x, y) & mask == wanted {
+                seen[x * GridSpec::NY + y] = true;
+                open.push([x, y]);
+            }
+        }
+    }
+    let cells = (0..GridSpec::COLUMNS).filter(|i| seen[*i]);
+    cells.map(|i| [i / GridSpec::NY, i % GridSpec::NY]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fill_stops_at_layers() {
+        let mut layout = BevLayout::default();
+        // A square ring of road around 8 x 8 cells, cut in two by a divider.
+        for i in 50..60 {
+            for (x, y) in [(i, 50), (i, 59), (50, i), (59, i)] {
+                layout.set(BevLayer::DrivableArea, x, y, true);
+            }
+        }
+        for x in 51..59 {
+            layout.set(BevLayer::LaneDivider, x, 54, true);
+        }
+        let count = |start, bounds| flood(&layout, BevLayer::DrivableArea, start, bounds).len();
+        assert_eq!(count([52, 52], FillBounds::AnyLayer), 8 * 3);
+        assert_eq!(count([52, 52], FillBounds::OwnLayer), 8 * 8);
+        assert_eq!(count([50, 50], FillBounds::AnyLayer), 36);
+        assert_eq!(count([0, 0], FillBounds::AnyLayer), GridSpec::COLUMNS - 100);
+        assert_eq!(count([200, 0], FillBounds::AnyLayer), 0);
+    }
+}

@@ -1,0 +1,179 @@
+//! A street drawn as a line with a width: drivable area, dividers between its lanes, and lane centres.
+
+use glam::DVec2;
+
+use crate::scene::{BevLayer, Polyline, PolylineKind};
+
+use super::{Edit, Shape};
+
+/// What a street has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneStrip {
+    /// Lanes in the direction in which it was drawn, right of the line that parts the directions.
+    pub forward: usize,
+    /// Lanes against it; 0 makes it one-way.
+    pub backward: usize,
+    /// Width of a lane, m.
+    pub lane_m: f64,
+    /// Width of the walkway on either side, m; 0 means none.
+    pub walk_m: f64,
+}
+
+impl Default for LaneStrip {
+    fn default() -> Self {
+        Self {
+            forward: 1,
+            backward: 1,
+            lane_m: 3.5,
+            walk_m: 0.0,
+        }
+    }
+}
+
+impl LaneStrip {
+    /// Most lanes of one direction.
+    pub const MAX_LANES: usize = 6;
+    /// Limits of the width of a lane, m.
+    pub const LANE_M: std::ops::RangeInclusive<f64> = 2.0..=6.0;
+
+    /// Width of the carriageway, m.
+    pub fn width_m(&self) -> f64 {
+        (self.forward + self.backward) as f64 * self.lane_m
+    }
+
+    /// The edits that lay the street along the middle of its carriageway (ego frame, m): areas first, then
+    /// lines. Empty for fewer than two distinct points, or no lane.
+    pub fn edits(&self, middle_m: &[DVec2]) -> Vec<Edit> {
+        let middle_m = distinct(middle_m);
+        let lanes = self.forward + self.backward;
+        if middle_m.len() < 2 || lanes == 0 || !(self.lane_m.is_finite() && self.lane_m > 0.0) {
+            return Vec::new();
+        }
+        let half_m = self.width_m() / 2.0;
+        let band = |from_m: f64, to_m: f64| {
+            let mut points_m = offset_line(&middle_m, from_m);
+            points_m.extend(offset_line(&middle_m, to_m).iter().rev());
+            Shape::Polygon { points_m }
+        };
+        let mut areas = vec![(BevLayer::DrivableArea, band(half_m, -half_m))];
+        if self.walk_m > 0.0 {
+            areas.push((BevLayer::Walkway, band(half_m + self.walk_m, half_m)));
+            areas.push((BevLayer::Walkway, band(-half_m, -half_m - self.walk_m)));
+        }
+        // What lies beside the grid is no error of the whole street.
+        areas.retain(|(_, shape)| shape.cells().is_ok());
+        let mut edits: Vec<Edit> = areas
+            .into_iter()
+            .map(|(layer, shape)| Edit::PaintBev {
+                layer,
+                shape,
+                value: true,
+            })
+            .collect();
+        edits.push(Edit::AddPolylines {
+            lines: self.lines(&middle_m, half_m),
+        });
+        edits
+    }
+
+    fn lines(&self, middle_m: &[DVec2], half_m: f64) -> Vec<Polyline> {
+        let mut lines = Vec::new();
+        let lanes = self.forward + self.backward;
+        for i in 1..lanes {
+            // Counted from the left edge: lanes against the line come first.
+            let kind = match i == self.backward {
+                true => PolylineKind::RoadDivider,
+                false => PolylineKind::LaneDivider,
+            };
+            lines.push(Polyline {
+                kind,
+                points_m: offset_line(middle_m, half_m - i as f64 * self.lane_m),
+            });
+        }
+        for i in 0..lanes {
+            let mut points_m = offset_line(middle_m, half_m - (i as f64 + 0.5) * self.lane_m);
+            if i < self.backward {
+                points_m.reverse();
+            }
+            lines.push(Polyline {
+                kind: PolylineKind::LaneCenter,
+                points_m,
+            });
+        }
+        lines
+    }
+}
+
+/// The points that are finite and not where the one before is.
+fn distinct(points_m: &[DVec2]) -> Vec<DVec2> {
+    let mut out: Vec<DVec2> = Vec::new();
+    for p in points_m.iter().filter(|p| p.is_finite()) {
+        if out.last().is_none_or(|last| last.distance(*p) > 1e-3) {
+            out.push(*p);
+        }
+    }
+    out
+}
+
+/// The line `left_m` to the left of another (right if negative), mitred; sharp corners are cut at twice the offset.
+fn offset_line(points_m: &[DVec2], left_m: f64) -> Vec<DVec2> {
+    let direction = |i: usize| (points_m[i + 1] - points_m[i]).normalize_or_zero();
+    let last = points_m.len() - 1;
+    (0..=last)
+        .map(|i| {
+            let before = direction(i.max(1) - 1).perp();
+            let after = direction(i.min(last - 1)).perp();
+            let middle = (before + after).normalize_or(after);
+            points_m[i] + middle * (left_m / middle.dot(after).max(0.5))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::scene::{BevLayout, Frame, Scene, VoxelGrid};
+
+    #[test]
+    fn a_street_has_its_lanes_dividers_and_walkways() {
+        let strip = LaneStrip {
+            forward: 2,
+            backward: 1,
+            lane_m: 4.0,
+            walk_m: 2.0,
+        };
+        let edits = strip.edits(&[DVec2::new(-20.0, 0.0), DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)]);
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let mut scene = Scene::single("street", frame, Arc::default(), 1);
+        for edit in &edits {
+            edit.apply(&mut scene).expect("sound");
+        }
+        let layout = &scene.frame().layout;
+        assert_eq!(layout.count(BevLayer::DrivableArea), 100 * 30);
+        assert_eq!(layout.count(BevLayer::Walkway), 100 * 10);
+        assert!(layout.count(BevLayer::RoadDivider) >= 100 && layout.count(BevLayer::LaneDivider) >= 100);
+        let line = |kind, at: usize| {
+            let mut all = layout.polylines.iter().filter(|l| l.kind == kind);
+            all.nth(at).expect("there").points_m.clone()
+        };
+        assert_eq!(line(PolylineKind::RoadDivider, 0)[0], DVec2::new(-20.0, 2.0));
+        assert_eq!(line(PolylineKind::LaneDivider, 0)[0], DVec2::new(-20.0, -2.0));
+        // The lane on the left is driven the other way.
+        assert_eq!(line(PolylineKind::LaneCenter, 0)[0], DVec2::new(20.0, 4.0));
+        assert_eq!(line(PolylineKind::LaneCenter, 2)[0], DVec2::new(-20.0, -4.0));
+    }
+
+    #[test]
+    fn poor_lines_make_nothing_and_bends_keep_their_width() {
+        let strip = LaneStrip::default();
+        assert!(strip.edits(&[DVec2::ONE; 3]).is_empty() && strip.edits(&[]).is_empty());
+        assert!(strip.edits(&[DVec2::NAN, DVec2::ONE]).is_empty());
+        let bend = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::new(10.0, 10.0)];
+        assert_eq!(offset_line(&bend, 1.0)[1].round(), DVec2::new(9.0, 1.0));
+        let back = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::ZERO];
+        assert!(offset_line(&back, 1.0).iter().all(|p| p.is_finite() && p.length() < 13.0));
+    }
+}

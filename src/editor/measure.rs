@@ -1,0 +1,97 @@
+//! Distances and angles between points on the ground.
+
+use glam::DVec2;
+
+use crate::scene::Frame;
+
+/// Points that the user measures between, ego frame, m: none, one, two (a distance) or three (an angle too).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Measure {
+    /// In the order clicked.
+    pub points_m: Vec<DVec2>,
+}
+
+impl Measure {
+    /// Takes a point; the fourth begins anew. Points that are not finite are not taken.
+    pub fn add(&mut self, p_m: DVec2) {
+        if !p_m.is_finite() {
+            return;
+        }
+        if self.points_m.len() >= 3 {
+            self.points_m.clear();
+        }
+        self.points_m.push(p_m);
+    }
+
+    /// What there is to say about the points, with `next_m` as one more.
+    pub fn text(&self, next_m: Option<DVec2>) -> Option<String> {
+        let next_m = next_m.filter(|_| self.points_m.len() < 3);
+        let points: Vec<DVec2> = self.points_m.iter().copied().chain(next_m).collect();
+        let (first, last) = (points.first()?, points.last()?);
+        if points.len() < 2 {
+            return None;
+        }
+        let legs = points.windows(2).map(|p| p[0].distance(p[1]));
+        let lengths: Vec<f64> = legs.collect();
+        let list: Vec<String> = lengths.iter().map(|l| format!("{l:.2} m")).collect();
+        let mut text = list.join(" + ");
+        if points.len() == 2 {
+            let d = *last - *first;
+            text += &format!(
+                "  ·  {:.1}°  ·  x {:.2}  y {:.2}",
+                d.to_angle().to_degrees() + 0.0,
+                d.x + 0.0,
+                d.y + 0.0
+            );
+        } else {
+            text += &format!(" = {:.2} m", lengths.iter().sum::<f64>());
+            if let Some(angle_deg) = angle_deg(points[0], points[1], points[2]) {
+                text += &format!("  ·  {angle_deg:.1}°");
+            }
+        }
+        Some(text)
+    }
+}
+
+/// Angle at `corner` between the ways to `a` and to `b`, 0 to 180 degrees; `None` if one of them has no length.
+pub fn angle_deg(a: DVec2, corner: DVec2, b: DVec2) -> Option<f64> {
+    let (u, v) = ((a - corner).try_normalize()?, (b - corner).try_normalize()?);
+    Some(u.perp_dot(v).abs().atan2(u.dot(v)).to_degrees())
+}
+
+/// The nearest corner or centre of a box's footprint within `reach_m`, else the point itself.
+pub fn snapped(frame: &Frame, p_m: DVec2, reach_m: f64) -> DVec2 {
+    let marks = frame
+        .boxes
+        .values()
+        .flat_map(|b| b.footprint().into_iter().chain([b.center_m.truncate()]));
+    marks
+        .filter(|m| m.distance(p_m) <= reach_m)
+        .min_by(|a, b| a.distance(p_m).total_cmp(&b.distance(p_m)))
+        .unwrap_or(p_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_points_say_a_distance_and_three_an_angle() {
+        let mut m = Measure::default();
+        m.add(DVec2::new(0.0, 0.0));
+        m.add(DVec2::NAN);
+        assert_eq!(m.text(None), None);
+        assert_eq!(
+            m.text(Some(DVec2::new(3.0, 4.0))).as_deref(),
+            Some("5.00 m  ·  53.1°  ·  x 3.00  y 4.00")
+        );
+        m.add(DVec2::new(3.0, 0.0));
+        m.add(DVec2::new(3.0, 2.0));
+        assert_eq!(m.text(Some(DVec2::ONE)).as_deref(), Some("3.00 m + 2.00 m = 5.00 m  ·  90.0°"));
+        m.add(DVec2::ONE);
+        assert_eq!(m.points_m, [DVec2::ONE]);
+        assert_eq!(angle_deg(DVec2::ONE, DVec2::ONE, DVec2::X), None);
+        let straight = angle_deg(DVec2::new(-1.0, 0.0), DVec2::ZERO, DVec2::X).expect("two ways");
+        assert!((straight - 180.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,279 @@
+//! Sets of voxels that the voxel tools work on: boxes, lines, what is connected, faces pulled out, mirror images.
+//! None is ever larger than the grid, and each is sorted and holds a voxel once.
+
+use std::collections::BTreeMap;
+
+use glam::IVec3;
+
+use crate::scene::{Class, Frame, GridSpec, VoxelGrid};
+
+use super::Edit;
+
+/// Index of a voxel `[x, y, z]`.
+pub type Cell = [usize; 3];
+
+const SIZE: Cell = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+
+fn flat([x, y, z]: Cell) -> usize {
+    (x * GridSpec::NY + y) * GridSpec::NZ + z
+}
+
+fn unflat(i: usize) -> Cell {
+    let column = i / GridSpec::NZ;
+    [column / GridSpec::NY, column % GridSpec::NY, i % GridSpec::NZ]
+}
+
+fn cell_at(p: IVec3) -> Option<Cell> {
+    let p = p.to_array();
+    let inside = (0..3).all(|a| p[a] >= 0 && (p[a] as usize) < SIZE[a]);
+    inside.then(|| p.map(|v| v as usize))
+}
+
+fn ivec(c: Cell) -> IVec3 {
+    IVec3::from_array(c.map(|v| v as i32))
+}
+
+/// Every voxel between two corners, both included; corners outside are moved to the rim.
+pub fn between(a: Cell, b: Cell) -> Vec<Cell> {
+    let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(SIZE[i] - 1));
+    let high = [0, 1, 2].map(|i| a[i].max(b[i]).min(SIZE[i] - 1));
+    let mut cells = Vec::new();
+    for x in low[0]..=high[0] {
+        for y in low[1]..=high[1] {
+            cells.extend((low[2]..=high[2]).map(|z| [x, y, z]));
+        }
+    }
+    cells
+}
+
+/// The voxels from one to another along a straight line, each `size` wide, connected by faces, edges or
+/// corners; as many steps as the longest side.
+pub fn line(a: Cell, b: Cell, size: usize) -> Vec<Cell> {
+    let (a, b) = (ivec(a).as_dvec3(), ivec(b).as_dvec3());
+    let steps = (b - a).abs().max_element().min(1e4);
+    let size = size.clamp(1, GridSpec::NZ) as i32;
+    let low = (size - 1) / 2;
+    let mut cells = Vec::new();
+    for i in 0..=steps as usize {
+        let t = if steps > 0.0 { i as f64 / steps } else { 0.0 };
+        let at = a.lerp(b, t).round().as_ivec3();
+        for x in 0..size {
+            for y in 0..size {
+                for z in 0..size {
+                    cells.extend(cell_at(at + IVec3::new(x - low, y - low, z)));
+                }
+            }
+        }
+    }
+    tidy(cells)
+}
+
+fn tidy(mut cells: Vec<Cell>) -> Vec<Cell> {
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// Voxels of one class that connect to `start` by faces; empty for a free one or one outside the grid.
+pub fn connected(grid: &VoxelGrid, start: Cell) -> Vec<Cell> {
+    if (0..3).any(|a| start[a] >= SIZE[a]) {
+        return Vec::new();
+    }
+    let class = grid.get(start[0], start[1], start[2]);
+    if class == Class::FREE {
+        return Vec::new();
+    }
+    let dense = grid.to_dense();
+    let mut seen = vec![false; GridSpec::VOXELS];
+    let mut open = vec![flat(start)];
+    seen[open[0]] = true;
+    while let Some(i) = open.pop() {
+        let [x, y, z] = unflat(i);
+        let mut visit = |there: bool, j: usize| {
+            if there && !seen[j] && dense[j] == class {
+                seen[j] = true;
+                open.push(j);
+            }
+        };
+        visit(z > 0, i.wrapping_sub(1));
+        visit(z + 1 < GridSpec::NZ, i + 1);
+        visit(y > 0, i.wrapping_sub(GridSpec::NZ));
+        visit(y + 1 < GridSpec::NY, i + GridSpec::NZ);
+        visit(x > 0, i.wrapping_sub(GridSpec::NZ * GridSpec::NY));
+        visit(x + 1 < GridSpec::NX, i + GridSpec::NZ * GridSpec::NY);
+    }
+    (0..GridSpec::VOXELS).filter(|i| seen[*i]).map(unflat).collect()
+}
+
+/// The face that a voxel is part of: voxels of its class in one plane, connected by sides, each with nothing
+/// in front of it. `normal` is the outward direction, one entry of +1 or -1. Empty if the voxel shows no face.
+pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
+    let normal = IVec3::from_array(normal);
+    let Some(axis) = (0..3).find(|a| normal[*a].abs() == 1 && normal.abs().element_sum() == 1) else {
+        return Vec::new();
+    };
+    if (0..3).any(|a| start[a] >= SIZE[a]) {
+        return Vec::new();
+    }
+    let get = |c: Cell| grid.get(c[0], c[1], c[2]);
+    let class = get(start);
+    // The rim of the grid is open too: the face shows there.
+    let shows = |c: Cell| {
+        get(c) == class && cell_at(ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE)
+    };
+    if class == Class::FREE || !shows(start) {
+        return Vec::new();
+    }
+    let mut sides = [IVec3::X, IVec3::Y, IVec3::Z].to_vec();
+    sides.remove(axis);
+    let mut seen = vec![false; GridSpec::VOXELS];
+    let mut open = vec![start];
+    seen[flat(start)] = true;
+    let mut cells = Vec::new();
+    while let Some(c) = open.pop() {
+        cells.push(c);
+        for step in sides.iter().flat_map(|s| [*s, -*s]) {
+            if let Some(next) = cell_at(ivec(c) + step)
+                && !seen[flat(next)]
+                && shows(next)
+            {
+                seen[flat(next)] = true;
+                open.push(next);
+            }
+        }
+    }
+    tidy(cells)
+}
+
+/// What pulling a face out by `layers` changes: the free voxels in front of it to be filled (a column ends at
+/// the first that is not free), or, for negative layers, the voxels to be taken away.
+pub fn extrude(grid: &VoxelGrid, face: &[Cell], normal: [i32; 3], layers: i32) -> Vec<Cell> {
+    let normal = IVec3::from_array(normal);
+    let limit = GridSpec::NX as i32;
+    let layers = layers.clamp(-limit, limit);
+    let mut cells = Vec::new();
+    for &c in face {
+        if layers > 0 {
+            let front = (1..=layers).map_while(|i| cell_at(ivec(c) + normal * i));
+            cells.extend(front.take_while(|c| grid.get(c[0], c[1], c[2]) == Class::FREE));
+        } else {
+            let behind = (0..-layers).map_while(|i| cell_at(ivec(c) - normal * i));
+            cells.extend(behind.take_while(|c| grid.get(c[0], c[1], c[2]) != Class::FREE));
+        }
+    }
+    tidy(cells)
+}
+
+/// The voxels and their mirror images about the ego x axis.
+pub fn mirrored(cells: &[Cell]) -> Vec<Cell> {
+    let image = |[x, y, z]: &Cell| [*x, GridSpec::NY - 1 - (*y).min(GridSpec::NY - 1), *z];
+    tidy(cells.iter().copied().chain(cells.iter().map(image)).collect())
+}
+
+/// Only the free voxels, or only those that are not; those outside the grid go.
+pub fn only(grid: &VoxelGrid, cells: Vec<Cell>, free: bool) -> Vec<Cell> {
+    let fits = |c: &Cell| {
+        (0..3).all(|a| c[a] < SIZE[a]) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free
+    };
+    cells.into_iter().filter(fits).collect()
+}
+
+/// Edits that lock voxels as they are: each is painted in the class that it has.
+pub fn lock(frame: &Frame, cells: &[Cell]) -> Vec<Edit> {
+    let mut by_class: BTreeMap<u8, Vec<Cell>> = BTreeMap::new();
+    for &[x, y, z] in cells {
+        if let Some([x, y, z]) = cell_at(ivec([x, y, z])) {
+            by_class.entry(frame.occupancy.get(x, y, z)).or_default().push([x, y, z]);
+        }
+    }
+    let edit = |(id, cells): (u8, Vec<Cell>)| Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class });
+    by_class.into_iter().filter_map(edit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::editor::Document;
+    use crate::scene::{BevLayout, Scene};
+
+    fn grid() -> VoxelGrid {
+        let mut grid = VoxelGrid::new();
+        // A wall of 4 x 1 x 3 with a hole in its top row, on ground of 10 x 10.
+        for [x, y, z] in between([100, 100, 0], [109, 109, 0]) {
+            grid.set(x, y, z, Class::Terrain.id());
+        }
+        for [x, y, z] in between([102, 103, 1], [105, 103, 3]) {
+            grid.set(x, y, z, Class::Manmade.id());
+        }
+        grid.set(104, 103, 3, Class::FREE);
+        grid
+    }
+
+    #[test]
+    fn boxes_and_lines() {
+        assert_eq!(between([5, 7, 2], [3, 9, 2]).len(), 9);
+        assert_eq!(between([0; 3], [usize::MAX; 3]).len(), GridSpec::VOXELS);
+        let diagonal = line([0, 0, 0], [9, 4, 2], 1);
+        assert_eq!(diagonal.len(), 10);
+        assert!(diagonal.contains(&[9, 4, 2]) && diagonal.contains(&[0, 0, 0]));
+        for pair in diagonal.windows(2) {
+            assert!((ivec(pair[1]) - ivec(pair[0])).abs().max_element() == 1);
+        }
+        assert_eq!(line([3, 3, 3], [3, 3, 3], 1), [[3, 3, 3]]);
+        // A thick one is cut at the rim.
+        assert_eq!(line([0, 0, 15], [0, 0, 15], 3).len(), 2 * 2);
+    }
+
+    #[test]
+    fn the_wand_takes_one_class_by_faces() {
+        let grid = grid();
+        assert_eq!(connected(&grid, [102, 103, 2]).len(), 11);
+        assert_eq!(connected(&grid, [100, 100, 0]).len(), 100);
+        assert!(connected(&grid, [0, 0, 5]).is_empty() && connected(&grid, [200, 0, 0]).is_empty());
+    }
+
+    #[test]
+    fn faces_are_pulled_out_and_pushed_in() {
+        let grid = grid();
+        let front = face(&grid, [103, 103, 2], [0, -1, 0]);
+        assert_eq!(front.len(), 11);
+        assert_eq!(extrude(&grid, &front, [0, -1, 0], 2).len(), 22);
+        assert_eq!(extrude(&grid, &front, [0, -1, 0], -1), front);
+        assert_eq!(extrude(&grid, &front, [0, -1, 0], -5), front, "the wall is one thick");
+        let top = face(&grid, [102, 103, 3], [0, 0, 1]);
+        assert_eq!(top, [[102, 103, 3], [103, 103, 3]]);
+        assert_eq!(extrude(&grid, &top, [0, 0, 1], 1000).len(), 2 * 12, "up to the top of the grid");
+        assert!(face(&grid, [103, 103, 1], [0, 0, 1]).is_empty(), "covered");
+        assert!(face(&grid, [103, 103, 1], [0, 1, 1]).is_empty() && face(&grid, [0; 3], [0, 0, 1]).is_empty());
+    }
+
+    #[test]
+    fn mirror_images_and_filters() {
+        assert_eq!(mirrored(&[[3, 0, 1]]), [[3, 0, 1], [3, 199, 1]]);
+        let grid = grid();
+        let cells = between([100, 103, 0], [109, 103, 3]);
+        assert_eq!(only(&grid, cells.clone(), false).len(), 10 + 11);
+        assert_eq!(only(&grid, cells, true).len(), 40 - 21);
+        assert!(only(&grid, vec![[500, 0, 0]], true).is_empty());
+    }
+
+    #[test]
+    fn the_whole_grid_is_one_step_and_locks_keep_what_is_there() {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), grid());
+        let mut document = Document::new(Scene::single("all", frame, Arc::default(), 1));
+        let wall = connected(&document.scene().frame().occupancy, [102, 103, 2]);
+        let before = document.scene().frame().occupancy.clone();
+        let locks = lock(document.scene().frame(), &wall);
+        document.apply_all("Lock", &locks).expect("sound");
+        assert_eq!(document.scene().frame().occupancy, before);
+        assert_eq!(document.scene().frame().painted.count_set(), 11);
+        let cells = between([0; 3], [usize::MAX; 3]);
+        let class = Class::Manmade;
+        document.apply("Fill", &Edit::PaintVoxels { cells, class }).expect("sound");
+        assert_eq!(document.scene().frame().occupancy.count_set(), GridSpec::VOXELS);
+        assert_eq!(document.undo(), Some("Fill"));
+        assert_eq!(document.scene().frame().occupancy, before);
+    }
+}
