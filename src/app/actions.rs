@@ -7,6 +7,8 @@ use crate::viewport::ViewPreset;
 use super::command::Command;
 use super::dock::Workspace;
 use super::state::{Pane, Tool, UiState, VoxelVerb};
+use super::tools::{PaintShape, ToolCommand, VoxelMode};
+use crate::editor::transform::Kind;
 
 /// Where a chord counts; what stands later wins over what stands before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -15,7 +17,7 @@ pub enum When {
     Always,
     /// With the pointer over the 3D view.
     Over3d,
-    /// While a box is chosen.
+    /// While a box is chosen and the tool in hand is one for boxes.
     Chosen,
 }
 
@@ -155,6 +157,78 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Tools, "voxel_recolour", "Recolour voxels", "Y", |_| {
         Some(Command::Verb(VoxelVerb::Recolour))
     }),
+    action(Tools, "lasso", "Select by lasso", "O", |_| {
+        Some(Command::Tools(ToolCommand::Lasso(true)))
+    }),
+    action(
+        Tools,
+        "rectangle_select",
+        "Select by rectangle",
+        "Shift+V",
+        |_| Some(Command::Tools(ToolCommand::Lasso(false))),
+    ),
+    action(Tools, "measure_tool", "Measure", "M", |_| {
+        Some(Command::Tool(Tool::Measure))
+    }),
+    action(Tools, "region_tool", "Region that is drawn anew", "N", |_| {
+        Some(Command::Tool(Tool::Region))
+    }),
+    action(Tools, "shape_rectangle", "Brush: rectangle", "U", |_| {
+        Some(Command::Tools(ToolCommand::Shape(PaintShape::Rectangle)))
+    }),
+    action(Tools, "shape_line", "Brush: line", "L", |_| {
+        Some(Command::Tools(ToolCommand::Shape(PaintShape::Line)))
+    }),
+    action(
+        Tools,
+        "shape_polygon",
+        "Brush: polygon; again: street",
+        "P",
+        |s| {
+            let again = s.tool == Tool::Brush && s.tools.shape == PaintShape::Polygon;
+            let shape = if again {
+                PaintShape::Street
+            } else {
+                PaintShape::Polygon
+            };
+            Some(Command::Tools(ToolCommand::Shape(shape)))
+        },
+    ),
+    action(Tools, "shape_street", "Brush: street", "", |_| {
+        Some(Command::Tools(ToolCommand::Shape(PaintShape::Street)))
+    }),
+    action(Tools, "shape_fill", "Brush: fill", "K", |_| {
+        Some(Command::Tools(ToolCommand::Shape(PaintShape::Fill)))
+    }),
+    action(
+        Tools,
+        "shape_pick",
+        "Brush: pick a layer (or Alt+click)",
+        "I",
+        |_| Some(Command::Tools(ToolCommand::Shape(PaintShape::Pick))),
+    ),
+    action(Tools, "voxel_block", "Voxels: block", "U", |_| {
+        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Block)))
+    })
+    .over_3d(),
+    action(Tools, "voxel_row", "Voxels: row", "L", |_| {
+        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Row)))
+    })
+    .over_3d(),
+    action(Tools, "voxel_fill", "Voxels: flood", "K", |_| {
+        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Fill)))
+    })
+    .over_3d(),
+    action(Tools, "voxel_pull", "Voxels: pull a face", "P", |_| {
+        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Extrude)))
+    })
+    .over_3d(),
+    action(Tools, "voxel_wand", "Voxels: magic wand", "Shift+O", |_| {
+        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Wand)))
+    }),
+    action(Tools, "symmetry", "Symmetry about the ego axis", "S", |_| {
+        Some(Command::Tools(ToolCommand::Symmetry))
+    }),
     action(
         Tools,
         "escape",
@@ -194,6 +268,57 @@ pub const ACTIONS: &[ActionDef] = &[
     .chosen(),
     action(Selection, "turn_180", "Turn 180°", "Q", |_| {
         Some(Command::Turn(180.0))
+    })
+    .chosen(),
+    action(Selection, "select_all", "Select all boxes", "Ctrl+A", |_| {
+        Some(Command::Tools(ToolCommand::ChooseAll))
+    }),
+    action(Selection, "select_none", "Select no box", "Ctrl+Shift+A", |_| {
+        Some(Command::Tools(ToolCommand::ChooseNone))
+    }),
+    action(
+        Selection,
+        "select_others",
+        "Invert the selection",
+        "Ctrl+I",
+        |_| Some(Command::Tools(ToolCommand::ChooseOthers)),
+    ),
+    action(Selection, "copy", "Copy", "Ctrl+C", |_| {
+        Some(Command::Tools(ToolCommand::Copy))
+    }),
+    action(Selection, "cut", "Cut", "Ctrl+X", |_| {
+        Some(Command::Tools(ToolCommand::Cut))
+    }),
+    action(Selection, "paste", "Paste at the pointer", "Ctrl+V", |_| {
+        Some(Command::Tools(ToolCommand::Paste))
+    }),
+    action(Selection, "row", "Row of copies", "Ctrl+Shift+D", |_| {
+        Some(Command::Tools(ToolCommand::AskRow))
+    }),
+    action(Selection, "mirror", "Mirror about the ego axis", "Ctrl+M", |_| {
+        Some(Command::Tools(ToolCommand::Mirror(false)))
+    }),
+    action(Selection, "mirror_copies", "Mirrored copies", "", |_| {
+        Some(Command::Tools(ToolCommand::Mirror(true)))
+    }),
+    action(Selection, "to_lane", "To the lane and the ground", "D", |_| {
+        Some(Command::Tools(ToolCommand::ToLane))
+    })
+    .chosen(),
+    action(Selection, "to_ground", "To the ground", "Shift+D", |_| {
+        Some(Command::Tools(ToolCommand::DropToGround))
+    })
+    .chosen(),
+    action(Selection, "gizmo_move", "Dragging moves", "W", |_| {
+        Some(Command::Tools(ToolCommand::Gizmo(Kind::Move)))
+    })
+    .chosen(),
+    action(Selection, "gizmo_turn", "Dragging turns", "E", |_| {
+        Some(Command::Tools(ToolCommand::Gizmo(Kind::Turn)))
+    })
+    .chosen(),
+    action(Selection, "gizmo_scale", "Dragging scales", "R", |_| {
+        Some(Command::Tools(ToolCommand::Gizmo(Kind::Scale)))
     })
     .chosen(),
     action(Selection, "next_box", "Next box", "J", |_| {
@@ -357,6 +482,12 @@ pub const ACTIONS: &[ActionDef] = &[
     }),
     action(File, "export_rig", "Export sensors", "", |_| {
         Some(Command::ExportRig)
+    }),
+    action(File, "export", "Export", "Ctrl+E", |_| {
+        Some(Command::ToggleExport)
+    }),
+    action(File, "checks", "Checks of the scene", "", |_| {
+        Some(Command::ToggleChecks)
     }),
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
         Some(Command::TogglePalette)

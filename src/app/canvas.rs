@@ -291,7 +291,9 @@ impl Canvas {
             return;
         };
         match (state.tool, &self.gesture) {
-            (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_)) if draws_a_line(state) => {
+            (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_))
+                if draws_a_line(state) =>
+            {
                 let erase = match &self.gesture {
                     Gesture::Stroke { erase, .. } => *erase,
                     _ => state.erase || shift,

@@ -47,7 +47,9 @@ impl SceneloomApp {
             }
             Command::Escape => self.escape(),
             Command::AddBox { class, at_m, yaw_rad } => {
-                let made = self.state.new_box(self.document.scene().frame(), class, at_m, yaw_rad);
+                let made = self
+                    .state
+                    .new_box(self.document.scene().frame(), class, at_m, yaw_rad);
                 if let Some(b) = made {
                     self.add(&b, "Add box");
                 }

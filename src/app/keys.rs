@@ -6,7 +6,7 @@ use egui::{Context, Key, Modifiers};
 use super::actions::{When, nudge_direction};
 use super::command::Command;
 use super::keymap::{Chord, Keymap};
-use super::state::{Pane, UiState};
+use super::state::{Pane, Tool, UiState};
 
 /// Commands of the keys pressed in this frame.
 pub fn commands(
@@ -29,7 +29,8 @@ pub fn commands(
             continue;
         }
         let over_3d = state.hovered_pane == Some(Pane::View3d);
-        let chosen = state.selected.is_some();
+        // With a brush in hand its own letters count.
+        let chosen = state.selected.is_some() && !matches!(state.tool, Tool::Brush | Tool::Voxel);
         let applies = |when| match when {
             When::Always => true,
             When::Over3d => over_3d,
@@ -93,7 +94,6 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::Tool;
     use crate::scene::BoxId;
     use glam::DVec3;
 

@@ -188,7 +188,9 @@ impl Live {
     pub fn submitted(&mut self, id: JobId, key: JobKey, now_s: f64) {
         let full = key.params.region == RegionMode::Full;
         let (purpose, extent_m) = match self.seen {
-            Some((_, touched)) if !full && touched.is_empty && key.params.redraw.is_empty() => (Purpose::WarmUp, [0.0; 2]),
+            Some((_, touched)) if !full && touched.is_empty && key.params.redraw.is_empty() => {
+                (Purpose::WarmUp, [0.0; 2])
+            }
             Some((_, touched)) if !full => (Purpose::Edit, touched.extent_m),
             _ => (Purpose::Full, [80.0; 2]),
         };

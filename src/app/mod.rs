@@ -34,8 +34,8 @@ pub mod sensing;
 pub mod settings;
 pub mod state;
 pub mod theme;
-pub mod versions;
 pub mod tools;
+pub mod versions;
 pub mod view3d;
 mod view3d_tools;
 

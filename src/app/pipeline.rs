@@ -18,8 +18,8 @@ impl WarmPipeline {
 impl Pipeline for WarmPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
-        let nothing_edited = job.params.region == RegionMode::Auto
-            && redraw::region_of(frame, &job.params).is_empty();
+        let nothing_edited =
+            job.params.region == RegionMode::Auto && redraw::region_of(frame, &job.params).is_empty();
         if !nothing_edited {
             return self.0.run(job, ctx);
         }

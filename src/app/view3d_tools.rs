@@ -400,7 +400,10 @@ mod tests {
         let frame = frame();
         let from = GridSpec::center(80, 100, 1);
         let ray = Ray::new(from, DVec3::X).expect("a direction");
-        assert_eq!(target(&frame, VoxelVerb::Attach, [1, 1], &ray), vec![[99, 100, 1]]);
+        assert_eq!(
+            target(&frame, VoxelVerb::Attach, [1, 1], &ray),
+            vec![[99, 100, 1]]
+        );
         assert_eq!(target(&frame, VoxelVerb::Attach, [1, 3], &ray).len(), 3);
         assert_eq!(target(&frame, VoxelVerb::Remove, [2, 2], &ray).len(), 1);
         // The top of the grid is a limit, not an error.

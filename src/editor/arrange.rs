@@ -93,9 +93,7 @@ pub fn remove(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
 /// Shifts boxes in the ego frame, m.
 pub fn shift(frame: &Frame, ids: &[BoxId], step_m: DVec3) -> Vec<Edit> {
     let moved = boxes_of(frame, ids).into_iter();
-    moved
-        .map(|b| place(&b, b.center_m + step_m, None))
-        .collect()
+    moved.map(|b| place(&b, b.center_m + step_m, None)).collect()
 }
 
 /// Turns boxes counter-clockwise, degrees.

@@ -39,7 +39,11 @@ fn after(frame: &Frame, edits: &[Edit]) -> Frame {
 
 #[test]
 fn several_are_removed_shifted_and_turned_at_once() {
-    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 10.0, 4.0, 0.5), car(5, -20.0, 0.0, 0.0)]);
+    let frame = frame(&[
+        car(1, 0.0, 0.0, 0.0),
+        car(2, 10.0, 4.0, 0.5),
+        car(5, -20.0, 0.0, 0.0),
+    ]);
     let ids = [BoxId(1), BoxId(2), BoxId(77)];
     let left = after(&frame, &remove(&frame, &ids));
     assert_eq!(left.boxes.keys().copied().collect::<Vec<_>>(), [BoxId(5)]);
@@ -51,7 +55,10 @@ fn several_are_removed_shifted_and_turned_at_once() {
     let group = after(&frame, &turn(&frame, &ids, 90.0, Pivot::Middle));
     // About (5, 2): the first goes from (-5, -2) to (2, -5).
     let first = group.boxes[&BoxId(1)];
-    assert!(first.center_m.distance(DVec3::new(7.0, -3.0, 0.85)) < 1e-9, "{first:?}");
+    assert!(
+        first.center_m.distance(DVec3::new(7.0, -3.0, 0.85)) < 1e-9,
+        "{first:?}"
+    );
     assert!((first.yaw_rad - FRAC_PI_2).abs() < 1e-9);
     assert!(turn(&frame, &[BoxId(77)], 3.0, Pivot::Middle).is_empty());
 }
@@ -64,7 +71,10 @@ fn copies_get_free_names_and_a_place_of_their_own() {
     let added = duplicate(&frame, &[BoxId(1), BoxId(2)]);
     assert_eq!(added.ids, [BoxId(3), BoxId(4)]);
     let now = after(&frame, &added.edits);
-    assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(0.0, 5.0 + 1.9 + 0.6, 0.85));
+    assert_eq!(
+        now.boxes[&BoxId(3)].center_m,
+        DVec3::new(0.0, 5.0 + 1.9 + 0.6, 0.85)
+    );
     assert_eq!(now.boxes[&BoxId(4)].velocity_mps, DVec2::new(5.0, 1.0));
     let clipboard = Clipboard {
         boxes: boxes_of(&frame, &[BoxId(1), BoxId(2)]),
@@ -98,7 +108,10 @@ fn rows_run_along_headings_and_lanes() {
     assert_eq!(row_of(RowAlong::Side)[0].center_m, DVec3::new(-4.0, 7.0, 0.85));
     // 14 m to the corner, then 4 m up; one metre right of the lane stays one metre right of it.
     let bent = row_of(RowAlong::Lane)[2];
-    assert!(bent.center_m.distance(DVec3::new(11.0, 6.0, 0.85)) < 1e-9, "{bent:?}");
+    assert!(
+        bent.center_m.distance(DVec3::new(11.0, 6.0, 0.85)) < 1e-9,
+        "{bent:?}"
+    );
     assert!((bent.yaw_rad - FRAC_PI_2).abs() < 1e-9);
     assert!(bent.velocity_mps.distance(DVec2::new(-1.0, 5.0)) < 1e-9);
     let many = Row {
@@ -107,7 +120,10 @@ fn rows_run_along_headings_and_lanes() {
         along: RowAlong::Lane,
     };
     assert!(super::row(&frame, &[BoxId(1)], &many).edits.is_empty());
-    let nan = Row { spacing_m: f64::NAN, ..many };
+    let nan = Row {
+        spacing_m: f64::NAN,
+        ..many
+    };
     assert!(super::row(&frame, &[BoxId(1)], &nan).edits.is_empty());
 }
 

@@ -47,9 +47,23 @@ mod tests {
     #[test]
     fn outlines_hold_what_is_in_them() {
         // A horseshoe: its gap is outside.
-        let u = [[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [4.0, 6.0], [4.0, 2.0], [2.0, 2.0], [2.0, 6.0], [0.0, 6.0]];
+        let u = [
+            [0.0, 0.0],
+            [6.0, 0.0],
+            [6.0, 6.0],
+            [4.0, 6.0],
+            [4.0, 2.0],
+            [2.0, 2.0],
+            [2.0, 6.0],
+            [0.0, 6.0],
+        ];
         let u = u.map(DVec2::from_array);
-        for (p, inside) in [([1.0, 5.0], true), ([3.0, 5.0], false), ([3.0, 1.0], true), ([7.0, 1.0], false)] {
+        for (p, inside) in [
+            ([1.0, 5.0], true),
+            ([3.0, 5.0], false),
+            ([3.0, 1.0], true),
+            ([7.0, 1.0], false),
+        ] {
             assert_eq!(is_inside(&u, p.into()), inside, "{p:?}");
         }
         assert!(!is_inside(&u[..2], DVec2::new(1.0, 0.0)));

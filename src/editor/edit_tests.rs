@@ -603,7 +603,10 @@ fn lines_bring_the_cells_of_their_layer_and_bad_ones_are_named() {
         kind: crate::scene::PolylineKind::StopLine,
         points_m,
     };
-    assert_eq!(refused(vec![], &mut scene), "lines holds 0 entries, expected at least 1");
+    assert_eq!(
+        refused(vec![], &mut scene),
+        "lines holds 0 entries, expected at least 1"
+    );
     assert_eq!(
         refused(vec![line(vec![DVec2::ZERO])], &mut scene),
         "points_m holds 1 entries, expected at least 2"

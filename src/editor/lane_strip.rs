@@ -145,7 +145,11 @@ mod tests {
             lane_m: 4.0,
             walk_m: 2.0,
         };
-        let edits = strip.edits(&[DVec2::new(-20.0, 0.0), DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)]);
+        let edits = strip.edits(&[
+            DVec2::new(-20.0, 0.0),
+            DVec2::new(-20.0, 0.0),
+            DVec2::new(20.0, 0.0),
+        ]);
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
         let mut scene = Scene::single("street", frame, Arc::default(), 1);
         for edit in &edits {
@@ -174,6 +178,10 @@ mod tests {
         let bend = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::new(10.0, 10.0)];
         assert_eq!(offset_line(&bend, 1.0)[1].round(), DVec2::new(9.0, 1.0));
         let back = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::ZERO];
-        assert!(offset_line(&back, 1.0).iter().all(|p| p.is_finite() && p.length() < 13.0));
+        assert!(
+            offset_line(&back, 1.0)
+                .iter()
+                .all(|p| p.is_finite() && p.length() < 13.0)
+        );
     }
 }

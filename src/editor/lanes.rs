@@ -130,7 +130,7 @@ mod tests {
     fn the_way_goes_on_over_joints_and_ends() {
         let layout = layout(&[
             &[[0.0, 0.0], [10.0, 0.0]],
-            &[[10.0, 0.0], [10.0, 20.0]],          // a right angle is no continuation
+            &[[10.0, 0.0], [10.0, 20.0]], // a right angle is no continuation
             &[[10.2, 0.0], [20.0, 0.0], [20.0, 5.0]],
         ]);
         let start = nearest_lane(&layout, DVec2::new(4.0, 1.0), 2.0).expect("near");
@@ -147,7 +147,10 @@ mod tests {
 
     #[test]
     fn a_ring_and_a_point_end() {
-        let ring = layout(&[&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 0.0]], &[[1.0, 1.0], [1.0, 1.0]]]);
+        let ring = layout(&[
+            &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 0.0]],
+            &[[1.0, 1.0], [1.0, 1.0]],
+        ]);
         let start = nearest_lane(&ring, DVec2::new(1.0, 0.0), 2.0).expect("near");
         assert!(along(&ring, &start, 1e6).0.is_finite());
         assert!(along(&ring, &start, -1e6).0.is_finite());

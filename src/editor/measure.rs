@@ -87,7 +87,10 @@ mod tests {
         );
         m.add(DVec2::new(3.0, 0.0));
         m.add(DVec2::new(3.0, 2.0));
-        assert_eq!(m.text(Some(DVec2::ONE)).as_deref(), Some("3.00 m + 2.00 m = 5.00 m  ·  90.0°"));
+        assert_eq!(
+            m.text(Some(DVec2::ONE)).as_deref(),
+            Some("3.00 m + 2.00 m = 5.00 m  ·  90.0°")
+        );
         m.add(DVec2::ONE);
         assert_eq!(m.points_m, [DVec2::ONE]);
         assert_eq!(angle_deg(DVec2::ONE, DVec2::ONE, DVec2::X), None);

@@ -140,7 +140,11 @@ impl Transform {
         match (self.orientation, self.start.first()) {
             (Orientation::Local, Some(b)) => {
                 let h = b.heading();
-                DVec3::new(local.x * h.x - local.y * h.y, local.x * h.y + local.y * h.x, local.z)
+                DVec3::new(
+                    local.x * h.x - local.y * h.y,
+                    local.x * h.y + local.y * h.x,
+                    local.z,
+                )
             }
             _ => local,
         }
@@ -250,7 +254,13 @@ impl Transform {
         match self.kind {
             Kind::Move => {
                 let d = self.delta_m(pull.delta_m, snap);
-                format!("{axis}{:.2} m  ({:.2}, {:.2}, {:.2})", d.length(), d.x + 0.0, d.y + 0.0, d.z + 0.0)
+                format!(
+                    "{axis}{:.2} m  ({:.2}, {:.2}, {:.2})",
+                    d.length(),
+                    d.x + 0.0,
+                    d.y + 0.0,
+                    d.z + 0.0
+                )
             }
             Kind::Turn => format!("{:.1}°", wrapped_deg(pull.turn_deg)),
             Kind::Scale => format!("{axis}× {:.2}", pull.factor),
@@ -266,7 +276,11 @@ impl Transform {
     pub fn turn_deg(&self, from_m: DVec2, to_m: DVec2) -> f64 {
         let middle_m = self.middle_m().truncate();
         let angle = (from_m - middle_m).angle_to(to_m - middle_m);
-        if angle.is_finite() { angle.to_degrees() } else { 0.0 }
+        if angle.is_finite() {
+            angle.to_degrees()
+        } else {
+            0.0
+        }
     }
 }
 
@@ -357,10 +371,16 @@ mod tests {
         };
         let mut t = start(Kind::Move);
         let (at, yaw, _) = first(&t.edits(&frame(), &pull, &both));
-        assert!(at.distance(DVec3::new(0.07, 3.0, 0.85)) < 1e-9 && yaw == Some(0.0), "{at}");
+        assert!(
+            at.distance(DVec3::new(0.07, 3.0, 0.85)) < 1e-9 && yaw == Some(0.0),
+            "{at}"
+        );
         t.axis = Some(Axis::Z);
         let (at, yaw, _) = first(&t.edits(&frame(), &pull, &both));
-        assert!(at.distance(DVec3::new(0.07, 2.03, 1.85)) < 1e-9 && yaw.is_none(), "{at}");
+        assert!(
+            at.distance(DVec3::new(0.07, 2.03, 1.85)) < 1e-9 && yaw.is_none(),
+            "{at}"
+        );
     }
 
     #[test]
@@ -377,14 +397,20 @@ mod tests {
         let t = start(Kind::Turn);
         let yaw = first(&t.edits(&frame(), &pull, &grid)).1.expect("turned");
         assert!((yaw - 135.0).abs() < 1e-9, "{yaw}");
-        let quarter = t.turn_deg(t.middle_m().truncate() + DVec2::X, t.middle_m().truncate() + DVec2::Y);
+        let quarter = t.turn_deg(
+            t.middle_m().truncate() + DVec2::X,
+            t.middle_m().truncate() + DVec2::Y,
+        );
         assert!((quarter - 90.0).abs() < 1e-9);
         assert_eq!(t.turn_deg(t.middle_m().truncate(), DVec2::X), 0.0);
         let mut t = start(Kind::Scale);
         t.axis = Some(Axis::Z);
         let (center, _, size) = first(&t.edits(&frame(), &pull, &grid));
         assert!(size.expect("scaled").distance(DVec3::new(4.0, 2.0, 2.55)) < 1e-9);
-        assert!((center.z - size.expect("scaled").z / 2.0 - 1.0).abs() < 1e-9, "its bottom stays");
+        assert!(
+            (center.z - size.expect("scaled").z / 2.0 - 1.0).abs() < 1e-9,
+            "its bottom stays"
+        );
         t.typed = "0".into();
         assert!(t.edits(&frame(), &pull, &grid).is_empty());
     }

@@ -118,9 +118,8 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
     let get = |c: Cell| grid.get(c[0], c[1], c[2]);
     let class = get(start);
     // The rim of the grid is open too: the face shows there.
-    let shows = |c: Cell| {
-        get(c) == class && cell_at(ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE)
-    };
+    let shows =
+        |c: Cell| get(c) == class && cell_at(ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE);
     if class == Class::FREE || !shows(start) {
         return Vec::new();
     }
@@ -172,9 +171,8 @@ pub fn mirrored(cells: &[Cell]) -> Vec<Cell> {
 
 /// Only the free voxels, or only those that are not; those outside the grid go.
 pub fn only(grid: &VoxelGrid, cells: Vec<Cell>, free: bool) -> Vec<Cell> {
-    let fits = |c: &Cell| {
-        (0..3).all(|a| c[a] < SIZE[a]) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free
-    };
+    let fits =
+        |c: &Cell| (0..3).all(|a| c[a] < SIZE[a]) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free;
     cells.into_iter().filter(fits).collect()
 }
 
@@ -183,10 +181,14 @@ pub fn lock(frame: &Frame, cells: &[Cell]) -> Vec<Edit> {
     let mut by_class: BTreeMap<u8, Vec<Cell>> = BTreeMap::new();
     for &[x, y, z] in cells {
         if let Some([x, y, z]) = cell_at(ivec([x, y, z])) {
-            by_class.entry(frame.occupancy.get(x, y, z)).or_default().push([x, y, z]);
+            by_class
+                .entry(frame.occupancy.get(x, y, z))
+                .or_default()
+                .push([x, y, z]);
         }
     }
-    let edit = |(id, cells): (u8, Vec<Cell>)| Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class });
+    let edit =
+        |(id, cells): (u8, Vec<Cell>)| Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class });
     by_class.into_iter().filter_map(edit).collect()
 }
 
@@ -241,12 +243,22 @@ mod tests {
         assert_eq!(front.len(), 11);
         assert_eq!(extrude(&grid, &front, [0, -1, 0], 2).len(), 22);
         assert_eq!(extrude(&grid, &front, [0, -1, 0], -1), front);
-        assert_eq!(extrude(&grid, &front, [0, -1, 0], -5), front, "the wall is one thick");
+        assert_eq!(
+            extrude(&grid, &front, [0, -1, 0], -5),
+            front,
+            "the wall is one thick"
+        );
         let top = face(&grid, [102, 103, 3], [0, 0, 1]);
         assert_eq!(top, [[102, 103, 3], [103, 103, 3]]);
-        assert_eq!(extrude(&grid, &top, [0, 0, 1], 1000).len(), 2 * 12, "up to the top of the grid");
+        assert_eq!(
+            extrude(&grid, &top, [0, 0, 1], 1000).len(),
+            2 * 12,
+            "up to the top of the grid"
+        );
         assert!(face(&grid, [103, 103, 1], [0, 0, 1]).is_empty(), "covered");
-        assert!(face(&grid, [103, 103, 1], [0, 1, 1]).is_empty() && face(&grid, [0; 3], [0, 0, 1]).is_empty());
+        assert!(
+            face(&grid, [103, 103, 1], [0, 1, 1]).is_empty() && face(&grid, [0; 3], [0, 0, 1]).is_empty()
+        );
     }
 
     #[test]
@@ -271,7 +283,9 @@ mod tests {
         assert_eq!(document.scene().frame().painted.count_set(), 11);
         let cells = between([0; 3], [usize::MAX; 3]);
         let class = Class::Manmade;
-        document.apply("Fill", &Edit::PaintVoxels { cells, class }).expect("sound");
+        document
+            .apply("Fill", &Edit::PaintVoxels { cells, class })
+            .expect("sound");
         assert_eq!(document.scene().frame().occupancy.count_set(), GridSpec::VOXELS);
         assert_eq!(document.undo(), Some("Fill"));
         assert_eq!(document.scene().frame().occupancy, before);

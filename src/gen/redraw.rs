@@ -49,7 +49,11 @@ impl RedrawMask {
         if i < CELLS_PER_SIDE && j < CELLS_PER_SIDE {
             let at = i * CELLS_PER_SIDE + j;
             let bit = 1u64 << (at % 64);
-            self.0[at / 64] = if on { self.0[at / 64] | bit } else { self.0[at / 64] & !bit };
+            self.0[at / 64] = if on {
+                self.0[at / 64] | bit
+            } else {
+                self.0[at / 64] & !bit
+            };
         }
     }
 
@@ -88,7 +92,9 @@ impl TryFrom<Vec<[usize; 2]>> for RedrawMask {
         let mut mask = Self::default();
         for [i, j] in cells {
             if i >= CELLS_PER_SIDE || j >= CELLS_PER_SIDE {
-                return Err(format!("redraw holds [{i}, {j}], expected indices below {CELLS_PER_SIDE}"));
+                return Err(format!(
+                    "redraw holds [{i}, {j}], expected indices below {CELLS_PER_SIDE}"
+                ));
             }
             mask.set(i, j, true);
         }
@@ -109,7 +115,10 @@ pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
             params.redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
         })
         .collect();
-    let kept = frame.boxes.values().filter(|b| frame.source.boxes.get(&b.id) == Some(b));
+    let kept = frame
+        .boxes
+        .values()
+        .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
         box_cells(b, GridSpec::VOXEL_M, |x, y| columns[x * GridSpec::NY + y] = false);
     }
@@ -132,14 +141,24 @@ mod tests {
         mask.set(49, 49, true);
         mask.set(50, 0, true);
         mask.set(0, 0, false);
-        assert_eq!((mask.count(), mask.is_empty(), mask.has(99, 99)), (2, false, false));
+        assert_eq!(
+            (mask.count(), mask.is_empty(), mask.has(99, 99)),
+            (2, false, false)
+        );
         let text = serde_json::to_string(&mask).expect("JSON");
         assert_eq!(text, "[[1,0],[49,49]]");
         assert_eq!(serde_json::from_str::<RedrawMask>(&text).expect("JSON"), mask);
         let error = serde_json::from_str::<RedrawMask>("[[0,50]]").expect_err("outside");
-        assert!(error.to_string().starts_with("redraw holds [0, 50], expected indices below 50"));
+        assert!(
+            error
+                .to_string()
+                .starts_with("redraw holds [0, 50], expected indices below 50")
+        );
         assert!(RedrawMask::of_rect(DVec2::NAN, DVec2::ZERO).is_empty());
-        assert_eq!(RedrawMask::of_rect(DVec2::splat(-1e9), DVec2::splat(1e9)).count(), CELLS);
+        assert_eq!(
+            RedrawMask::of_rect(DVec2::splat(-1e9), DVec2::splat(1e9)).count(),
+            CELLS
+        );
     }
 
     #[test]
@@ -165,7 +184,11 @@ mod tests {
         let [x, y] = GridSpec::column_at(0.0, 0.0).expect("inside");
         assert!(!region.columns[x * GridSpec::NY + y], "the car stays");
         assert!(region.columns[10 * GridSpec::NY + 10], "the edit counts too");
-        assert!((1400..=1601).contains(&region.column_count()), "{}", region.column_count());
+        assert!(
+            (1400..=1601).contains(&region.column_count()),
+            "{}",
+            region.column_count()
+        );
         let mut new = VoxelGrid::new();
         for c in 0..GridSpec::COLUMNS {
             new.column_mut(c / GridSpec::NY, c % GridSpec::NY)[3] = Class::Vegetation.id();
@@ -173,6 +196,9 @@ mod tests {
         let source = &frame.source.occupancy;
         let result = composite(source, &new, &region, &frame.painted);
         assert_eq!(result.count_set(), region.column_count());
-        assert_eq!(untouched_voxels_changed(source, &result, &region, &frame.painted), 0);
+        assert_eq!(
+            untouched_voxels_changed(source, &result, &region, &frame.painted),
+            0
+        );
     }
 }

@@ -92,7 +92,10 @@ fn boxes_are_chosen_by_clicks_rectangles_and_lassos_and_moved_together() {
     bench.key(Modifiers::NONE, Key::Delete);
     assert_eq!(bench.chosen(), [].into());
     let history = bench.history();
-    assert_eq!(history[3..], ["Nudge boxes", "Turn boxes", "Duplicate boxes", "Delete boxes"]);
+    assert_eq!(
+        history[3..],
+        ["Nudge boxes", "Turn boxes", "Duplicate boxes", "Delete boxes"]
+    );
     bench.app().document.jump_to(1);
     bench.steps(2);
     bench.ask(ToolCommand::ChooseAll);
@@ -168,7 +171,10 @@ fn keys_steer_a_drag() {
     bench.press_and_move(&way, Modifiers::NONE);
     bench.key(Modifiers::NONE, Key::X);
     let at = bench.car(8).center_m;
-    assert!((at.y - start.y).abs() < 1e-9 && (at.x - start.x - 4.0).abs() < 0.15, "{at}");
+    assert!(
+        (at.y - start.y).abs() < 1e-9 && (at.x - start.x - 4.0).abs() < 0.15,
+        "{at}"
+    );
     for key in [Key::Minus, Key::Num2, Key::Period, Key::Num5] {
         bench.key(Modifiers::NONE, key);
     }
@@ -178,7 +184,11 @@ fn keys_steer_a_drag() {
     bench.button(way[1], false, Modifiers::NONE);
     bench.steps(2);
     assert_eq!(bench.car(8).center_m, start - DVec3::X * 2.5);
-    assert_eq!(bench.history(), ["Open", "Add cars", "Move box"], "no other key was heard");
+    assert_eq!(
+        bench.history(),
+        ["Open", "Add cars", "Move box"],
+        "no other key was heard"
+    );
     // Ctrl puts the box on the grid.
     bench.app().state.tools.grid_m = 1.0;
     let way = [bench.bev(-22.5, 20.0), bench.bev(-18.2, 17.3)];
@@ -211,7 +221,11 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     let count = bench.frame().layout.count(BevLayer::CarparkArea);
     assert!((450..=560).contains(&count), "{count}");
     bench.ask(ToolCommand::Shape(PaintShape::Stroke));
-    let ends = [bench.bev(-30.0, 30.0), bench.bev(-30.0, 36.0), bench.bev(-22.0, 30.0)];
+    let ends = [
+        bench.bev(-30.0, 30.0),
+        bench.bev(-30.0, 36.0),
+        bench.bev(-22.0, 30.0),
+    ];
     bench.drag(&ends, Modifiers::CTRL);
     assert!(bench.has(BevLayer::CarparkArea, -26.0, 30.0) && !bench.has(BevLayer::CarparkArea, -28.0, 34.0));
 
@@ -250,7 +264,14 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     assert_eq!(bench.app().state.layer, BevLayer::CarparkArea);
     assert_eq!(
         bench.history(),
-        ["Open", "Paint rectangle", "Paint line", "Paint polygon", "Lay street", "Fill"]
+        [
+            "Open",
+            "Paint rectangle",
+            "Paint line",
+            "Paint polygon",
+            "Lay street",
+            "Fill"
+        ]
     );
 }
 
@@ -341,7 +362,10 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     bench.button(at(-60.0, -90.0), false, Modifiers::NONE);
     bench.steps(2);
     let block = bench.frame().painted.count_set();
-    assert!(block > 30 && block.is_multiple_of(3), "{block} voxels, three layers");
+    assert!(
+        block > 30 && block.is_multiple_of(3),
+        "{block} voxels, three layers"
+    );
     assert_eq!(bench.history(), ["Open", "Attach voxels"]);
     // The wand takes the block, whose voxels are then another class, then none.
     bench.ask(ToolCommand::Voxels(VoxelMode::Wand));
@@ -352,7 +376,10 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let vegetation = count(&bench, Class::Vegetation);
     assert!(vegetation >= block);
     // Pulled up from above nothing moves along the ray; seen from the side it does.
-    bench.app().view3d.preset(sceneloom::viewport::ViewPreset::Perspective);
+    bench
+        .app()
+        .view3d
+        .preset(sceneloom::viewport::ViewPreset::Perspective);
     bench.steps(4);
     bench.ask(ToolCommand::Symmetry);
     bench.ask(ToolCommand::Voxels(VoxelMode::Fill));
@@ -383,8 +410,14 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
     let params = bench.app().live.running.as_ref().expect("asked for").key.params;
     assert_eq!(params.redraw, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
-    assert_eq!(bench.started.recv_timeout(super::bench::PATIENCE), Ok(RegionMode::Auto));
-    bench.orders.send(super::bench::Do::Finish).expect("the pipeline listens");
+    assert_eq!(
+        bench.started.recv_timeout(super::bench::PATIENCE),
+        Ok(RegionMode::Auto)
+    );
+    bench
+        .orders
+        .send(super::bench::Do::Finish)
+        .expect("the pipeline listens");
     bench.wait_until("the end", |b| b.app().live.running.is_none());
     assert!(bench.app().receipt.is_some(), "a result, not a warm-up");
     bench.click("Clear region");

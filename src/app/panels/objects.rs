@@ -290,7 +290,9 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
     let one_class = boxes.iter().all(|b| b.class == first.class);
     let mut class = one_class.then_some(first.class);
     let name = class.map_or("Several classes".to_owned(), |c| theme::sentence(&c.label()));
-    let combo = egui::ComboBox::from_id_salt("class of several").width(150.0).selected_text(name);
+    let combo = egui::ComboBox::from_id_salt("class of several")
+        .width(150.0)
+        .selected_text(name);
     combo.show_ui(ui, |ui| {
         for other in Class::OBJECTS {
             ui.selectable_value(&mut class, Some(other), theme::sentence(&other.label()));
@@ -320,8 +322,18 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
     };
     let moved = of_each(&|b| [Some(b.center_m + (center - middle_m)), None], None);
     fields(&position, "Move boxes", moved, commands);
-    fields(&dimensions, "Resize boxes", of_each(&|_| [None, Some(size)], None), commands);
-    fields(&turned, "Turn boxes", of_each(&|_| [None, None], Some(yaw_deg)), commands);
+    fields(
+        &dimensions,
+        "Resize boxes",
+        of_each(&|_| [None, Some(size)], None),
+        commands,
+    );
+    fields(
+        &turned,
+        "Turn boxes",
+        of_each(&|_| [None, None], Some(yaw_deg)),
+        commands,
+    );
 }
 
 /// The box after (1) or before (-1) the chosen one, by id, round about.

@@ -89,7 +89,9 @@ pub(in crate::app) fn begin(
     let frame = scene.frame();
     match state.tool {
         Tool::Brush => paint(frame, state, at_m, modifiers, commands),
-        Tool::Select => Some(Gesture::Tool(select(map, frame, state, at_m, modifiers, commands)?)),
+        Tool::Select => Some(Gesture::Tool(select(
+            map, frame, state, at_m, modifiers, commands,
+        )?)),
         Tool::Measure => {
             let at_m = measure::snapped(frame, at_m, HANDLE_REACH / map.scale);
             commands.push(Command::Tools(ToolCommand::Point(at_m)));
@@ -121,7 +123,10 @@ fn paint(
     let layer = state.layer;
     let erase = state.erase || modifiers.shift;
     if shape != PaintShape::Street && state.tools.is_locked(layer) {
-        let text = format!("Layer {:?} is locked: its lock is in the list of layers", layer.label());
+        let text = format!(
+            "Layer {:?} is locked: its lock is in the list of layers",
+            layer.label()
+        );
         commands.push(Command::Tools(ToolCommand::Note(text)));
         return Some(Gesture::Ignored);
     }
@@ -204,7 +209,9 @@ fn select(
                 });
             }
             let ids = match state.is_chosen(id) {
-                true => std::iter::once(id).chain(chosen.into_iter().filter(|c| *c != id)).collect(),
+                true => std::iter::once(id)
+                    .chain(chosen.into_iter().filter(|c| *c != id))
+                    .collect(),
                 false => {
                     commands.push(Command::Select(Some(id)));
                     vec![id]
@@ -360,7 +367,12 @@ fn moved_boxes(
     to_m: DVec2,
     modifiers: Modifiers,
 ) -> Vec<Edit> {
-    let pull = pull(transform, from_m, to_m, modifiers.shift && transform.kind == Kind::Move);
+    let pull = pull(
+        transform,
+        from_m,
+        to_m,
+        modifiers.shift && transform.kind == Kind::Move,
+    );
     let turns = transform.kind == Kind::Turn;
     let snap = state.tools.snap(modifiers.ctrl || turns && modifiers.shift);
     transform.edits(frame, &pull, &snap)
@@ -375,12 +387,14 @@ pub(in crate::app) fn end(
     commands: &mut Vec<Command>,
 ) {
     match gesture {
-        BevGesture::Paint { rectangle, erase, .. } => commands.push(Command::Commit(match (rectangle, erase) {
-            (true, false) => "Paint rectangle",
-            (true, true) => "Erase rectangle",
-            (false, false) => "Paint line",
-            (false, true) => "Erase line",
-        })),
+        BevGesture::Paint { rectangle, erase, .. } => {
+            commands.push(Command::Commit(match (rectangle, erase) {
+                (true, false) => "Paint rectangle",
+                (true, true) => "Erase rectangle",
+                (false, false) => "Paint line",
+                (false, true) => "Erase line",
+            }))
+        }
         BevGesture::Marquee { from_m, to_m, add } => {
             if from_m.distance(to_m) * map.scale > CLICK_SLACK {
                 chosen(choose::in_rect(frame, from_m, to_m), add, commands);
@@ -532,7 +546,8 @@ pub(in crate::app) fn keys(
         }
         return;
     }
-    let draws = matches!(state.tools.shape, PaintShape::Polygon | PaintShape::Street) && state.tool == Tool::Brush;
+    let draws =
+        matches!(state.tools.shape, PaintShape::Polygon | PaintShape::Street) && state.tool == Tool::Brush;
     let points = match state.tool {
         Tool::Measure => state.tools.measure.points_m.len(),
         _ if draws => state.tools.points_m.len(),
@@ -579,6 +594,9 @@ mod tests {
             axis: Some(Axis::Z),
             ..t
         };
-        assert_eq!(pull(&up, DVec2::ZERO, DVec2::new(2.0, 9.0), true).delta_m, DVec3::Z * 2.0);
+        assert_eq!(
+            pull(&up, DVec2::ZERO, DVec2::new(2.0, 9.0), true).delta_m,
+            DVec3::Z * 2.0
+        );
     }
 }

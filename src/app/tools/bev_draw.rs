@@ -38,9 +38,7 @@ pub(in crate::app) fn draw(
         region(painter, map, state);
     }
     match gesture {
-        Gesture::Tool(
-            BevGesture::Marquee { from_m, to_m, .. } | BevGesture::Region { from_m, to_m, .. },
-        ) => {
+        Gesture::Tool(BevGesture::Marquee { from_m, to_m, .. } | BevGesture::Region { from_m, to_m, .. }) => {
             let rect = Rect::from_two_pos(map.to_screen(*from_m), map.to_screen(*to_m));
             marquee(painter, rect);
         }
@@ -85,7 +83,10 @@ pub(in crate::app) fn draw(
 fn region(painter: &Painter, map: &ScreenMap, state: &UiState) {
     const CELL_M: f64 = 1.6;
     for [i, j] in state.tools.region.cells() {
-        let corner_m = DVec2::new(GridSpec::MIN_M[0] + i as f64 * CELL_M, GridSpec::MIN_M[1] + j as f64 * CELL_M);
+        let corner_m = DVec2::new(
+            GridSpec::MIN_M[0] + i as f64 * CELL_M,
+            GridSpec::MIN_M[1] + j as f64 * CELL_M,
+        );
         let rect = map.rect_of(corner_m, corner_m + CELL_M);
         painter.rect_filled(rect.shrink(0.5), 0.0, theme::accent().gamma_multiply(0.28));
     }
@@ -100,7 +101,12 @@ pub(in crate::app) fn marquee(painter: &Painter, rect: Rect) {
 /// An outline that chooses.
 pub(in crate::app) fn lasso(painter: &Painter, mut points: Vec<Pos2>) {
     points.extend(points.first().copied());
-    painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, theme::accent()), 5.0, 4.0));
+    painter.extend(Shape::dashed_line(
+        &points,
+        Stroke::new(1.5, theme::accent()),
+        5.0,
+        4.0,
+    ));
 }
 
 /// A line of text beside a point.
@@ -131,7 +137,10 @@ fn outline(painter: &Painter, map: &ScreenMap, state: &UiState, pointer: Option<
     };
     if state.tools.shape == PaintShape::Street {
         let width = (state.tools.street.width_m() * map.scale) as f32;
-        painter.add(Shape::line(points.clone(), Stroke::new(width, color.gamma_multiply(0.35))));
+        painter.add(Shape::line(
+            points.clone(),
+            Stroke::new(width, color.gamma_multiply(0.35)),
+        ));
     } else if points.len() >= 3 {
         let mut closed = points.clone();
         closed.push(points[0]);
@@ -156,7 +165,10 @@ fn measured(painter: &Painter, map: &ScreenMap, state: &UiState, next_m: Option<
         .collect();
     let on_screen: Vec<Pos2> = points.iter().map(|p| map.to_screen(*p)).collect();
     for pair in on_screen.windows(2) {
-        painter.line_segment([pair[0], pair[1]], Stroke::new(3.5, Color32::from_black_alpha(160)));
+        painter.line_segment(
+            [pair[0], pair[1]],
+            Stroke::new(3.5, Color32::from_black_alpha(160)),
+        );
         painter.line_segment([pair[0], pair[1]], Stroke::new(1.6, theme::warn()));
     }
     for (p, m) in on_screen.windows(2).zip(points.windows(2)) {
@@ -164,7 +176,9 @@ fn measured(painter: &Painter, map: &ScreenMap, state: &UiState, next_m: Option<
         let font = egui::FontId::proportional(12.0);
         let text = format!("{:.2} m", m[0].distance(m[1]));
         let galley = painter.layout_no_wrap(text, font, theme::ON_CANVAS);
-        let rect = Align2::CENTER_CENTER.anchor_size(middle, galley.size()).expand(3.0);
+        let rect = Align2::CENTER_CENTER
+            .anchor_size(middle, galley.size())
+            .expand(3.0);
         painter.rect_filled(rect, 3.0, Color32::from_black_alpha(200));
         painter.galley(rect.min + vec2(3.0, 3.0), galley, theme::ON_CANVAS);
     }

@@ -116,12 +116,28 @@ impl ToolCommand {
             ("Brush: street", "P again", Self::Shape(PaintShape::Street)),
             ("Brush: fill", "K", Self::Shape(PaintShape::Fill)),
             ("Brush: pick a layer", "I", Self::Shape(PaintShape::Pick)),
-            ("Voxels: brush", "B over the 3D view", Self::Voxels(VoxelMode::Brush)),
-            ("Voxels: box", "U over the 3D view", Self::Voxels(VoxelMode::Block)),
+            (
+                "Voxels: brush",
+                "B over the 3D view",
+                Self::Voxels(VoxelMode::Brush),
+            ),
+            (
+                "Voxels: box",
+                "U over the 3D view",
+                Self::Voxels(VoxelMode::Block),
+            ),
             ("Voxels: line", "L over the 3D view", Self::Voxels(VoxelMode::Row)),
-            ("Voxels: fill", "K over the 3D view", Self::Voxels(VoxelMode::Fill)),
+            (
+                "Voxels: fill",
+                "K over the 3D view",
+                Self::Voxels(VoxelMode::Fill),
+            ),
             ("Voxels: magic wand", "Shift+O", Self::Voxels(VoxelMode::Wand)),
-            ("Voxels: pull a face", "P over the 3D view", Self::Voxels(VoxelMode::Extrude)),
+            (
+                "Voxels: pull a face",
+                "P over the 3D view",
+                Self::Voxels(VoxelMode::Extrude),
+            ),
             ("Symmetry about the ego axis", "S", Self::Symmetry),
         ]
     }

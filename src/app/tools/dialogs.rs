@@ -29,7 +29,15 @@ pub fn show(ui: &Ui, state: &mut UiState, commands: &mut Vec<Command>) {
                 let drag = DragValue::new(&mut row.copies).range(1..=MAX_COPIES);
                 ui.add_sized([86.0, theme::ROW], drag).accessible_name("Copies");
             });
-            number(ui, "Spacing", "Spacing", &mut row.spacing_m, -80.0..=80.0, " m", 2);
+            number(
+                ui,
+                "Spacing",
+                "Spacing",
+                &mut row.spacing_m,
+                -80.0..=80.0,
+                " m",
+                2,
+            );
             ui.horizontal(|ui| {
                 caption(ui, "Along");
                 icons::segments(

@@ -93,7 +93,10 @@ impl<'a> Gizmo<'a> {
     /// The part under the pointer.
     pub fn at(&self, pointer: Pos2) -> Option<Part> {
         if self.transform.kind == Kind::Turn {
-            let near = self.ring().windows(2).any(|p| distance(pointer, p[0], p[1]) < REACH);
+            let near = self
+                .ring()
+                .windows(2)
+                .any(|p| distance(pointer, p[0], p[1]) < REACH);
             return near.then_some(Part::Ring);
         }
         let near = |axis: &&Axis| {
@@ -111,7 +114,9 @@ impl<'a> Gizmo<'a> {
             return;
         }
         for &axis in self.axes {
-            let Some([from, to]) = self.arrow(axis) else { continue };
+            let Some([from, to]) = self.arrow(axis) else {
+                continue;
+            };
             let is_hot = hot == Some(Part::Axis(axis));
             let color = match is_hot {
                 true => theme::ON_CANVAS,
@@ -139,7 +144,12 @@ fn distance(p: Pos2, a: Pos2, b: Pos2) -> f32 {
 }
 
 /// The arrow of the bird's-eye view under a point of the ground.
-pub(in crate::app) fn bev_axis_at(map: &ScreenMap, frame: &Frame, state: &UiState, at_m: DVec2) -> Option<Axis> {
+pub(in crate::app) fn bev_axis_at(
+    map: &ScreenMap,
+    frame: &Frame,
+    state: &UiState,
+    at_m: DVec2,
+) -> Option<Axis> {
     let project = |p: DVec3| Some(map.to_screen(p.truncate()));
     let gizmo = Gizmo::new(frame, state, &[Axis::X, Axis::Y], DVec3::X, &project)?;
     if state.tools.gizmo == Kind::Turn {

@@ -6,13 +6,13 @@ use glam::{DVec2, DVec3};
 
 use crate::app::canvas_tools;
 use crate::app::state::UiState;
+use crate::editor::Edit;
 use crate::editor::arrange::{Clipboard, Pivot, Row};
 use crate::editor::flood::FillBounds;
 use crate::editor::lane_strip::LaneStrip;
 use crate::editor::measure::Measure;
 use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
-use crate::editor::Edit;
 use crate::generation::job::GenParams;
 use crate::generation::redraw::RedrawMask;
 use crate::scene::{BevLayer, BoxId, Class, Frame, SceneBox, variants};
@@ -259,7 +259,11 @@ impl UiState {
                 now.insert(*id);
             }
         }
-        let newest = ids.iter().rev().chain(self.selected.iter()).find(|id| now.contains(*id));
+        let newest = ids
+            .iter()
+            .rev()
+            .chain(self.selected.iter())
+            .find(|id| now.contains(*id));
         self.selected = newest.or(now.last()).copied();
         self.selection = now;
     }
@@ -268,7 +272,10 @@ impl UiState {
     pub fn tidy_selection(&mut self, boxes: &BTreeMap<BoxId, SceneBox>) {
         let mut left = self.chosen();
         left.retain(|id| boxes.contains_key(id));
-        self.selected = self.selected.filter(|id| left.contains(id)).or(left.first().copied());
+        self.selected = self
+            .selected
+            .filter(|id| left.contains(id))
+            .or(left.first().copied());
         self.selection = left.into_iter().collect();
     }
 

@@ -28,13 +28,21 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         ui,
         &mut tools.lasso,
         &[
-            (false, "Marquee", "V: click, or drag over empty ground; Shift adds and removes"),
+            (
+                false,
+                "Marquee",
+                "V: click, or drag over empty ground; Shift adds and removes",
+            ),
             (true, "Lasso", "O: drag around boxes"),
         ],
     );
     ui.add_space(3.0);
     let kinds = [
-        (Kind::Move, "Move", "W; X, Y, Z keep to an axis, digits set the way"),
+        (
+            Kind::Move,
+            "Move",
+            "W; X, Y, Z keep to an axis, digits set the way",
+        ),
         (Kind::Turn, "Turn", "E; digits set the angle"),
         (Kind::Scale, "Scale", "R; digits set the factor"),
     ];
@@ -54,7 +62,11 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         &mut tools.pivot,
         &[
             (Pivot::Own, "Own centres", "the keys turn each box about itself"),
-            (Pivot::Middle, "Middle", "the keys turn all about the middle between them"),
+            (
+                Pivot::Middle,
+                "Middle",
+                "the keys turn all about the middle between them",
+            ),
         ],
     );
     ui.add_space(3.0);
@@ -65,8 +77,10 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         icons::segments(ui, &mut tools.grid_m, &steps);
     });
     ui.horizontal(|ui| {
-        ui.checkbox(&mut tools.snap_lane, "Lanes").on_hover_text("Moves snap to lane centre and heading");
-        ui.checkbox(&mut tools.snap_ground, "Ground").on_hover_text("Moves set boxes on the ground");
+        ui.checkbox(&mut tools.snap_lane, "Lanes")
+            .on_hover_text("Moves snap to lane centre and heading");
+        ui.checkbox(&mut tools.snap_ground, "Ground")
+            .on_hover_text("Moves set boxes on the ground");
     });
     let any = state.selected.is_some();
     let mut on = |clicked: bool, command| {
@@ -77,14 +91,26 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
-        on(button(ui, "To lane", "D: lane centre, heading and ground", any), ToolCommand::ToLane);
+        on(
+            button(ui, "To lane", "D: lane centre, heading and ground", any),
+            ToolCommand::ToLane,
+        );
         on(button(ui, "To ground", "Shift+D", any), ToolCommand::DropToGround);
-        on(button(ui, "Row…", "Ctrl+Shift+D: copies at a spacing", any), ToolCommand::AskRow);
-        on(button(ui, "Mirror", "Ctrl+M: about the ego x axis", any), ToolCommand::Mirror(false));
+        on(
+            button(ui, "Row…", "Ctrl+Shift+D: copies at a spacing", any),
+            ToolCommand::AskRow,
+        );
+        on(
+            button(ui, "Mirror", "Ctrl+M: about the ego x axis", any),
+            ToolCommand::Mirror(false),
+        );
         on(button(ui, "Mirrored copy", "", any), ToolCommand::Mirror(true));
     });
-    ui.checkbox(&mut state.tools.mirror_keeps_direction, "Mirrored ones keep to traffic")
-        .on_hover_text("A box that changes sides is turned by 180°");
+    ui.checkbox(
+        &mut state.tools.mirror_keeps_direction,
+        "Mirrored ones keep to traffic",
+    )
+    .on_hover_text("A box that changes sides is turned by 180°");
 }
 
 /// Shapes of the brush and what belongs to them.
@@ -108,19 +134,33 @@ pub fn brush(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
             slider(ui, "Lanes back", &mut street.backward, lanes);
             slider(ui, "Lane, m", &mut street.lane_m, LaneStrip::LANE_M);
             slider(ui, "Walkway, m", &mut street.walk_m, 0.0..=6.0);
-            caption(ui, "Click points along the middle; Enter or a double click lays the street.");
+            caption(
+                ui,
+                "Click points along the middle; Enter or a double click lays the street.",
+            );
         }
         PaintShape::Fill => {
             icons::segments(
                 ui,
                 &mut state.tools.fill,
                 &[
-                    (FillBounds::AnyLayer, "To any layer", "stops where any map layer changes"),
-                    (FillBounds::OwnLayer, "To its own", "stops where the painted layer changes"),
+                    (
+                        FillBounds::AnyLayer,
+                        "To any layer",
+                        "stops where any map layer changes",
+                    ),
+                    (
+                        FillBounds::OwnLayer,
+                        "To its own",
+                        "stops where the painted layer changes",
+                    ),
                 ],
             );
         }
-        PaintShape::Pick => caption(ui, "Click takes over the layer under the pointer, as Alt+click always does."),
+        PaintShape::Pick => caption(
+            ui,
+            "Click takes over the layer under the pointer, as Alt+click always does.",
+        ),
         _ => {}
     }
     ui.add_space(2.0);
@@ -136,9 +176,11 @@ fn slider<N: egui::emath::Numeric>(
         let (rect, _) = ui.allocate_exact_size(egui::vec2(80.0, theme::ROW), egui::Sense::hover());
         let font = egui::TextStyle::Body.resolve(ui.style());
         let at = rect.left_center();
-        ui.painter().text(at, egui::Align2::LEFT_CENTER, name, font, theme::text_weak());
+        ui.painter()
+            .text(at, egui::Align2::LEFT_CENTER, name, font, theme::text_weak());
         ui.spacing_mut().slider_width = 60.0;
-        ui.add(egui::Slider::new(value, range).max_decimals(1)).accessible_name(name);
+        ui.add(egui::Slider::new(value, range).max_decimals(1))
+            .accessible_name(name);
     });
 }
 
@@ -148,7 +190,10 @@ pub fn variants_ui(ui: &mut Ui, state: &mut UiState) {
     let mut chosen = state.tools.variants.get(&class).copied();
     let name = |i: Option<usize>| {
         let kind = i.and_then(|i| variants::of_class(class).nth(i));
-        let size = kind.map(|k| k.size_m).or(class.typical_size_m()).unwrap_or_default();
+        let size = kind
+            .map(|k| k.size_m)
+            .or(class.typical_size_m())
+            .unwrap_or_default();
         let name = kind.map_or("Typical", |k| k.name);
         format!("{name}   {:.2} × {:.2} × {:.2} m", size[0], size[1], size[2])
     };
@@ -161,9 +206,9 @@ pub fn variants_ui(ui: &mut Ui, state: &mut UiState) {
             ui.selectable_value(&mut chosen, i, name(i));
         }
     });
-    shown.response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, "Kind of box")
-    });
+    shown
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ComboBox, true, "Kind of box"));
     match chosen {
         Some(i) => drop(state.tools.variants.insert(class, i)),
         None => drop(state.tools.variants.remove(&class)),
@@ -216,7 +261,8 @@ pub fn voxels(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     if matches!(state.tools.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
         slider(ui, "Height, vx", &mut state.tools.voxel_height, 1..=16);
     }
-    ui.checkbox(&mut state.tools.symmetry, "Symmetry about the ego axis").on_hover_text("S");
+    ui.checkbox(&mut state.tools.symmetry, "Symmetry about the ego axis")
+        .on_hover_text("S");
     if state.tools.voxel_mode == VoxelMode::Wand {
         chosen_voxels(ui, state, commands);
     }
@@ -239,8 +285,17 @@ fn chosen_voxels(ui: &mut Ui, state: &UiState, commands: &mut Vec<Command>) {
         ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
         let paint = ToolCommand::PaintChosenVoxels;
         on(button(ui, "Remove them", "Del", n > 0), paint(Class::Free));
-        on(button(ui, "Recolour them", "in the class below", n > 0), paint(state.voxel_class));
-        on(button(ui, "Lock them", "generation keeps them", n > 0), ToolCommand::LockChosenVoxels(true));
-        on(button(ui, "Unlock them", "", n > 0), ToolCommand::LockChosenVoxels(false));
+        on(
+            button(ui, "Recolour them", "in the class below", n > 0),
+            paint(state.voxel_class),
+        );
+        on(
+            button(ui, "Lock them", "generation keeps them", n > 0),
+            ToolCommand::LockChosenVoxels(true),
+        );
+        on(
+            button(ui, "Unlock them", "", n > 0),
+            ToolCommand::LockChosenVoxels(false),
+        );
     });
 }

@@ -163,7 +163,9 @@ fn select(
     match hit {
         Some(hit @ Hit::Box { id, .. }) if !modifiers.shift && !state.tools.lasso => {
             let ids = match state.is_chosen(id) {
-                true => std::iter::once(id).chain(ids.into_iter().filter(|c| *c != id)).collect(),
+                true => std::iter::once(id)
+                    .chain(ids.into_iter().filter(|c| *c != id))
+                    .collect(),
                 false => vec![id],
             };
             Some(ViewGesture::Transform {
@@ -236,7 +238,11 @@ fn voxels(
                 commands.push(Command::Tools(ToolCommand::ChooseVoxels(cells, modifiers.shift)));
             } else if !cells.is_empty() {
                 let class = class_of(state, verb);
-                let label = if class == Class::Free { "Remove voxels" } else { "Fill voxels" };
+                let label = if class == Class::Free {
+                    "Remove voxels"
+                } else {
+                    "Fill voxels"
+                };
                 commands.push(Command::Apply(label, vec![Edit::PaintVoxels { cells, class }]));
             }
             Gesture3d::Ignored
@@ -252,7 +258,9 @@ pub(in crate::app) fn pick_class(
     commands: &mut Vec<Command>,
 ) {
     let grid = &input.settled.frame().occupancy;
-    let hit = view.pointer(at).and_then(|p| pick::ray_voxels(&p.ray, grid, |_, _| true));
+    let hit = view
+        .pointer(at)
+        .and_then(|p| pick::ray_voxels(&p.ray, grid, |_, _| true));
     if let Some(class) = hit.and_then(|h| Class::from_id(h.label)) {
         commands.push(Command::Tools(ToolCommand::PickClass(class)));
     }
@@ -299,7 +307,9 @@ pub(in crate::app) fn drag(
             show_block(gesture, input.settled.frame(), state, commands);
         }
         ViewGesture::Row { first, verb } => {
-            let Some(ray) = view.pointer(at).map(|p| p.ray) else { return };
+            let Some(ray) = view.pointer(at).map(|p| p.ray) else {
+                return;
+            };
             let frame = input.settled.frame();
             if let Some(last) = target(frame, *verb, [1, 1], &ray).first() {
                 let cells = voxel_ops::line(*first, *last, state.voxel_size);
@@ -323,7 +333,11 @@ fn show_voxels(
     verb: VoxelVerb,
     commands: &mut Vec<Command>,
 ) {
-    let cells = voxel_ops::only(&frame.occupancy, state.tools.both_sides(cells), verb == VoxelVerb::Attach);
+    let cells = voxel_ops::only(
+        &frame.occupancy,
+        state.tools.both_sides(cells),
+        verb == VoxelVerb::Attach,
+    );
     if !cells.is_empty() {
         let class = class_of(state, verb);
         pointer::preview(commands, vec![Edit::PaintVoxels { cells, class }]);
@@ -477,11 +491,16 @@ pub(in crate::app) fn end(
             let outline: Vec<DVec2> = match (lasso, points.first()) {
                 (false, Some(from)) => {
                     let r = Rect::from_two_pos(*from, at);
-                    [r.left_top(), r.right_top(), r.right_bottom(), r.left_bottom()].map(flat).to_vec()
+                    [r.left_top(), r.right_top(), r.right_bottom(), r.left_bottom()]
+                        .map(flat)
+                        .to_vec()
                 }
                 _ => points.iter().map(|p| flat(*p)).collect(),
             };
-            let inside = |c: DVec3| view.project(c).is_some_and(|p| choose::is_inside(&outline, flat(p)));
+            let inside = |c: DVec3| {
+                view.project(c)
+                    .is_some_and(|p| choose::is_inside(&outline, flat(p)))
+            };
             let boxes = frame.boxes.values().filter(|b| inside(b.center_m));
             chosen(boxes.map(|b| b.id).collect(), add, commands);
         }
@@ -511,7 +530,9 @@ pub(in crate::app) fn keys(
             let ViewGesture::Transform { transform, moved, .. } = held else {
                 return;
             };
-            let Some(key) = drag_keys(ui, transform) else { return };
+            let Some(key) = drag_keys(ui, transform) else {
+                return;
+            };
             *moved = true;
             let name = step_name(transform);
             show_transform(held, view, input.settled.frame(), state, ctrl, commands);
@@ -543,9 +564,17 @@ fn wheel(events: &[egui::Event]) -> i32 {
 /// Draws over the finished view.
 pub(in crate::app) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiState) {
     let painter = ui.painter().with_clip_rect(view.rect);
-    let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|p| view.rect.contains(*p));
+    let pointer = ui
+        .input(|i| i.pointer.latest_pos())
+        .filter(|p| view.rect.contains(*p));
     let project = |p: DVec3| view.project(p);
-    let gizmo = Gizmo::new(input.scene.frame(), state, &Axis::ALL, view.camera.axes()[0], &project);
+    let gizmo = Gizmo::new(
+        input.scene.frame(),
+        state,
+        &Axis::ALL,
+        view.camera.axes()[0],
+        &project,
+    );
     match &view.gesture {
         Gesture3d::Tool(ViewGesture::Transform {
             transform,
@@ -563,11 +592,15 @@ pub(in crate::app) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, stat
                 bev_draw::tag(&painter, *to, &transform.text(&pull, &state.tools.snap(ctrl)));
             }
         }
-        Gesture3d::Tool(ViewGesture::Area { points, lasso, .. }) => match (lasso, points.first(), points.last()) {
-            (false, Some(a), Some(b)) => bev_draw::marquee(&painter, Rect::from_two_pos(*a, *b)),
-            _ => bev_draw::lasso(&painter, points.clone()),
-        },
-        Gesture3d::Tool(ViewGesture::Block { first, last, height, .. }) => {
+        Gesture3d::Tool(ViewGesture::Area { points, lasso, .. }) => {
+            match (lasso, points.first(), points.last()) {
+                (false, Some(a), Some(b)) => bev_draw::marquee(&painter, Rect::from_two_pos(*a, *b)),
+                _ => bev_draw::lasso(&painter, points.clone()),
+            }
+        }
+        Gesture3d::Tool(ViewGesture::Block {
+            first, last, height, ..
+        }) => {
             let across: Vec<usize> = (0..3)
                 .filter(|a| first.normal[*a] == 0)
                 .map(|a| first.cell[a].abs_diff(last[a]) + 1)
@@ -597,7 +630,10 @@ mod tests {
         let up = along_axis(&ray, DVec3::new(1.0, 5.0, 0.0), DVec3::Z).expect("passes by");
         assert!((up - 2.0).abs() < 1e-12);
         assert_eq!(along_axis(&ray, DVec3::ZERO, DVec3::Y), None);
-        assert_eq!(on_plane(&ray, DVec3::new(0.0, 4.0, 0.0), 1), Some(DVec3::new(0.0, 4.0, 2.0)));
+        assert_eq!(
+            on_plane(&ray, DVec3::new(0.0, 4.0, 0.0), 1),
+            Some(DVec3::new(0.0, 4.0, 2.0))
+        );
         assert_eq!(on_plane(&ray, DVec3::ZERO, 2), None);
         assert_eq!(on_plane(&ray, DVec3::new(0.0, -20.0, 0.0), 1), None);
     }
