@@ -15,6 +15,7 @@ pub mod rng;
 pub mod schedule;
 pub mod sensors;
 pub mod solver;
+pub mod text;
 pub mod weights;
 pub mod worker;
 pub mod world;
