@@ -106,7 +106,8 @@ fn words(list: &'static str) -> impl Iterator<Item = &'static str> {
     list.split('|').map(str::trim).filter(|w| !w.is_empty())
 }
 
-fn plural(word: &str) -> String {
+/// The plural by rule.
+pub fn plural(word: &str) -> String {
     let ends = |tails: &[&str]| tails.iter().any(|t| word.ends_with(t));
     if ends(&["s", "x", "z", "ch", "sh"]) {
         return format!("{word}es");

@@ -1,7 +1,8 @@
 //! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
 
 pub mod description;
-//TODO pub mod edit;
+pub mod edit;
+mod edit_grammar;
 pub mod holds;
 pub mod lanes;
 pub mod lexicon;
@@ -10,6 +11,7 @@ mod mention;
 pub mod parse;
 pub mod place;
 pub mod road;
+mod select;
 mod spots;
 pub mod tag;
 pub mod to_graph;

@@ -42,7 +42,9 @@ pub(super) struct Parser<'a> {
     fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
     chain: bool, // only nouns so far in this clause
+    list: Vec<usize>, // those nouns
     linked: bool, // "and" or a comma right before
+    anded: bool, // "and" right before
     fresh: bool, // nothing but small words since the clause began or a comma
     pending: Option<Pending>,
     pre: Pre,
@@ -89,7 +91,9 @@ impl<'a> Parser<'a> {
             fronted: Vec::new(),
             fronted_state: None,
             chain: true,
+            list: Vec::new(),
             linked: false,
+            anded: false,
             fresh: true,
             pending: None,
             pre: Pre::default(),
@@ -165,6 +169,7 @@ impl<'a> Parser<'a> {
             let small = self.step(item);
             if !small {
                 self.linked = false;
+                self.anded = false;
                 self.fresh = false;
             }
             self.at += 1;
@@ -194,6 +199,7 @@ impl<'a> Parser<'a> {
                 self.linked = true;
                 self.fresh = true;
                 self.relative = false;
+                self.reversed = self.reversed.take().filter(|_| self.last.is_empty());
                 return true;
             }
             Tag::Unknown => {
@@ -285,6 +291,7 @@ impl<'a> Parser<'a> {
                     self.not_goes_on &= self.items.get(self.at + 1).is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Noun(..)))) || self.list_goes_on();
                 }
                 self.linked = true;
+                self.anded = true;
                 self.fresh = true;
                 self.relative = false;
                 return true;
@@ -392,6 +399,7 @@ impl<'a> Parser<'a> {
                     self.unread(span, Some("nothing stands before it".into()));
                 }
                 let each = each || targets.iter().any(|t| self.mentions[*t].spec.count.n == 1);
+                self.chain = false;
                 for t in targets {
                     self.mentions[t].both = Some(each);
                     self.mentions[t].spec.span = self.mentions[t].spec.span.to(span);
@@ -957,12 +965,15 @@ impl<'a> Parser<'a> {
         if !old {
             self.mentions[index].host = host;
         }
-        if self.linked && self.chain && !self.head.is_empty() {
-            self.head.push(index);
+        if self.linked && self.chain && !self.list.is_empty() {
+            // "a car, a bus and a truck ahead" speaks of three, "three cars, a bus ahead" of the bus.
+            self.list.push(index);
+            self.head = if self.anded { self.list.clone() } else { vec![index] };
         } else {
-            if !self.head.is_empty() && !(self.chain && self.linked) {
+            if !self.head.is_empty() {
                 self.fronted_if_done();
             }
+            self.list = vec![index];
             self.head = vec![index];
         }
         self.last = self.head.clone();
@@ -1309,6 +1320,7 @@ impl<'a> Parser<'a> {
             self.before = std::mem::take(&mut self.head);
         }
         self.last.clear();
+        self.list.clear();
         self.fronted.clear();
         self.fronted_state = None;
         self.reversed = None;

@@ -37,6 +37,7 @@ struct Gather<'a, 'b> {
     draw: &'b mut Draw,
     out: Vec<Spot>,
     base: Spot,
+    own_way: bool, // traffic of the ego's direction is meant
 }
 
 /// Places for an object with what was said of it (targets that are placed already).
@@ -64,6 +65,7 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
             on_road: false,
             anywhere: false,
         },
+        own_way: (said(RelationKind::InFrontOf) || said(RelationKind::Behind) || said(RelationKind::Blocking)) && !said(RelationKind::OppositeDirection) && !said(RelationKind::Facing),
     };
     let thing = stated.iter().find_map(|(e, t)| match t {
         Some(Target::Thing(b)) => Some((e, *b)),
@@ -217,6 +219,17 @@ impl Gather<'_, '_> {
 
     /// Along lanes, in their direction.
     fn lanes(&mut self, role: LaneRole, people: bool) {
+        let from = self.out.len();
+        self.lanes_of(role, people);
+        if self.own_way {
+            // "ahead" and "behind" mean our side of the road unless more was said.
+            for s in &mut self.out[from..] {
+                s.cost += if s.yaw_rad.cos() < -0.3 { 4.0 } else { 0.0 };
+            }
+        }
+    }
+
+    fn lanes_of(&mut self, role: LaneRole, people: bool) {
         let roadwide = matches!(role, LaneRole::Road);
         for i in 0..self.map.points.len() {
             let l = self.map.points[i];
