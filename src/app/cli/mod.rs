@@ -10,6 +10,7 @@ mod import;
 mod new;
 mod output;
 mod progress;
+mod prompt;
 mod render;
 mod shot;
 
@@ -42,6 +43,8 @@ enum Command {
     New(new::New),
     /// A scene from a road network (OpenDRIVE).
     Import(import::Import),
+    /// A scene from words, or an edit of a scene by words.
+    Prompt(prompt::Prompt),
     /// Occupancy from layout and boxes.
     Generate(generate::Generate),
     /// Apply edits and regenerate what they touch, by inversion.
@@ -178,6 +181,7 @@ pub fn main() -> ExitCode {
         Some(Command::Demo(c)) => c.run(),
         Some(Command::New(c)) => c.run(),
         Some(Command::Import(c)) => c.run(),
+        Some(Command::Prompt(c)) => c.run(),
         Some(Command::Generate(c)) => c.run(),
         Some(Command::Edit(c)) => c.run(),
         Some(Command::Render(c)) => c.run(),

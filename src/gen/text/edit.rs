@@ -191,7 +191,10 @@ impl Editor<'_> {
                 if self.add(&c.reading.description) {
                     done.push("added".into());
                 }
-                self.take_absent(&c.reading.description);
+                if !c.reading.description.absent.is_empty() {
+                    self.take_absent(&c.reading.description);
+                    done.push("removed".into());
+                }
             }
             Verb::Keep => {
                 self.keep(c);

@@ -24,8 +24,6 @@ pub struct Mention {
     pub pick: Option<Pick>,
     /// A box by its number.
     pub id: Option<u32>,
-    /// So many more.
-    pub more: bool,
     /// On both sides; true if the count is for each.
     pub both: Option<bool>,
     /// Named only to say where something else is.
@@ -57,8 +55,6 @@ pub struct Pre {
     pub pick: Option<Pick>,
     /// Box number.
     pub id: Option<u32>,
-    /// `more`.
-    pub more: bool,
     /// "each".
     pub each: bool,
     /// Of all this.
@@ -111,7 +107,6 @@ impl Mention {
             uncounted: pre.count.is_none(),
             pick: pre.pick,
             id: pre.id,
-            more: pre.more,
             both: None,
             is_anchor: false,
             host: None,

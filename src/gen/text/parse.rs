@@ -12,7 +12,7 @@ use super::mention::{Frag, Mention, Pre, Prep, apply};
 use super::tag::{Item, Tag, tag};
 use super::tokens::{LONGEST, Span, tokens};
 use super::words::edits::{Pick, Verb};
-use super::words::objects::{NOUNS, VEHICLES, WORKS};
+use super::words::objects::{NOUNS, WORKS};
 use super::words::places;
 use crate::scene::Class;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
@@ -264,7 +264,7 @@ impl<'a> Parser<'a> {
             }
             Sense::Pick(pick) => {
                 match pick {
-                    Pick::More => self.pre.more = true,
+                    Pick::More => {}
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);
@@ -1396,9 +1396,4 @@ fn places_color(words: &str) -> &'static str {
         "bright" => "bright",
         _ => "grey",
     }
-}
-
-/// Every vehicle class, for `vehicles`.
-pub(super) fn all_vehicles() -> &'static [Class] {
-    VEHICLES
 }

@@ -131,9 +131,6 @@ pub const FIXED: &[(R, Anchor, &str)] = &[
 pub const FAR_SIDE: &str = "across the street|across the road|on the other side of the road|on the other side of the street|other side of the road|other side of the street|on the opposite side of the road|on the opposite side of the street|on the far side of the road|on the far side of the street|on the other side|on the opposite side|over the road|on the far side|on the other side of the carriageway";
 /// One on each side.
 pub const BOTH_SIDES: &str = "on both sides|on either side|on each side|both sides|either side|each side|along both sides|on the left and right|left and right|on the left and on the right|to the left and right|on the left and the right|to both sides|at both sides|along each side|down both sides|on the left and right side|on the left and right sides|on the left and right hand side";
-/// The edge of a road on one side, after "on the left".
-pub const SIDE_NOUNS: &str = "side of the road|side of the street|roadside|side";
-
 /// Prepositions whose meaning depends on the place that follows.
 pub const IN: &str = "in|on|onto|into|along|inside|within|over|upon|through|down|up|in the middle of|in the centre of|in the center of|throughout|atop|on top of|all over|all along|occupying part of|out on|on to|inside of|off|line|lines|lining";
 /// The same, less exact.
