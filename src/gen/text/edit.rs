@@ -533,12 +533,29 @@ impl Editor<'_> {
             return;
         };
         let size_m = DVec3::from_array(size);
-        let new = SceneBox {
+        let mut new = SceneBox {
             class: by.spec.class,
             size_m,
             center_m: b.center_m.truncate().extend(b.center_m.z - b.size_m.z / 2.0 + size_m.z / 2.0),
             ..b
         };
+        // A longer one may need a step along its course.
+        let hits = |n: &SceneBox| self.boxes.values().any(|o| o.id != id && super::holds::overlap_m(n, o, 0.2) > 0.0) || super::holds::overlap_m(n, &ego(), 0.2) > 0.0;
+        let steps = (0..40).map(|k| f64::from((k + 1) / 2) * if k % 2 == 0 { 0.5 } else { -0.5 });
+        let start = new;
+        for step in steps {
+            let tried = SceneBox {
+                center_m: start.center_m + (start.heading() * step).extend(0.0),
+                ..start
+            };
+            if !hits(&tried) && tried.center_m.truncate().abs().max_element() < 38.0 {
+                if step != 0.0 {
+                    self.out.notes.push(format!("box {} stands {:.1} m further along, clear of others", id.0, step.abs()));
+                }
+                new = tried;
+                break;
+            }
+        }
         if let Some(o) = self.boxes.values().find(|o| o.id != id && super::holds::overlap_m(&new, o, 0.0) > 0.0) {
             self.out.notes.push(format!("the larger box {} now overlaps box {}", id.0, o.id.0));
         }

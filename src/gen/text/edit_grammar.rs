@@ -267,9 +267,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         _ => {
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
-            if verb == Verb::Keep
-                && let [.., to, number] = items.as_slice()
-                && to.words == "to"
+            if let [.., to, number] = items.as_slice()
+                && (verb == Verb::Keep && to.words == "to" || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
                     Tag::Number(v) if v.is_finite() && v >= 0.0 => Some(v as u32),

@@ -162,7 +162,10 @@ fn build() -> Table {
         }
         for noun in list {
             put(noun, Sense::Place(Anchor::Lane(any), None));
-            put(&plural(noun), Sense::Place(Anchor::Lane(any), None));
+            // "a bus stops" is no place
+            if !noun.ends_with("stop") {
+                put(&plural(noun), Sense::Place(Anchor::Lane(any), None));
+            }
             for (side, names) in [(left, places::LEFT), (right, places::RIGHT)] {
                 for name in words(names) {
                     let place = Sense::Place(Anchor::Lane(side), None);

@@ -55,6 +55,7 @@ pub(super) struct Parser<'a> {
     relative: bool,
     with: bool,
     edits: bool,
+    denied: bool, // what follows says where something is not
 }
 
 /// Reads a prompt.
@@ -104,6 +105,7 @@ impl<'a> Parser<'a> {
             relative: false,
             with: false,
             edits,
+            denied: false,
         }
     }
 
@@ -197,6 +199,7 @@ impl<'a> Parser<'a> {
                 };
                 self.not_goes_on &= self.list_goes_on();
                 self.linked = true;
+                self.denied = false;
                 self.fresh = true;
                 self.relative = false;
                 self.reversed = self.reversed.take().filter(|_| self.last.is_empty());
@@ -226,6 +229,19 @@ impl<'a> Parser<'a> {
                 if self.try_distance(v, span) {
                     return false;
                 }
+                if matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true)))
+                    && !self.noun_ahead(self.at + 1)
+                    && (1.0..1000.0).contains(&v)
+                    && let Some(&i) = self.last.last()
+                    && self.mentions[i].uncounted
+                {
+                    // "cones x8"
+                    let m = &mut self.mentions[i];
+                    m.spec.count = Count::exactly(v as u32);
+                    m.uncounted = false;
+                    m.spec.span = m.spec.span.to(span);
+                    return false;
+                }
                 let n = if v.is_finite() && v >= 0.0 { v.round().min(1e6) as u32 } else { 1_000_000 };
                 self.count(Count::exactly(n), span);
             }
@@ -248,6 +264,11 @@ impl<'a> Parser<'a> {
                         self.relative = true;
                     }
                     "each" | "every" => self.pre.each = true,
+                    "it is" | "its" | "its a" if self.head.is_empty() => {
+                        self.head = self.before.clone();
+                        self.last = self.before.clone();
+                        self.chain = false;
+                    }
                     "where" => self.end_clause(),
                     _ => {}
                 }
@@ -312,6 +333,11 @@ impl<'a> Parser<'a> {
             }
             Sense::Nobody => {
                 self.absent(vec![Class::Pedestrian], None, span);
+            }
+            Sense::Count(count) if !count.is_exact() && matches!(self.sense(self.at + 1), Some(Sense::Unit(_))) => {
+                self.at += 1;
+                let span = span.to(self.items[self.at].span);
+                self.unread(span, Some("how many?".into()));
             }
             Sense::Count(count) => {
                 let unit = matches!(self.sense(self.at + 1), Some(Sense::Unit(_)));
@@ -432,6 +458,21 @@ impl<'a> Parser<'a> {
                 }
             }
             Sense::Pronoun => return self.pronoun(item),
+            Sense::Part(_) if self.pending.is_some() && !self.noun_ahead(self.at + 1) => {
+                // "one in front of the other"
+                let targets = self.targets();
+                let noun = targets.first().map(|t| self.mentions[*t].spec.noun.clone());
+                let other = (0..self.mentions.len())
+                    .rev()
+                    .find(|i| !targets.contains(i) && Some(&self.mentions[*i].spec.noun) == noun.as_ref());
+                match other {
+                    Some(i) => self.anchor(Anchor::Object(i), span),
+                    None => {
+                        let span = self.pending.take().map_or(span, |p| p.span.to(span));
+                        self.unread(span, Some("what it points to was not named".into()));
+                    }
+                }
+            }
             Sense::Part(all) => self.part(all, Count::exactly(1), span),
             Sense::Time(time) => {
                 if is_color(&item.words) && prenominal || item.words == "dark" && prenominal {
@@ -564,6 +605,13 @@ impl<'a> Parser<'a> {
             self.part(false, count, span);
             return;
         }
+        if next_is_part && self.edits && matches!(self.items[self.at].words.as_str(), "one") && self.pending.is_none() {
+            // "the one behind me"
+            if let Some(noun) = NOUNS.last() {
+                self.noun(noun, "object", false, span);
+            }
+            return;
+        }
         if next_is_part {
             // a number of nothing: "a lot of traffic" and the like come as one run
             if !matches!(self.sense(self.at + 1), Some(Sense::Filler | Sense::Environment(_) | Sense::Place(..) | Sense::Background | Sense::Cannot(_) | Sense::RoadKind(..) | Sense::Pick(_) | Sense::Density(_) | Sense::Size(_) | Sense::Part(_)))
@@ -656,7 +704,7 @@ impl<'a> Parser<'a> {
 
     fn begin(&mut self, prep: Prep, span: Span) {
         self.flush();
-        let not = std::mem::take(&mut self.pre.not);
+        let not = std::mem::take(&mut self.pre.not) || self.denied;
         if !self.noun_ahead(self.at + 1) || self.pre.says_something() {
             // What stood before the noun that never came belongs to what follows the place.
             if let Some(state) = self.pre.state.take() {
@@ -747,6 +795,7 @@ impl<'a> Parser<'a> {
                     | RelationKind::NextTo
                     | RelationKind::Across
                     | RelationKind::Following
+                    | RelationKind::Facing
                     | RelationKind::OppositeDirection
                     | RelationKind::SameDirection
                     | RelationKind::FarFrom,
@@ -805,6 +854,20 @@ impl<'a> Parser<'a> {
 
     fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
         let span = item.span;
+        if (item.words.starts_with("overtak") || item.words == "passing" || item.words == "passes")
+            && !self.head.is_empty()
+            && self.pending.is_none()
+            && self.anchor_ahead(self.at + 1)
+        {
+            // Past another, on its left.
+            let targets = if finite { self.subjects(true) } else { self.targets() };
+            for t in targets.iter().copied() {
+                self.mentions[t].spec.state = Some(state);
+            }
+            self.last = targets;
+            self.begin(Prep::Rels(vec![RelationKind::LeftOf]), span);
+            return;
+        }
         let state = if std::mem::take(&mut self.pre.not) {
             if state == ObjectState::Moving { ObjectState::Waiting } else { ObjectState::Moving }
         } else {
@@ -873,6 +936,7 @@ impl<'a> Parser<'a> {
         self.phrase(span, Became::Absent(index), &format!("none: {}", names.join(", ")));
         self.d().absent.push(Absent { classes, state, span });
         self.pre = Pre::default();
+        self.denied = true;
     }
 
     fn noun(&mut self, noun: &'static super::words::objects::Noun, word: &str, plural: bool, span: Span) {
@@ -890,6 +954,7 @@ impl<'a> Parser<'a> {
             return;
         }
         self.not_goes_on = false;
+        self.denied = false;
         if self.mentions.len() >= MOST_MENTIONS {
             self.unread(whole, Some(format!("more than {MOST_MENTIONS} things are named")));
             return;
@@ -897,6 +962,20 @@ impl<'a> Parser<'a> {
         // Adjectives that say where.
         let wheres: Vec<String> = pre.attributes.iter().filter_map(|a| a.strip_prefix('\u{1}').map(str::to_string)).collect();
         pre.attributes.retain(|a| !a.starts_with('\u{1}'));
+        if word == "traffic" && matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Mark)) && self.noun_ahead(self.at + 2) {
+            // "oncoming traffic: two coaches" names them itself.
+            for kinds in &wheres {
+                let kinds = RelationKind::ALL.into_iter().filter(|k| kinds.split(',').any(|n| n == k.name())).collect();
+                self.fronted.push(Frag {
+                    prep: Prep::Rels(kinds),
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: None,
+                    span: whole,
+                });
+            }
+            return;
+        }
         let each = pre.each;
         let mut mention = Mention::new(noun, word, plural, pre, span);
         if each {
@@ -1316,6 +1395,7 @@ impl<'a> Parser<'a> {
     // --- clauses ---
 
     fn new_clause(&mut self) {
+        self.denied = false;
         if !self.head.is_empty() {
             self.before = std::mem::take(&mut self.head);
         }

@@ -235,6 +235,14 @@ impl Placer<'_> {
                     _ => 0.02 * near,
                 };
             }
+            // "Left" at its plainest is beside.
+            let beside = stated.iter().any(|(e, t)| {
+                let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+                ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
+            });
+            if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
+                cost += 1.5 + 0.03 * s.p.x.abs();
+            }
             if edges.is_empty() && s.p.x < -2.0 {
                 cost += 0.8; // what is simply there is seen rather ahead
             }

@@ -185,6 +185,8 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     _ => out.push(item.clone()),
                 }
             }
+            // "18-wheeler"
+            (_, Tag::Number(_)) if next.is_some_and(|n| matches!(n.words.as_str(), "wheeler" | "wheelers" | "tonner" | "seater")) => {}
             (_, Tag::Number(hour)) if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) => {
                 let pm = next.is_some_and(|n| n.words == "pm");
                 out.push(Item {

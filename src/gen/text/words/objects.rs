@@ -85,7 +85,7 @@ pub const NOUNS: &[Noun] = &[
          fire engine|fire truck|firetruck|fire appliance|cement truck|concrete truck|cement mixer|concrete mixer|mixer truck|juggernaut|\
          tractor trailer|truck trailer|motorhome|motor home|rv|recreational vehicle|food truck|ice cream van|cargo truck|freight truck|\
          haulage truck|logging truck|mail truck|ups truck|dhl truck|fedex truck|parcel truck|snow plough|snowplow|snow plow|gritter|\
-         street sweeper|road sweeper|transport truck|luton van|trucl|lorrie/lorries",
+         street sweeper|road sweeper|transport truck|luton van|wheeler|tonner|milk lorry|coal lorry|removal truck|trucl|lorrie/lorries",
     ),
     noun(&[Truck], "pickup|pick up|pickup truck|pick up truck|ute|bakkie").sized(5.6, 2.1, 1.9),
     noun(
