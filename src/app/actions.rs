@@ -489,6 +489,7 @@ pub const ACTIONS: &[ActionDef] = &[
     action(File, "checks", "Checks of the scene", "", |_| {
         Some(Command::ToggleChecks)
     }),
+    action(File, "prompt", "Prompt", "/", |_| Some(Command::FocusPrompt)),
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
         Some(Command::TogglePalette)
     }),

@@ -32,6 +32,7 @@ use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
+use super::panels::prompt::PromptPane;
 use super::panels::sensors::sensors_ui;
 use super::panels::settings::settings_ui;
 use super::panels::shortcuts::Shortcuts;
@@ -96,6 +97,7 @@ impl Pipeline for AnyPipeline {
 pub(super) enum Next {
     New,
     NewFrom(&'static str),
+    FromPrompt(String, u64),
     AskOpen,
     Open(PathBuf),
     Quit,
@@ -151,6 +153,7 @@ pub struct SceneloomApp {
     /// What was generated so far.
     pub versions: Versions,
     pub(super) compare: Compare,
+    pub(super) prompt: PromptPane,
     pub(super) render_state: Option<egui_wgpu::RenderState>,
     pub(super) palette: Palette,
     /// What is kept between sessions.
@@ -234,6 +237,7 @@ impl SceneloomApp {
             palette: Palette::default(),
             versions,
             compare: Compare::default(),
+            prompt: PromptPane::default(),
             render_state,
             shortcuts: Shortcuts::default(),
             kept: (config.settings_file, settings.clone(), 0.0),

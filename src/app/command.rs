@@ -133,6 +133,10 @@ pub enum Command {
     ToggleLog,
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
+    /// Starts from what words describe, drawn from a seed.
+    NewFromPrompt(String, u64),
+    /// Goes to the field of the prompt.
+    FocusPrompt,
     /// Starts from a ready-made road.
     NewFrom(&'static str),
     /// Shows or hides the command palette.

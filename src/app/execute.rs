@@ -148,6 +148,11 @@ impl SceneloomApp {
             Command::TogglePalette => self.palette.toggle(),
             Command::ToggleSettings => self.state.settings_open = !self.state.settings_open,
             Command::ToggleStart => self.state.start_open = !self.state.start_open,
+            Command::NewFromPrompt(prompt, seed) => self.guarded(Next::FromPrompt(prompt, seed), ctx),
+            Command::FocusPrompt => {
+                self.dock.open(Pane::Prompt);
+                self.prompt.focus();
+            }
             Command::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
             Command::ToggleGrid => self.state.show_grid = !self.state.show_grid,
             Command::ToggleSensors => self.state.sensors_open = !self.state.sensors_open,
@@ -300,6 +305,15 @@ impl SceneloomApp {
             Next::New => {
                 let make = self.io.2.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());
+            }
+            Next::FromPrompt(prompt, seed) => {
+                let make = move || {
+                    let reading = super::text::read(&prompt)?;
+                    let mut made = super::text::make(&reading.description, seed);
+                    made.scene.name = reading.description.summary.chars().take(48).collect::<String>().into();
+                    Ok(made.scene)
+                };
+                self.load("Scene from words".into(), None, false, ctx, make);
             }
             Next::NewFrom(name) => {
                 let seed = std::time::SystemTime::now()

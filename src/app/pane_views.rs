@@ -58,6 +58,11 @@ impl SceneloomApp {
                 let sweep = self.sensing.lidar().map(|l| &**l);
                 self.box_views.show(ui, scene, sweep, &self.state, commands);
             }
+            Pane::Prompt => {
+                let prompt = &mut self.prompt;
+                let scene = self.document.settled_scene();
+                theme::panel_frame().show(ui, |ui| prompt.show(ui, scene, commands));
+            }
             Pane::Versions => {
                 let shown = self.document.settled_scene().rev;
                 let before = self.compare.before.as_ref().map(|s| s.rev);

@@ -78,6 +78,8 @@ pub enum Pane {
     Lidar,
     /// The chosen box from above, from its side and from behind.
     BoxViews,
+    /// Words that become a scene, or change it.
+    Prompt,
     /// What was generated so far.
     Versions,
     /// Options of the tool in hand, map layers.
@@ -88,12 +90,13 @@ pub enum Pane {
 
 impl Pane {
     /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 14] = [
+    pub const CHOICES: [Pane; 15] = [
         Pane::Bev,
         Pane::View3d,
         Pane::Cameras,
         Pane::Lidar,
         Pane::BoxViews,
+        Pane::Prompt,
         Pane::Versions,
         Pane::Tools,
         Pane::Objects,
@@ -114,6 +117,7 @@ impl Pane {
             Pane::Camera(i) => format!("Camera {}", i + 1),
             Pane::Lidar => "LiDAR sweep".into(),
             Pane::BoxViews => "Box views".into(),
+            Pane::Prompt => "Prompt".into(),
             Pane::Versions => "Versions".into(),
             Pane::Tools => "Tools".into(),
             Pane::Objects => "Objects".into(),

@@ -16,6 +16,7 @@ pub mod rng;
 pub mod schedule;
 pub mod sensors;
 pub mod solver;
+pub mod text;
 pub mod weights;
 pub mod worker;
 pub mod world;

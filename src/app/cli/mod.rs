@@ -14,6 +14,7 @@ mod new;
 mod output;
 mod progress;
 mod region_arg;
+mod prompt;
 mod render;
 mod shot;
 
@@ -47,6 +48,8 @@ enum Command {
     New(new::New),
     /// A scene from a road network (OpenDRIVE).
     Import(import::Import),
+    /// A scene from words, or an edit of a scene by words.
+    Prompt(prompt::Prompt),
     /// Occupancy from layout and boxes.
     Generate(generate::Generate),
     /// Apply edits and regenerate what they touch, by inversion.
@@ -194,6 +197,7 @@ pub fn main() -> ExitCode {
         Some(Command::Demo(c)) => c.run(),
         Some(Command::New(c)) => c.run(),
         Some(Command::Import(c)) => c.run(),
+        Some(Command::Prompt(c)) => c.run(),
         Some(Command::Generate(c)) => c.run(),
         Some(Command::Edit(c)) => c.run(),
         Some(Command::Render(c)) => c.run(),

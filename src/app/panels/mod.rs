@@ -12,6 +12,7 @@ pub mod lidar_sweep;
 pub mod objects;
 pub mod palette;
 pub mod panes;
+pub mod prompt;
 pub mod recovery;
 pub mod sensors;
 pub mod settings;

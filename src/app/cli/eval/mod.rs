@@ -5,6 +5,8 @@ mod editing;
 mod edits;
 mod fidelity;
 mod generation;
+mod layout;
+mod layout_check;
 mod lidar;
 mod splat;
 mod vae;
@@ -31,7 +33,7 @@ const TEST_SEED: u64 = 3;
 #[derive(clap::Args)]
 pub struct Eval {
     /// What is measured.
-    #[arg(value_parser = ["world", "splat", "vae", "generation", "editing", "lidar"])]
+    #[arg(value_parser = ["world", "splat", "vae", "generation", "editing", "lidar", "layout"])]
     suite: String,
     /// Number of held-out worlds, or of frames of --data.
     #[arg(long, value_name = "N", default_value_t = 24)]
@@ -83,6 +85,8 @@ impl Eval {
             self.splat(&progress)?
         } else if self.suite == "lidar" {
             self.lidar(&progress)?
+        } else if self.suite == "layout" {
+            self.layout(&progress)?
         } else {
             let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
             let (mut report, bars) = match self.suite.as_str() {
@@ -98,7 +102,8 @@ impl Eval {
         };
         progress.done();
         report["seeds"] = json!({ "test": TEST_SEED });
-        report["n"] = report.get("files").cloned().unwrap_or_else(|| self.frames.into());
+        let n = report.get("files").or(report.get("prompts")).cloned();
+        report["n"] = n.unwrap_or_else(|| self.frames.into());
         let missed: Vec<String> = bars
             .iter()
             .filter(|(_, found, least)| found.is_nan() || found < least)

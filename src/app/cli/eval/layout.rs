@@ -1,0 +1,235 @@
+//! `eval layout`: prompts and text edits of `tests/data/prompts.jsonl`, each placed and judged on the map.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use anyhow::Context;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::layout_check::Judge;
+use super::{Bar, Eval, TEST_SEED, with_interval};
+use crate::app::cli::progress::Progress;
+use crate::app::text;
+use crate::editor::Document;
+use crate::generation::metrics::stats::median;
+use crate::generation::text::edit::read_edit;
+use crate::generation::text::place::place_with;
+use crate::generation::text::{read, road, to_graph};
+use crate::scene::{Frame, Scene, SceneBox, SensorRig};
+
+/// The held-out prompts.
+const PROMPTS: &str = include_str!("../../../../tests/data/prompts.jsonl");
+
+/// One line of the file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Case {
+    text: String,
+    /// A prompt that makes the scene to edit; none: `text` makes a scene.
+    #[serde(default)]
+    base: Option<String>,
+    /// Class (or `vehicle`) to number, or least and most.
+    #[serde(default)]
+    counts: BTreeMap<String, Number>,
+    #[serde(default)]
+    relations: Vec<Relation>,
+    #[serde(default)]
+    time: Option<String>,
+    #[serde(default)]
+    weather: Option<String>,
+    #[serde(default)]
+    road: Option<String>,
+    /// The edit must ask back with so many candidates.
+    #[serde(default)]
+    asks: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Exactly(usize),
+    Between([usize; 2]),
+}
+
+/// `[a, relation, b]`, with how many of `a`, the distance and a second `b`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Relation {
+    a: String,
+    rel: String,
+    b: String,
+    #[serde(default)]
+    c: Option<String>,
+    #[serde(default)]
+    n: Option<usize>,
+    #[serde(default)]
+    m: Option<f64>,
+}
+
+/// Shares of one group of cases.
+#[derive(Default)]
+struct Tally {
+    cases: usize,
+    counts: Vec<f64>,
+    relations: Vec<f64>,
+    style: Vec<f64>,
+    asks: Vec<f64>,
+    overlaps: (usize, usize),
+    drivable: (usize, usize),
+    headings: (usize, usize),
+    wall_s: Vec<f64>,
+    failed: Vec<Value>,
+}
+
+/// Share and the half width of its 95 % interval (Wilson), as text for the report.
+fn share(good: usize, n: usize) -> Value {
+    if n == 0 {
+        return Value::Null;
+    }
+    let (n_f, p, z) = (n as f64, good as f64 / n as f64, 1.96f64);
+    let middle = (p + z * z / (2.0 * n_f)) / (1.0 + z * z / n_f);
+    let half = z / (1.0 + z * z / n_f) * (p * (1.0 - p) / n_f + z * z / (4.0 * n_f * n_f)).sqrt();
+    let round = |v: f64| (v * 1e4).round() / 1e4;
+    json!({ "share": round(p), "low": round(middle - half), "high": round((middle + half).min(1.0)), "n": n })
+}
+
+fn ratio(pair: (usize, usize)) -> f64 {
+    if pair.1 == 0 { 1.0 } else { pair.0 as f64 / pair.1 as f64 }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() { 1.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
+}
+
+fn place(prompt: &str, seed: u64) -> (Scene, f64) {
+    let started = Instant::now();
+    let reading = read(prompt);
+    let graphed = to_graph::to_graph(&reading.description, seed);
+    let road = road::choose(&reading.description, &graphed.graph, seed);
+    let placed = place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &[]);
+    let wall_s = started.elapsed().as_secs_f64();
+    let boxes = placed.boxes.iter().map(|b| (b.id, *b)).collect();
+    let frame = Frame::new(road.layout, boxes, crate::scene::VoxelGrid::new());
+    let mut scene = Scene::single(road.template, frame, std::sync::Arc::new(SensorRig::default()), seed);
+    scene.prompt = reading.description.style().into();
+    (scene, wall_s)
+}
+
+impl Tally {
+    fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
+        self.cases += 1;
+        self.wall_s.push(wall_s);
+        let frame = scene.frame();
+        let boxes: Vec<SceneBox> = frame.boxes.values().copied().collect();
+        let judge = Judge {
+            layout: &frame.layout,
+            boxes: &boxes,
+        };
+        let mut wrong: Vec<String> = Vec::new();
+        for (class, number) in &case.counts {
+            let found = judge.count(class);
+            let (low, high) = match number {
+                Number::Exactly(n) => (*n, *n),
+                Number::Between([a, b]) => (*a, *b),
+            };
+            let good = (low..=high).contains(&found);
+            self.counts.push(f64::from(u8::from(good)));
+            if !good {
+                wrong.push(format!("{class}: {found}, expected {low} to {high}"));
+            }
+        }
+        for r in &case.relations {
+            let good = judge.holds(&r.a, &r.rel, &r.b, r.c.as_deref(), r.n, r.m);
+            self.relations.push(f64::from(u8::from(good)));
+            if !good {
+                wrong.push(format!("{} {} {}", r.a, r.rel, r.b));
+            }
+        }
+        let style = &*scene.prompt;
+        let said = |what: &Option<String>| what.as_ref().map(|w| style.split(", ").any(|s| s == w));
+        let road = case.road.as_ref().map(|r| scene.name.as_ref() == r);
+        for (good, what) in [(said(&case.time), &case.time), (said(&case.weather), &case.weather), (road, &case.road)] {
+            let Some(good) = good else {
+                continue;
+            };
+            self.style.push(f64::from(u8::from(good)));
+            if !good {
+                wrong.push(format!("{what:?} expected, {style:?} {:?} found", scene.name));
+            }
+        }
+        let sum = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0, a.1 + b.1);
+        self.overlaps = sum(self.overlaps, judge.overlaps());
+        self.drivable = sum(self.drivable, judge.on_drivable());
+        self.headings = sum(self.headings, judge.headings());
+        if !wrong.is_empty() {
+            self.failed.push(json!({ "text": case.text, "wrong": wrong }));
+        }
+    }
+
+    fn report(&self) -> Value {
+        json!({
+            "cases": self.cases,
+            "counts_exact": with_interval(&self.counts),
+            "relations_satisfied": with_interval(&self.relations),
+            "style_and_road": with_interval(&self.style),
+            "asked_back": with_interval(&self.asks),
+            "overlapping_pairs": share(self.overlaps.0, self.overlaps.1),
+            "vehicles_on_drivable": share(self.drivable.0, self.drivable.1),
+            "moving_headings_within_15_deg": share(self.headings.0, self.headings.1),
+            "wall_s_median": median(&self.wall_s),
+            "wall_s_max": self.wall_s.iter().copied().fold(0.0, f64::max),
+            "failed": self.failed,
+        })
+    }
+}
+
+impl Eval {
+    /// Prompts and text edits, judged by [`Judge`].
+    pub(super) fn layout(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
+        let cases: Vec<Case> = PROMPTS
+            .lines()
+            .filter(|l| !l.trim().is_empty())
+            .enumerate()
+            .map(|(i, l)| serde_json::from_str(l).with_context(|| format!("prompts.jsonl, line {}", i + 1)))
+            .collect::<Result<_, _>>()?;
+        let (mut prompts, mut edits) = (Tally::default(), Tally::default());
+        for (i, case) in cases.iter().enumerate() {
+            progress.at("layout", i, cases.len());
+            let seed = TEST_SEED + i as u64;
+            let Some(base) = &case.base else {
+                let (scene, wall_s) = place(&case.text, seed);
+                prompts.add(case, &scene, wall_s);
+                continue;
+            };
+            let (scene, _) = place(base, seed);
+            let started = Instant::now();
+            let reading = read_edit(&case.text, &text::open_scene(&scene), seed);
+            let wall_s = started.elapsed().as_secs_f64();
+            let asked = reading.questions.first().map(|q| q.candidates.len());
+            if case.asks.is_some() || asked.is_some() {
+                let good = asked == case.asks;
+                edits.asks.push(f64::from(u8::from(good)));
+                if !good {
+                    edits.failed.push(json!({ "text": case.text, "wrong": [format!("asked {asked:?}, expected {:?}", case.asks)] }));
+                }
+            }
+            let list: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
+            let mut document = Document::new(scene);
+            document
+                .apply_all("Edit by text", &list)
+                .with_context(|| format!("{:?}", case.text))?;
+            edits.add(case, document.scene(), wall_s);
+        }
+        let both = |f: fn(&Tally) -> f64| f(&prompts).min(f(&edits));
+        let bars: Vec<Bar> = vec![
+            ("counts_exact", both(|t| mean(&t.counts)), 0.97),
+            ("relations_satisfied", both(|t| mean(&t.relations)), 0.95),
+            ("pairs_apart", both(|t| 1.0 - if t.overlaps.1 == 0 { 0.0 } else { ratio(t.overlaps) }), 0.995),
+            ("vehicles_on_drivable", both(|t| ratio(t.drivable)), 0.99),
+            ("moving_headings", both(|t| ratio(t.headings)), 0.95),
+        ];
+        let report = json!({ "prompts": cases.len(), "made": prompts.report(), "edited": edits.report() });
+        Ok((report, bars))
+    }
+}

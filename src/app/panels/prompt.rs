@@ -1,0 +1,292 @@
+//! The prompt: words that become a scene or change the one at hand, each phrase as a chip that says what it became.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Ui, WidgetInfo, vec2};
+
+use crate::app::command::Command;
+use crate::app::icons::section;
+use crate::app::text;
+use crate::app::theme;
+use crate::generation::text::description::{Phrase, Reading, Unread};
+use crate::generation::text::edit::{EditReading, Question};
+use crate::scene::Scene;
+
+/// Prompts kept.
+const HISTORY: usize = 50;
+
+const EXAMPLES: [&str; 5] = [
+    "busy intersection at night in the rain, five cones block my lane, a bus waits at the crossing",
+    "suburban street, three parked cars on the right, a cyclist 12 m ahead",
+    "highway, two trucks in front of me, no pedestrians, foggy",
+    "remove the nearest car",
+    "add a pedestrian 8 m ahead on the crossing",
+];
+
+/// What is typed, and what came of it.
+#[derive(Default)]
+pub struct PromptPane {
+    prompt: String,
+    seed: u64,
+    history: Vec<String>,
+    back: usize, // steps back in the history; 0 is what is typed
+    read: Option<(String, Result<Reading, String>)>,
+    questions: Vec<Question>,
+    notes: Vec<String>,
+    wants_focus: bool,
+}
+
+impl PromptPane {
+    /// The next frame gives the field the focus.
+    pub fn focus(&mut self) {
+        self.wants_focus = true;
+    }
+
+    /// Draws the pane.
+    pub fn show(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        egui::ScrollArea::vertical()
+            .id_salt("prompt")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                self.field(ui, scene, commands);
+                self.chips(ui);
+                self.answers(ui, scene, commands);
+                if self.prompt.is_empty() {
+                    self.examples(ui);
+                }
+            });
+    }
+
+    fn field(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let field = egui::TextEdit::multiline(&mut self.prompt)
+            .hint_text("Describe a scene, or say what should change in this one")
+            .desired_rows(2)
+            .desired_width(f32::INFINITY)
+            .return_key(None);
+        let field = ui.add(field);
+        field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Prompt"));
+        if std::mem::take(&mut self.wants_focus) {
+            field.request_focus();
+        }
+        if field.changed() {
+            (self.back, self.questions) = (0, Vec::new());
+            self.notes.clear();
+        }
+        let (mut make, mut change) = (false, false);
+        if field.has_focus() {
+            let (up, down) = ui.input_mut(|i| {
+                (
+                    i.consume_key(Modifiers::ALT, Key::ArrowUp),
+                    i.consume_key(Modifiers::ALT, Key::ArrowDown),
+                )
+            });
+            if up || down {
+                self.recall(if up { 1 } else { -1 });
+            }
+            (make, change) = ui.input_mut(|i| {
+                (
+                    i.consume_key(Modifiers::CTRL, Key::Enter),
+                    i.consume_key(Modifiers::NONE, Key::Enter),
+                )
+            });
+        }
+        ui.horizontal(|ui| {
+            let some = !self.prompt.trim().is_empty();
+            let button = egui::Button::new("Change this scene").fill(theme::accent_fill());
+            let hint = "Enter: “remove the parked car”, “add two cones ahead”, “make it night”";
+            change |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
+            let button = egui::Button::new("New scene");
+            let hint = "Ctrl+Enter: road, objects and style are made from the words";
+            make |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let dice = ui.button("Re-roll").on_hover_text("Another scene of the same words");
+                if some && dice.clicked() {
+                    self.seed = self.seed.wrapping_add(1) % 100_000;
+                    make = true;
+                }
+                let seed = egui::DragValue::new(&mut self.seed).range(0..=99_999).prefix("seed ");
+                ui.add(seed).on_hover_text("The same words and seed give the same scene");
+            });
+        });
+        if change {
+            self.change(scene, commands);
+        } else if make {
+            self.remember();
+            match text::read(&self.prompt) {
+                Ok(_) => commands.push(Command::NewFromPrompt(self.prompt.clone(), self.seed)),
+                Err(error) => self.notes = vec![format!("{error:#}")],
+            }
+        }
+    }
+
+    /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
+    fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
+        self.remember();
+        let EditReading {
+            edits,
+            questions,
+            not_understood,
+            notes,
+            ..
+        } = text::read_edit(&self.prompt, scene, self.seed);
+        self.notes = notes;
+        self.notes.extend(not_understood.iter().map(unread));
+        self.questions = questions;
+        let edits: Vec<_> = edits.iter().flat_map(text::edits).collect();
+        if edits.is_empty() && self.questions.is_empty() && self.notes.is_empty() {
+            self.notes.push("The words name no change of this scene.".into());
+        }
+        if !edits.is_empty() && self.questions.is_empty() {
+            commands.push(Command::Apply("Edit by text", edits));
+        }
+    }
+
+    fn remember(&mut self) {
+        self.history.retain(|p| *p != self.prompt);
+        self.history.push(self.prompt.clone());
+        if self.history.len() > HISTORY {
+            self.history.remove(0);
+        }
+        self.back = 0;
+    }
+
+    fn recall(&mut self, step: i32) {
+        let back = (self.back as i64 + i64::from(step)).clamp(0, self.history.len() as i64) as usize;
+        if back != self.back {
+            self.back = back;
+            self.prompt = match back {
+                0 => String::new(),
+                n => self.history[self.history.len() - n].clone(),
+            };
+        }
+    }
+
+    /// Each phrase with what it became; a click takes it out of the prompt.
+    fn chips(&mut self, ui: &mut Ui) {
+        if self.prompt.trim().is_empty() {
+            return;
+        }
+        if self.read.as_ref().is_none_or(|(of, _)| *of != self.prompt) {
+            let reading = text::read(&self.prompt).map_err(|error| format!("{error:#}"));
+            self.read = Some((self.prompt.clone(), reading));
+        }
+        let Some((_, Ok(reading))) = &self.read else { return };
+        let mut gone = None;
+        ui.add_space(4.0);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            for phrase in &reading.phrases {
+                if chip(ui, phrase) {
+                    gone = Some(phrase.clone());
+                }
+            }
+        });
+        for unread_part in &reading.not_understood {
+            warn(ui, &unread(unread_part));
+        }
+        for note in &reading.notes {
+            ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
+        }
+        if let Some(phrase) = gone {
+            self.prompt = without(&self.prompt, &phrase);
+        }
+    }
+
+    fn answers(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        for note in &self.notes {
+            warn(ui, note);
+        }
+        let mut chosen = None;
+        for question in &self.questions {
+            section(ui, &question.text);
+            for candidate in &question.candidates {
+                let id = candidate.id;
+                let text = format!("{} #{}   {}", candidate.class.replace('_', " "), id.0, candidate.place);
+                let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
+                let response = ui.add(button);
+                if response.hovered() && scene.frame().boxes.contains_key(&id) {
+                    commands.push(Command::Select(Some(id)));
+                }
+                if response.clicked() {
+                    chosen = Some((question.phrase.clone(), id));
+                }
+            }
+        }
+        if let Some((phrase, id)) = chosen {
+            self.prompt = self.prompt.replacen(&phrase, &format!("#{}", id.0), 1);
+            self.change(scene, commands);
+        }
+    }
+
+    fn examples(&mut self, ui: &mut Ui) {
+        section(ui, "Examples");
+        for example in EXAMPLES {
+            let text = egui::RichText::new(example).small().color(theme::text());
+            let button = egui::Button::new(text).wrap().fill(theme::field());
+            if ui.add(button).clicked() {
+                self.prompt = example.to_owned();
+                self.wants_focus = true;
+            }
+        }
+    }
+}
+
+fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
+    let text = egui::RichText::new(format!("{}  ×", phrase.text)).color(theme::text_strong());
+    let button = egui::Button::new(text).corner_radius(10).fill(theme::field_active());
+    let response = ui.add(button);
+    let label = format!("Take out {}", phrase.text);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    response
+        .on_hover_text(format!("{}\nA click takes it out.", phrase.meaning))
+        .clicked()
+}
+
+fn warn(ui: &mut Ui, text: &str) {
+    ui.label(egui::RichText::new(text).color(theme::warn()));
+}
+
+fn unread(part: &Unread) -> String {
+    match &part.why {
+        Some(why) => format!("Not understood: “{}” ({why})", part.text),
+        None => format!("Not understood: “{}”", part.text),
+    }
+}
+
+/// The prompt without a phrase, and without the comma that stood beside it.
+fn without(prompt: &str, phrase: &Phrase) -> String {
+    let Some(at) = prompt.find(&phrase.text) else {
+        return prompt.to_owned();
+    };
+    let (before, after) = (&prompt[..at], &prompt[at + phrase.text.len()..]);
+    let (before, after) = (before.trim_end(), after.trim_start());
+    let after = if before.is_empty() || before.ends_with(',') {
+        after.trim_start_matches(',').trim_start()
+    } else {
+        after
+    };
+    let joint = if before.is_empty() || after.is_empty() || after.starts_with(',') { "" } else { " " };
+    format!("{before}{joint}{after}").trim_end_matches(',').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phrase_leaves_with_its_comma() {
+        let prompt = "two cars, at night, in the rain";
+        let reading = text::read(prompt).expect("a scene");
+        for (take, left) in [
+            ("night", "two cars, in the rain"),
+            ("rain", "two cars, at night"),
+            ("two cars", "at night, in the rain"),
+        ] {
+            let phrase = reading.phrases.iter().find(|p| p.text.contains(take)).expect(take);
+            let rest = without(prompt, phrase);
+            let reading = text::read(&rest).expect("still a scene");
+            assert!(!reading.phrases.iter().any(|p| p.text.contains(take)), "{rest}");
+            let same = text::read(left).expect("a scene").description;
+            assert_eq!(reading.description, same, "{rest} for {left}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Text to scenes and edits: what the window and the command line share.
+
+use std::sync::Arc;
+
+use anyhow::bail;
+
+
+use crate::editor::Edit;
+use crate::generation::text::description::{Description, Reading};
+use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
+use crate::generation::text::place::{Placement, place_with};
+use crate::generation::text::road::{self, Chosen};
+use crate::generation::text::to_graph::{Graphed, to_graph};
+use crate::generation::text::{self};
+use crate::generation::world::World;
+use crate::generation::world::voxelize::{Vertical, complete};
+use crate::scene::{Frame, Scene, SensorRig};
+
+/// A scene made from a description.
+pub struct Made {
+    /// The scene, its occupancy drafted.
+    pub scene: Scene,
+    /// Nodes and relations, and which belong to which object.
+    pub graphed: Graphed,
+    /// The road.
+    pub road: Chosen,
+    /// Where everything went.
+    pub placement: Placement,
+}
+
+/// Reads a prompt; an error in one line if there is nothing in it that could become a scene.
+pub fn read(prompt: &str) -> anyhow::Result<Reading> {
+    if prompt.trim().is_empty() {
+        bail!("the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\"");
+    }
+    let reading = text::read(prompt);
+    if reading.description.is_empty() {
+        let some: Vec<&str> = reading.not_understood.iter().take(4).map(|u| u.text.as_str()).collect();
+        let what = if some.is_empty() { String::new() } else { format!(" (not understood: {})", some.join(", ")) };
+        bail!("nothing in the prompt names a part of a driving scene{what}; prompts are read in English");
+    }
+    Ok(reading)
+}
+
+/// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
+/// `sceneloom new` makes it.
+pub fn make(description: &Description, seed: u64) -> Made {
+    let graphed = to_graph(description, seed);
+    let road = road::choose(description, &graphed.graph, seed);
+    let placement = place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &[]);
+    let boxes = placement.boxes.iter().map(|b| (b.id, *b)).collect();
+    let world = World::new(road.layout.clone(), boxes, seed);
+    let occupancy = complete(&world, Vertical::Occ3d);
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let mut scene = Scene::single("prompt", frame, Arc::new(SensorRig::default()), seed);
+    scene.prompt = description.style().into();
+    Made {
+        scene,
+        graphed,
+        road,
+        placement,
+    }
+}
+
+/// Reads words as edits of a scene; see [`read_edit`](crate::generation::text::edit::read_edit).
+pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> EditReading {
+    crate::generation::text::edit::read_edit(prompt, &open_scene(scene), seed)
+}
+
+/// The part of a scene that text edits look at.
+pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
+    let frame = scene.frame();
+    OpenScene {
+        boxes: &frame.boxes,
+        layout: &frame.layout,
+        prompt: &scene.prompt,
+    }
+}
+
+/// The editor's own edits for a text edit.
+pub fn edits(edit: &TextEdit) -> Vec<Edit> {
+    let add = |b: &crate::scene::SceneBox| Edit::AddBox {
+        class: b.class,
+        center_m: b.center_m,
+        size_m: b.size_m,
+        yaw_deg: b.yaw_rad.to_degrees(),
+        velocity_mps: Some(b.velocity_mps),
+        id: Some(b.id),
+    };
+    match edit {
+        TextEdit::Remove { id } => vec![Edit::RemoveBox { id: *id }],
+        TextEdit::Add { object } => vec![add(object)],
+        TextEdit::Move { id, center_m, yaw_rad } => vec![Edit::MoveBox {
+            id: *id,
+            center_m: Some(*center_m),
+            yaw_deg: Some(yaw_rad.to_degrees()),
+            size_m: None,
+        }],
+        TextEdit::Replace { id, object } => vec![Edit::RemoveBox { id: *id }, add(object)],
+        TextEdit::Style { prompt } => vec![Edit::SetPrompt { prompt: prompt.clone() }],
+    }
+}
+
+/// What was left out or could not be met, in words, one line each.
+pub fn shortfalls(description: &Description, made: &Made) -> Vec<String> {
+    let mut out = Vec::new();
+    for (o, nodes) in description.foreground.iter().zip(&made.graphed.nodes) {
+        let left: Vec<&String> = made
+            .placement
+            .left_out
+            .iter()
+            .filter(|(id, _)| nodes.contains(id))
+            .map(|(_, why)| why)
+            .collect();
+        let beyond = (o.count.n as usize).saturating_sub(nodes.len());
+        if let Some(why) = left.first() {
+            let placed = nodes.len() - left.len();
+            out.push(format!("{}: {placed} of {} placed: {why}", o.noun, o.count.n));
+        } else if beyond > 0 {
+            out.push(format!("{}: {} of {} placed", o.noun, nodes.len(), o.count.n));
+        }
+    }
+    for (i, o) in description.foreground.iter().enumerate() {
+        let far = o.relations.iter().filter_map(|r| r.distance_m).find(|d| *d > 40.0);
+        if let Some(d) = far {
+            out.push(format!("{}: {d:.0} m lies outside the scene, which reaches 40 m from the ego vehicle", o.noun));
+        }
+        let nodes = &made.graphed.nodes[i];
+        let mut names: Vec<&str> = made
+            .placement
+            .unmet
+            .iter()
+            .map(|k| &made.graphed.graph.edges[*k])
+            .filter(|e| nodes.contains(&e.from))
+            .map(|e| e.relation.name())
+            .collect();
+        names.dedup();
+        if !names.is_empty() {
+            out.push(format!("{}: could not be met: {}", o.noun, names.join(", ").replace('_', " ")));
+        }
+    }
+    out.extend(made.road.missing.iter().cloned());
+    out
+}
+

@@ -1,0 +1,185 @@
+//! Mentions to the description: parts of groups, both sides, contradictions, phrases.
+
+use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Stated};
+use super::mention::Mention;
+use super::tokens::Span;
+use crate::scene::Class;
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
+
+/// Largest number that is tried for one mention.
+pub const MOST_OF_ONE: u32 = 400;
+
+fn split_sides(mentions: &mut Vec<Mention>) {
+    for i in 0..mentions.len() {
+        let Some(each) = mentions[i].both.take() else {
+            continue;
+        };
+        let total = mentions[i].spec.count;
+        let (left, right) = if each {
+            (total.n, total.n)
+        } else {
+            (total.n.div_ceil(2), total.n / 2)
+        };
+        let part = |n: u32| {
+            if total.is_exact() {
+                Count::exactly(n)
+            } else {
+                Count::about(total.min.div_ceil(2).min(n), n, total.max)
+            }
+        };
+        let mut other = mentions[i].clone();
+        let (span, class, state) = (other.spec.span, other.spec.class, other.spec.state);
+        mentions[i].spec.count = part(left);
+        other.spec.count = part(right);
+        for (spec, is_left) in [(&mut mentions[i].spec, true), (&mut other.spec, false)] {
+            add_side(spec, is_left, class, state, span);
+        }
+        mentions.push(other);
+    }
+}
+
+fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<ObjectState>, span: Span) {
+    let mut push = |relation, anchor| {
+        spec.relations.push(Stated {
+            relation,
+            anchor,
+            and: None,
+            distance_m: None,
+            span,
+        });
+    };
+    push(if left { RelationKind::LeftOf } else { RelationKind::RightOf }, Anchor::Ego);
+    let strip = match (class == Class::Pedestrian, left) {
+        (true, true) => LaneRole::LeftSidewalk,
+        (true, false) => LaneRole::RightSidewalk,
+        (false, true) => LaneRole::LeftRoadside,
+        (false, false) => LaneRole::RightRoadside,
+    };
+    if class == Class::Pedestrian {
+        push(RelationKind::On, Anchor::Lane(strip));
+    } else if state == Some(ObjectState::Parked) {
+        push(RelationKind::ParkedOn, Anchor::Lane(strip));
+    }
+}
+
+/// Fills the description and the phrases of objects.
+pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
+    split_sides(mentions);
+    // Works next to cones that were counted keep to the count.
+    let counted: Vec<Class> = mentions.iter().filter(|m| !m.uncounted && !m.gone).map(|m| m.spec.class).collect();
+    let works: Vec<Span> = mentions
+        .windows(3)
+        .filter(|w| w.iter().all(|m| m.spec.span == w[0].spec.span) && w[0].spec.class == Class::TrafficCone)
+        .map(|w| w[0].spec.span)
+        .collect();
+    for m in mentions.iter_mut() {
+        if works.contains(&m.spec.span) && counted.contains(&m.spec.class) {
+            m.gone = true;
+        }
+    }
+    let mut index = vec![None; mentions.len()];
+    let mut next = 0;
+    for (i, m) in mentions.iter().enumerate() {
+        if !m.gone && m.spec.count.n > 0 {
+            index[i] = Some(next);
+            next += 1;
+        }
+    }
+    // A group that its parts used up is represented by the first of them.
+    let stand_in = |i: usize| -> Option<usize> {
+        index.get(i).copied().flatten().or_else(|| {
+            let noun = &mentions.get(i)?.spec.noun;
+            (0..mentions.len()).find(|&j| mentions[j].spec.noun == *noun && index[j].is_some()).and_then(|j| index[j])
+        })
+    };
+    let renumber = |a: Anchor| match a {
+        Anchor::Object(i) => stand_in(i).map(Anchor::Object),
+        other => Some(other),
+    };
+    let mut foreground: Vec<ObjectSpec> = Vec::new();
+    for (i, m) in mentions.iter().enumerate() {
+        let Some(own) = index[i] else {
+            continue;
+        };
+        let mut spec = m.spec.clone();
+        spec.relations = spec
+            .relations
+            .iter()
+            .filter_map(|r| {
+                let anchor = renumber(r.anchor)?;
+                let and = match r.and {
+                    Some(a) => Some(renumber(a)?),
+                    None => None,
+                };
+                (anchor != Anchor::Object(own)).then_some(Stated {
+                    anchor,
+                    and,
+                    ..r.clone()
+                })
+            })
+            .collect();
+        if spec.count.n > MOST_OF_ONE {
+            reading
+                .notes
+                .push(format!("{} {} were asked for: at most {MOST_OF_ONE} are tried", spec.count.n, spec.noun));
+        }
+        if m.classes.len() > 1 && m.classes[0] == Class::Car && spec.count.n > 1 && m.spec.noun != "vehicle" && !m.spec.noun.starts_with("traffic") {
+            reading.notes.push(format!("{} are placed as cars", spec.noun));
+        }
+        if let Some(color) = &spec.color {
+            reading.notes.push(format!("boxes have no colour: {color} is kept in words only"));
+        }
+        foreground.push(spec);
+    }
+    reading.notes.dedup();
+    // "no cars and three cars": what is there wins, and it is said.
+    let mut kept = Vec::new();
+    for a in std::mem::take(&mut reading.description.absent) {
+        let clash = foreground.iter().find(|o| {
+            let states = a.state.is_none() || o.state == a.state;
+            states && a.classes.len() <= 2 && a.classes.contains(&o.class)
+        });
+        if let Some(o) = clash {
+            reading.notes.push(format!(
+                "contradiction: {:?} and {:?}: {} {} are placed",
+                a.span.of(prompt),
+                o.span.of(prompt),
+                o.count.n,
+                o.noun
+            ));
+        }
+        kept.push(a);
+    }
+    reading.description.absent = kept;
+    for (i, o) in foreground.iter().enumerate() {
+        let count = if o.count.is_exact() {
+            o.count.n.to_string()
+        } else {
+            format!("about {}", o.count.n)
+        };
+        let state = o.state.map_or("", |s| match s {
+            ObjectState::Moving => ", moving",
+            ObjectState::Parked => ", parked",
+            ObjectState::Waiting => ", waiting",
+        });
+        let colour = o.color.as_ref().map_or(String::new(), |c| format!(", {c}"));
+        reading.phrases.push(Phrase {
+            span: o.span,
+            text: o.span.of(prompt).to_string(),
+            became: Became::Object(i),
+            meaning: format!("{count} x {}{state}{colour}", o.class.label()),
+        });
+        for (k, r) in o.relations.iter().enumerate() {
+            let far = r.distance_m.map_or(String::new(), |d| format!(" ({d:.1} m)"));
+            reading.phrases.push(Phrase {
+                span: r.span,
+                text: r.span.of(prompt).to_string(),
+                became: Became::Relation { object: i, index: k },
+                meaning: format!("{} {:?}{far}", r.relation.name().replace('_', " "), r.anchor),
+            });
+        }
+    }
+    reading.phrases.sort_by_key(|p| (p.span.start, p.span.end));
+    reading.description.foreground = foreground;
+    reading.description.summarise();
+}

@@ -1,0 +1,22 @@
+//! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
+
+pub mod description;
+pub mod edit;
+mod edit_grammar;
+pub mod holds;
+pub mod lanes;
+pub mod lexicon;
+mod finish;
+mod mention;
+pub mod parse;
+pub mod place;
+pub mod road;
+mod select;
+mod spots;
+pub mod tag;
+pub mod to_graph;
+pub mod tokens;
+mod words;
+
+pub use description::{Description, Reading};
+pub use parse::read;

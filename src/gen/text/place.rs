@@ -1,0 +1,367 @@
+//! Constructive placement: every object takes the best free place that its relations allow, most bound ones first;
+//! several orders are tried and the best is kept. Deterministic per seed. What does not fit is left out and named.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use super::holds::{Target, ego, holds, overlap_m};
+use super::lanes::{LaneMap, REACH_M};
+use super::spots::{Spot, spots};
+use crate::generation::world::draw::Draw;
+use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint};
+use crate::scene::raster::box_cells;
+use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+
+/// Orders that are tried while something is left out or a relation broken.
+const ATTEMPTS: u64 = 5;
+/// Boxes beyond this many are not tried: the scene is full long before.
+const MOST_BOXES: usize = 300;
+
+/// A placement.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Boxes; the id of each is that of its node.
+    pub boxes: Vec<SceneBox>,
+    /// Nodes that found no place, with the reason.
+    pub left_out: Vec<(u32, String)>,
+    /// Indices of statements that do not hold.
+    pub unmet: Vec<usize>,
+}
+
+/// Boxes for the objects of a graph on a layout.
+pub fn place(graph: &SceneGraph, layout: &BevLayout, seed: u64) -> Vec<SceneBox> {
+    place_with(graph, layout, seed, &BTreeMap::new(), &[]).boxes
+}
+
+/// The same with usual sizes of nodes (length, width, height, m), around boxes that belong to no node; locked boxes stay.
+pub fn place_with(
+    graph: &SceneGraph,
+    layout: &BevLayout,
+    seed: u64,
+    sizes_m: &BTreeMap<u32, [f64; 3]>,
+    others: &[SceneBox],
+) -> Placement {
+    let map = LaneMap::new(layout);
+    let mut best: Option<Placement> = None;
+    for attempt in 0..ATTEMPTS {
+        let mut placer = Placer {
+            graph,
+            map: &map,
+            draw: Draw::new(seed.wrapping_add(attempt.wrapping_mul(0x9e37)), "text place"),
+            sizes_m,
+            placed: BTreeMap::new(),
+            others,
+        };
+        let found = placer.run();
+        let cost = |p: &Placement| p.left_out.len() * 4 + p.unmet.len();
+        let full = found.boxes.len() > 60; // more orders help nothing in a crowd
+        if best.as_ref().is_none_or(|b| cost(&found) < cost(b)) {
+            best = Some(found);
+        }
+        if full || best.as_ref().is_some_and(|b| cost(b) == 0) {
+            break;
+        }
+    }
+    best.unwrap_or_default()
+}
+
+struct Placer<'a> {
+    graph: &'a SceneGraph,
+    map: &'a LaneMap<'a>,
+    draw: Draw,
+    sizes_m: &'a BTreeMap<u32, [f64; 3]>,
+    placed: BTreeMap<u32, SceneBox>,
+    others: &'a [SceneBox],
+}
+
+impl Placer<'_> {
+    fn run(&mut self) -> Placement {
+        let mut out = Placement::default();
+        for node in &self.graph.nodes {
+            if let Some(Locked::Box(b)) = node.locked {
+                self.placed.insert(node.id, SceneBox { id: BoxId(node.id), ..b });
+            }
+        }
+        let mut edges_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, e) in self.graph.edges.iter().enumerate() {
+            edges_of.entry(e.from).or_default().push(i);
+        }
+        let none = Vec::new();
+        let mut full: std::collections::BTreeSet<String> = std::collections::BTreeSet::new();
+        for id in self.order(&edges_of) {
+            let Some(object) = self.graph.object(id) else {
+                continue;
+            };
+            if self.placed.len() >= MOST_BOXES {
+                out.left_out.push((id, "the scene is full".into()));
+                continue;
+            }
+            let edges = edges_of.get(&id).unwrap_or(&none);
+            // What found no room for its twin finds none either.
+            let kind = format!(
+                "{object:?} {:?}",
+                edges.iter().map(|e| (self.graph.edges[*e].relation, self.graph.edges[*e].to)).collect::<Vec<_>>()
+            );
+            if full.contains(&kind) {
+                out.left_out.push((id, "no room is left where it should stand".into()));
+                continue;
+            }
+            match self.best(id, object, edges) {
+                Some(b) => {
+                    self.placed.insert(id, b);
+                }
+                None => {
+                    full.insert(kind);
+                    out.left_out.push((id, "no room is left where it should stand".into()));
+                }
+            }
+        }
+        for (i, e) in self.graph.edges.iter().enumerate() {
+            if let Some(b) = self.placed.get(&e.from)
+                && !self.edge_holds(e, b)
+            {
+                out.unmet.push(i);
+            }
+        }
+        out.boxes = self.placed.values().copied().collect();
+        out
+    }
+
+    /// Ids: anchors before what refers to them, then the most bound and the longest first.
+    fn order(&mut self, edges_of: &BTreeMap<u32, Vec<usize>>) -> Vec<u32> {
+        let mut waiting: Vec<(u32, f64)> = Vec::new();
+        for (id, o) in self.graph.objects() {
+            if self.placed.contains_key(&id) {
+                continue;
+            }
+            let bound = edges_of.get(&id).map_or(0, Vec::len) as f64;
+            let distance = edges_of
+                .get(&id)
+                .is_some_and(|e| e.iter().any(|i| self.graph.edges[*i].distance_m.is_some()));
+            let length = o.class.typical_size_m().map_or(1.0, |s| s[0]);
+            waiting.push((id, bound * 3.0 + length / 4.0 + if distance { 6.0 } else { 0.0 } + self.draw.unit() * 2.0));
+        }
+        waiting.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut order: Vec<u32> = Vec::new();
+        let mut done: std::collections::BTreeSet<u32> = self.placed.keys().copied().collect();
+        let objects: std::collections::BTreeSet<u32> = self.graph.objects().map(|o| o.0).collect();
+        let mut queue: std::collections::VecDeque<u32> = waiting.iter().map(|w| w.0).collect();
+        let mut stuck = 0;
+        while let Some(id) = queue.pop_front() {
+            let needs = edges_of.get(&id).into_iter().flatten().flat_map(|i| {
+                let e = &self.graph.edges[*i];
+                [Some(e.to), e.and].into_iter().flatten()
+            });
+            let ready = needs.filter(|n| objects.contains(n)).all(|n| done.contains(&n));
+            if ready || stuck > queue.len() {
+                order.push(id);
+                done.insert(id);
+                stuck = 0;
+            } else {
+                queue.push_back(id);
+                stuck += 1;
+            }
+        }
+        order
+    }
+
+    fn target(&self, id: u32) -> Option<Target> {
+        Some(match &self.graph.node(id)?.kind {
+            NodeKind::Ego => Target::Thing(ego()),
+            NodeKind::Object(_) => Target::Thing(*self.placed.get(&id)?),
+            NodeKind::Lane { role, .. } => Target::Lane(*role),
+            NodeKind::Crossing { .. } => Target::Crossing,
+            NodeKind::Junction => Target::Junction,
+        })
+    }
+
+    fn edge_holds(&self, e: &Edge, b: &SceneBox) -> bool {
+        let Some(to) = self.target(e.to) else {
+            return false;
+        };
+        let and = e.and.and_then(|id| match self.target(id)? {
+            Target::Thing(b) => Some(b),
+            _ => None,
+        });
+        holds(self.map, e.relation, b, &to, and.as_ref(), e.distance_m)
+    }
+
+    fn size(&mut self, id: u32, o: &ObjectNode) -> DVec3 {
+        let typical = self.sizes_m.get(&id).copied().or(o.class.typical_size_m()).unwrap_or([1.0; 3]);
+        let factor = match o.size {
+            Some(SizeHint::Large) => 1.18,
+            Some(SizeHint::Small) => 0.85,
+            None => 1.0,
+        };
+        let d = &mut self.draw;
+        let spread = DVec3::new(d.range(0.95, 1.05), d.range(0.97, 1.03), d.range(0.95, 1.05));
+        DVec3::from_array(typical) * spread * DVec3::new(factor, 1.0 + (factor - 1.0) / 3.0, factor)
+    }
+
+    fn speed(&mut self, o: &ObjectNode, spot: &Spot) -> f64 {
+        let still = spot.still || matches!(o.state, Some(ObjectState::Parked | ObjectState::Waiting));
+        let moves = o.state == Some(ObjectState::Moving) || spot.moves;
+        if (still && !spot.moves) || matches!(o.class, Class::TrafficCone | Class::Barrier) {
+            return 0.0;
+        }
+        match o.class {
+            Class::Pedestrian if moves => self.draw.range(0.9, 1.8),
+            Class::Pedestrian => if self.draw.chance(0.5) { self.draw.range(0.7, 1.6) } else { 0.0 },
+            Class::Bicycle => self.draw.range(2.5, 6.0),
+            Class::ConstructionVehicle | Class::Trailer if !moves => 0.0,
+            _ if moves || self.draw.chance(0.8) => self.draw.range(3.0, 12.0),
+            _ => 0.0,
+        }
+    }
+
+    fn best(&mut self, id: u32, o: &ObjectNode, edges: &[usize]) -> Option<SceneBox> {
+        let size_m = self.size(id, o);
+        let stated: Vec<(Edge, Option<Target>)> = edges
+            .iter()
+            .map(|i| self.graph.edges[*i])
+            .map(|e| (e, self.target(e.to)))
+            .collect();
+        let candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
+        let siblings: Vec<DVec2> = self.siblings(id, o, edges);
+        // A rough cost first; the costly tests only for those that could win.
+        let mut ranked: Vec<(f64, usize)> = Vec::with_capacity(candidates.len());
+        for (i, s) in candidates.iter().enumerate() {
+            let far = s.p.length();
+            let mut cost = s.cost + 0.02 * (far - 14.0).abs() + self.draw.unit() * 1.2;
+            if let Some(near) = siblings.iter().map(|q| q.distance(s.p)).min_by(f64::total_cmp) {
+                cost += match o.class {
+                    Class::TrafficCone | Class::Barrier => 0.5 * near,
+                    _ => 0.02 * near,
+                };
+            }
+            // "Left" at its plainest is beside.
+            let beside = stated.iter().any(|(e, t)| {
+                let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+                ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
+            });
+            if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
+                cost += 1.5 + 0.03 * s.p.x.abs();
+            }
+            if edges.is_empty() && s.p.x < -2.0 {
+                cost += 0.8; // what is simply there is seen rather ahead
+            }
+            ranked.push((cost, i));
+        }
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best: Option<(f64, SceneBox)> = None;
+        for (cost, i) in ranked {
+            if best.as_ref().is_some_and(|b| b.0 <= cost) {
+                break;
+            }
+            let spot = &candidates[i];
+            let mut b = SceneBox {
+                id: BoxId(id),
+                class: o.class,
+                center_m: spot.p.extend(size_m.z / 2.0),
+                size_m,
+                yaw_rad: spot.yaw_rad,
+                velocity_mps: DVec2::ZERO,
+            };
+            if !self.fits(&b, o.class, spot) {
+                continue;
+            }
+            let speed = if spot.moves { 2.0 } else { 0.0 };
+            b.velocity_mps = b.heading() * speed;
+            let broken = stated
+                .iter()
+                .filter(|(e, _)| !self.edge_holds(e, &b))
+                .count();
+            if broken == 0 {
+                b.velocity_mps = DVec2::ZERO;
+                best = Some((cost, b));
+                let speed = self.speed(o, spot);
+                if let Some((_, b)) = &mut best {
+                    b.velocity_mps = b.heading() * speed;
+                }
+                break;
+            }
+            let total = cost + 40.0 * broken as f64;
+            if best.as_ref().is_none_or(|b| total < b.0) {
+                best = Some((total, b));
+            }
+        }
+        // Several in one lane: a place that breaks what was said is none.
+        let broken = |b: &SceneBox| stated.iter().filter(|(e, _)| !self.edge_holds(e, b)).count();
+        match best {
+            Some((_, b)) if broken(&b) > 0 && !siblings.is_empty() => None,
+            Some((_, b)) => Some(b),
+            None => None,
+        }
+    }
+
+    /// Where boxes that the same was said of stand.
+    fn siblings(&self, id: u32, o: &ObjectNode, edges: &[usize]) -> Vec<DVec2> {
+        let said = |i: &[usize]| i.iter().map(|k| (self.graph.edges[*k].relation, self.graph.edges[*k].to)).collect::<Vec<_>>();
+        let own = said(edges);
+        self.placed
+            .iter()
+            .filter(|(other, b)| **other != id && b.class == o.class)
+            .filter(|(other, _)| {
+                let theirs: Vec<usize> = self
+                    .graph
+                    .edges
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, e)| e.from == **other)
+                    .map(|(i, _)| i)
+                    .collect();
+                said(&theirs) == own
+            })
+            .map(|(_, b)| b.center_m.truncate())
+            .collect()
+    }
+
+    fn fits(&self, b: &SceneBox, class: Class, spot: &Spot) -> bool {
+        let inside = b.footprint().iter().all(|c| c.abs().max_element() < REACH_M + 0.6);
+        if !inside {
+            return false;
+        }
+        let vehicle = class.is_vehicle() || class == Class::Motorcycle;
+        let surface = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+        let walk = BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
+        let mut on = true;
+        let allowed = match class {
+            _ if vehicle => surface,
+            Class::Pedestrian if !spot.anywhere => walk | if spot.on_road { surface } else { 0 },
+            Class::Bicycle if !spot.anywhere => surface | walk,
+            _ => u32::MAX,
+        };
+        if allowed != u32::MAX {
+            box_cells(b, 0.0, |x, y| on &= self.map.layout.cell(x, y) & allowed != 0);
+        }
+        if !on {
+            return false;
+        }
+        let margin = |other: Class| match (class, other) {
+            (Class::TrafficCone | Class::Barrier, Class::TrafficCone | Class::Barrier) => 0.15,
+            (Class::Pedestrian, _) | (_, Class::Pedestrian) => 0.3,
+            (Class::TrafficCone | Class::Barrier, _) | (_, Class::TrafficCone | Class::Barrier) => 0.4,
+            _ => 0.7,
+        };
+        let reach = b.size_m.truncate().length() / 2.0;
+        let clear = |o: &SceneBox| {
+            let far = (o.center_m - b.center_m).truncate().length() > reach + o.size_m.truncate().length() / 2.0 + 1.0;
+            far || overlap_m(b, o, margin(o.class)) <= 0.0
+        };
+        let mut keep = ego();
+        keep.center_m.x = 1.6;
+        keep.size_m = DVec3::new(7.0, 2.6, 1.6);
+        clear(&keep) && self.placed.values().all(clear) && self.others.iter().all(clear)
+    }
+}
+
+/// True if the relation binds an object to a lane role that only holds for standing things.
+pub(super) fn stands(relation: RelationKind) -> bool {
+    matches!(relation, RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking)
+}
+
+/// Roles beside the lanes.
+pub(super) fn is_roadside(role: LaneRole) -> bool {
+    matches!(role, LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside)
+}

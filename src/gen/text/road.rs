@@ -1,0 +1,135 @@
+//! Which road a description gets: a template and the seed whose variation has what is asked for.
+
+use super::description::{Description, Environment, Road};
+use super::lanes::LaneMap;
+use super::to_graph::roles;
+use crate::generation::world::draw::hash;
+use crate::generation::world::template;
+use crate::scene::graph::{LaneRole, NodeKind, ObjectState, RelationKind, SceneGraph};
+use crate::scene::{BevLayer, BevLayout};
+
+/// A chosen road.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Template.
+    pub template: &'static str,
+    /// The layout.
+    pub layout: BevLayout,
+    /// What was asked for and could not be had.
+    pub missing: Vec<String>,
+}
+
+/// Variations tried of a template.
+const TRIES: u64 = 24;
+
+/// A road for a description and its graph.
+pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
+    let needs = roles(graph);
+    let junction = graph.nodes.iter().any(|n| n.kind == NodeKind::Junction);
+    let kind = d.road.kind.unwrap_or(match d.environment {
+        _ if junction => Road::Intersection,
+        _ if needs.contains(&LaneRole::Carpark) => Road::Parking,
+        _ if needs.contains(&LaneRole::Cross) => Road::Intersection,
+        Some(Environment::Highway) => Road::Highway,
+        Some(Environment::Suburban | Environment::Residential | Environment::Rural) => Road::Suburb,
+        _ => Road::Straight,
+    });
+    // A crossing, a car park, a sidewalk: some templates never have them.
+    let needs_people_room = d.road.crossing || d.road.sidewalk;
+    let kind = match kind {
+        Road::Highway | Road::Curve | Road::Roundabout if d.road.crossing => {
+            if d.road.kind == Some(Road::Highway) { Road::Highway } else { kind }
+        }
+        Road::Suburb if needs.contains(&LaneRole::Left) || needs.contains(&LaneRole::Right) => Road::Straight,
+        k => k,
+    };
+    let _ = needs_people_room;
+    let name = template::TEMPLATES.iter().copied().find(|t| *t == kind.name()).unwrap_or("straight");
+    let parked = graph.objects().any(|(_, o)| o.state == Some(ObjectState::Parked))
+        || graph.edges.iter().any(|e| e.relation == RelationKind::ParkedOn);
+    let mut best: Option<(usize, Chosen)> = None;
+    for k in 0..TRIES {
+        let Some(layout) = template::layout(name, hash(seed ^ (k << 40)).wrapping_add(seed)) else {
+            continue;
+        };
+        let (missing, wishes) = judge(d, &needs, junction, parked, graph.nodes.len(), &layout);
+        let cost = missing.len() * 10 + wishes;
+        if best.as_ref().is_none_or(|(c, _)| cost < *c) {
+            let done = cost == 0;
+            best = Some((
+                cost,
+                Chosen {
+                    template: name,
+                    layout,
+                    missing,
+                },
+            ));
+            if done {
+                break;
+            }
+        }
+    }
+    best.map_or_else(
+        || Chosen {
+            template: name,
+            layout: BevLayout::default(),
+            missing: vec!["no template".into()],
+        },
+        |b| b.1,
+    )
+}
+
+/// What a layout lacks, in words, and how many softer wishes it leaves open.
+fn judge(d: &Description, needs: &[LaneRole], junction: bool, parked: bool, nodes: usize, layout: &BevLayout) -> (Vec<String>, usize) {
+    let map = LaneMap::new(layout);
+    let mut missing = Vec::new();
+    let mut wishes = 0;
+    let role = |r: LaneRole| map.points.iter().filter(|p| p.role == r && p.p.length() < 35.0).count();
+    let mut lack = |there: bool, what: &str| {
+        if !there {
+            missing.push(format!("no {what} on this kind of road"));
+        }
+    };
+    let walkway = layout.count(BevLayer::Walkway);
+    for need in needs {
+        match need {
+            LaneRole::Left => lack(role(LaneRole::Left) > 8, "lane to the left"),
+            LaneRole::Right => lack(role(LaneRole::Right) > 8, "lane to the right"),
+            LaneRole::Oncoming => lack(role(LaneRole::Oncoming) > 8, "oncoming lane"),
+            LaneRole::Cross => lack(role(LaneRole::Cross) > 4, "cross street"),
+            LaneRole::Carpark => lack(layout.count(BevLayer::CarparkArea) > 200, "car park"),
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk => lack(walkway > 500, "sidewalk"),
+            _ => {}
+        }
+    }
+    if d.road.sidewalk {
+        lack(walkway > 500, "sidewalk");
+    }
+    if d.road.crossing {
+        let ahead = map.crossing().is_some_and(|c| c.iter().all(|p| p.x > 4.0 && p.abs().max_element() < 38.0));
+        lack(ahead, "crossing ahead");
+    }
+    if junction {
+        lack(map.junction.is_some(), "junction");
+    }
+    if d.road.no_crossing {
+        lack(map.crossings.is_empty(), "way to leave crossings out");
+    }
+    if d.road.no_sidewalk {
+        lack(walkway == 0, "way to leave sidewalks out");
+    }
+    if d.road.one_way && d.road.kind != Some(Road::Roundabout) {
+        lack(role(LaneRole::Oncoming) == 0, "one-way variation");
+    }
+    if let Some(lanes) = d.road.lanes {
+        let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
+        wishes += usize::from((lanes as usize).div_ceil(2) != forward);
+    }
+    let people = d.foreground.iter().any(|o| o.class == crate::scene::Class::Pedestrian);
+    wishes += usize::from(people && walkway < 500);
+    // Many objects need room.
+    wishes += usize::from(nodes > 10 && role(LaneRole::Left) + role(LaneRole::Right) < 8);
+    let strip = layout.count(BevLayer::CarparkArea);
+    wishes += usize::from(parked && strip < 300);
+    (missing, wishes)
+}

@@ -1,0 +1,206 @@
+//! Which boxes of a scene the words mean.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::description::Anchor;
+use super::holds::{Target, ego, holds};
+use super::lanes::LaneMap;
+use super::mention::Mention;
+use super::words::edits::Pick;
+use crate::scene::graph::{ObjectState, RelationKind};
+use crate::scene::{BevLayer, BoxId, SceneBox};
+
+/// A box that a question names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Its id.
+    pub id: BoxId,
+    /// Its class.
+    pub class: &'static str,
+    /// Where it stands, in words.
+    pub place: String,
+}
+
+/// What a mention means in a scene.
+pub enum Chosen {
+    /// These.
+    These(Vec<BoxId>),
+    /// No box fits.
+    None(String),
+    /// Fewer than were named.
+    TooFew {
+        /// The words.
+        what: String,
+        /// That fit.
+        found: usize,
+        /// That were named.
+        wanted: usize,
+    },
+    /// One is meant and several fit.
+    Several {
+        /// The words.
+        what: String,
+        /// All that fit.
+        candidates: Vec<Candidate>,
+    },
+}
+
+/// Where a box is, in words: `12 m ahead, 3 m left, parked`.
+pub fn where_is(map: &LaneMap<'_>, b: &SceneBox) -> Candidate {
+    let (x, y) = (b.center_m.x, b.center_m.y);
+    let along = if x >= 0.0 { "ahead" } else { "behind" };
+    let across = match y {
+        y if y > 0.5 => format!(", {y:.0} m left"),
+        y if y < -0.5 => format!(", {:.0} m right", -y),
+        _ => String::new(),
+    };
+    let doing = match b.velocity_mps.length() {
+        v if v > 0.5 => ", moving",
+        _ if state_of(map, b, ObjectState::Parked) && (b.class.is_vehicle()) => ", parked",
+        _ => ", standing",
+    };
+    Candidate {
+        id: b.id,
+        class: b.class.name(),
+        place: format!("{:.0} m {along}{across}{doing}", x.abs()),
+    }
+}
+
+/// True if a box may be said to move, to wait or to be parked.
+pub fn state_of(map: &LaneMap<'_>, b: &SceneBox, state: ObjectState) -> bool {
+    let stands = b.velocity_mps.length() < 0.5;
+    let p = b.center_m.truncate();
+    match state {
+        ObjectState::Moving => !stands,
+        ObjectState::Waiting => stands,
+        // Parked: standing, and not in the middle of a lane.
+        ObjectState::Parked => {
+            let off = map.nearest(p).map_or(f64::INFINITY, |l| l.dir.perp_dot(p - l.p).abs().max(l.p.distance(p) - 1.0));
+            stands && (off > 0.7 || map.has(BevLayer::CarparkArea.bit(), p))
+        }
+    }
+}
+
+/// Ids of the boxes that fit class, state and relations of a mention.
+pub fn fitting(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Vec<BoxId> {
+    fitting_deep(map, boxes, m, all, 0)
+}
+
+fn fitting_deep(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention], depth: u8) -> Vec<BoxId> {
+    if let Some(id) = m.id {
+        return boxes.contains_key(&BoxId(id)).then_some(BoxId(id)).into_iter().collect();
+    }
+    let side = |kind: RelationKind, b: &SceneBox| match kind {
+        // In words a car 30 m ahead in the left lane is on the left.
+        RelationKind::LeftOf => Some(b.center_m.y > 1.0),
+        RelationKind::RightOf => Some(b.center_m.y < -1.0),
+        RelationKind::InFrontOf => Some(b.center_m.x > 3.0 && b.center_m.y.abs() < b.center_m.x.max(3.0)),
+        RelationKind::Behind => Some(b.center_m.x < -0.5 && b.center_m.y.abs() < (-b.center_m.x).max(3.0)),
+        _ => None,
+    };
+    let mut fit: Vec<&SceneBox> = boxes.values().filter(|b| m.classes.contains(&b.class)).collect();
+    // "vehicles" and the like mean every class of the list, a plain noun its own.
+    if let Some(state) = m.spec.state {
+        let strict: Vec<&SceneBox> = fit.iter().copied().filter(|b| state_of(map, b, state)).collect();
+        fit = strict;
+    }
+    for r in &m.spec.relations {
+        let targets: Vec<(Target, Option<SceneBox>)> = match r.anchor {
+            Anchor::Ego => vec![(Target::Thing(ego()), None)],
+            Anchor::Lane(role) => vec![(Target::Lane(role), None)],
+            Anchor::Crossing => vec![(Target::Crossing, None)],
+            Anchor::Junction => vec![(Target::Junction, None)],
+            Anchor::Object(i) if depth < 3 => {
+                let others = all.get(i).map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1));
+                let second = match r.and {
+                    Some(Anchor::Object(k)) => all.get(k).map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1)),
+                    _ => Vec::new(),
+                };
+                let mut pairs = Vec::new();
+                for id in &others {
+                    let b = boxes[id];
+                    if second.is_empty() {
+                        pairs.push((Target::Thing(b), r.and.map(|_| ego())));
+                    }
+                    pairs.extend(second.iter().map(|s| (Target::Thing(b), Some(boxes[s]))));
+                }
+                pairs
+            }
+            Anchor::Object(_) => Vec::new(),
+        };
+        fit.retain(|b| {
+            let to_ego = r.anchor == Anchor::Ego && r.distance_m.is_none();
+            match side(r.relation, b).filter(|_| to_ego) {
+                Some(held) => held,
+                None => targets
+                    .iter()
+                    .any(|(t, and)| !matches!(t, Target::Thing(o) if o.id == b.id) && holds(map, r.relation, b, t, and.as_ref(), r.distance_m)),
+            }
+        });
+    }
+    fit.into_iter().map(|b| b.id).collect()
+}
+
+/// Decides: all, a picked one, so many, or a question.
+pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Chosen {
+    let fit = fitting(map, boxes, m, all);
+    let state = m.spec.state.map_or("", |s| match s {
+        ObjectState::Moving => "moving ",
+        ObjectState::Parked => "parked ",
+        ObjectState::Waiting => "standing ",
+    });
+    let what = format!("{state}{}", m.spec.noun);
+    if fit.is_empty() {
+        return match m.id {
+            Some(id) => Chosen::None(format!("box {id}")),
+            None => Chosen::None(what),
+        };
+    }
+    let cost = |id: &BoxId, pick: Pick| {
+        let b = &boxes[id];
+        let p = b.center_m.truncate();
+        match pick {
+            Pick::Nearest => p.length(),
+            Pick::Farthest => -p.length(),
+            Pick::Leftmost => -p.y,
+            Pick::Rightmost => p.y,
+            Pick::Frontmost => -p.x,
+            Pick::Rearmost => p.x,
+            Pick::Largest => -(b.size_m.x * b.size_m.y * b.size_m.z),
+            Pick::Smallest => b.size_m.x * b.size_m.y * b.size_m.z,
+            Pick::All | Pick::Any | Pick::More => f64::from(id.0),
+        }
+    };
+    if let Some(pick) = m.pick
+        && pick != Pick::More
+    {
+        if pick == Pick::All {
+            return Chosen::These(fit);
+        }
+        let n = if m.uncounted { 1 } else { m.spec.count.n as usize };
+        let mut sorted = fit;
+        sorted.sort_by(|a, b| cost(a, pick).total_cmp(&cost(b, pick)));
+        sorted.truncate(n.max(1));
+        return Chosen::These(sorted);
+    }
+    let n = m.spec.count.n as usize;
+    if m.plural && m.uncounted {
+        return Chosen::These(fit); // "remove the cars"
+    }
+    if fit.len() <= n {
+        if fit.len() < n && !m.uncounted {
+            return Chosen::TooFew {
+                what,
+                found: fit.len(),
+                wanted: n,
+            };
+        }
+        return Chosen::These(fit);
+    }
+    Chosen::Several {
+        what: if m.plural { what } else { super::lexicon::plural(&what) },
+        candidates: fit.iter().map(|id| where_is(map, &boxes[id])).collect(),
+    }
+}

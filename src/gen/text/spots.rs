@@ -1,0 +1,478 @@
+//! Places that an object of a class may take: along lanes, at their edge, on sidewalks, crossings and car parks, and
+//! around what it was said to stand by.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DVec2, DVec3};
+
+use super::holds::{Target, course};
+use super::lanes::{LaneMap, REACH_M};
+use super::place::{is_roadside, stands};
+use crate::generation::world::draw::Draw;
+use crate::scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
+use crate::scene::{BevLayer, Class, GridSpec};
+
+/// A place to try.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// Centre, m.
+    pub p: DVec2,
+    /// Heading.
+    pub yaw_rad: f64,
+    /// How unusual it is, in the unit of the placer's cost.
+    pub cost: f64,
+    /// What stands here stands still.
+    pub still: bool,
+    /// What is here moves.
+    pub moves: bool,
+    /// People may be on the road here.
+    pub on_road: bool,
+    /// Any ground will do.
+    pub anywhere: bool,
+}
+
+struct Gather<'a, 'b> {
+    map: &'a LaneMap<'a>,
+    size_m: DVec3,
+    draw: &'b mut Draw,
+    out: Vec<Spot>,
+    base: Spot,
+    own_way: bool, // traffic of the ego's direction is meant
+}
+
+/// Places for an object with what was said of it (targets that are placed already).
+pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, Option<Target>)], draw: &mut Draw) -> Vec<Spot> {
+    let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
+    let lane_role = stated.iter().find_map(|(e, t)| match t {
+        Some(Target::Lane(role)) if matches!(e.relation, RelationKind::On | RelationKind::ParkedOn | RelationKind::Crossing | RelationKind::Blocking | RelationKind::Across) => {
+            Some((e.relation, *role))
+        }
+        _ => None,
+    });
+    let still = o.state.is_some_and(|s| s != ObjectState::Moving) || stated.iter().any(|(e, _)| stands(e.relation));
+    let moves = o.state == Some(ObjectState::Moving) || said(RelationKind::Crossing);
+    let mut g = Gather {
+        map,
+        size_m,
+        draw,
+        out: Vec::new(),
+        base: Spot {
+            p: DVec2::ZERO,
+            yaw_rad: 0.0,
+            cost: 0.0,
+            still,
+            moves: moves && !still,
+            on_road: false,
+            anywhere: false,
+        },
+        own_way: (said(RelationKind::InFrontOf) || said(RelationKind::Behind) || said(RelationKind::Blocking)) && !said(RelationKind::OppositeDirection) && !said(RelationKind::Facing),
+    };
+    let thing = stated.iter().find_map(|(e, t)| match t {
+        Some(Target::Thing(b)) => Some((e, *b)),
+        _ => None,
+    });
+    let near_thing = stated.iter().any(|(e, t)| {
+        matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX)
+            && !matches!(e.relation, RelationKind::FarFrom | RelationKind::Facing | RelationKind::FacingAway)
+    });
+    match o.class {
+        Class::Pedestrian => {
+            let crossing = said(RelationKind::Crossing) || stated.iter().any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
+            match lane_role {
+                _ if crossing => g.crossing_people(),
+                Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role)) if !is_walk(role) => {
+                    g.base.on_road = true;
+                    g.lanes(role, true);
+                }
+                _ => g.walks(),
+            }
+            if (near_thing || thing.is_some()) && !crossing {
+                g.base.anywhere = near_thing;
+                g.base.on_road = true;
+                g.base.cost += 1.5;
+                g.around(stated);
+                g.base.cost -= 1.5;
+            }
+            if g.out.is_empty() {
+                // No sidewalk here: the verge will do.
+                g.base.anywhere = true;
+                g.verge();
+            }
+        }
+        Class::TrafficCone | Class::Barrier => {
+            g.base.still = true;
+            g.base.moves = false;
+            match lane_role {
+                Some((RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across, role)) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
+                    g.across_lane(role, o.class);
+                }
+                Some((_, role)) if is_walk(role) => {
+                    g.base.anywhere = true;
+                    g.walks();
+                }
+                Some((_, role)) => g.edge(role),
+                None => {
+                    if said(RelationKind::Blocking) {
+                        g.across_lane(LaneRole::Ego, o.class);
+                    } else {
+                        g.edge(LaneRole::Roadside);
+                        g.base.cost = 0.8;
+                        g.across_lane(LaneRole::Road, o.class);
+                        g.base.cost = 0.0;
+                    }
+                }
+            }
+            if near_thing || g.out.is_empty() {
+                g.base.anywhere = true;
+                g.around(stated);
+            }
+        }
+        _ => g.vehicle(o, lane_role, stated, near_thing),
+    }
+    let mut out = g.out;
+    // The named way to look.
+    for (e, t) in stated {
+        let toward = match e.relation {
+            RelationKind::Facing => 0.0,
+            RelationKind::FacingAway => PI,
+            _ => continue,
+        };
+        let Some(Target::Thing(b)) = t else {
+            continue;
+        };
+        if o.class == Class::Pedestrian {
+            let at = if b.id.0 == u32::MAX { DVec2::ZERO } else { b.center_m.truncate() };
+            out.iter_mut().for_each(|s| s.yaw_rad = (at - s.p).to_angle() + toward);
+        }
+    }
+    out.retain(|s| s.p.abs().max_element() < REACH_M);
+    out
+}
+
+fn is_walk(role: LaneRole) -> bool {
+    matches!(role, LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+}
+
+impl Gather<'_, '_> {
+    fn push(&mut self, p: DVec2, yaw_rad: f64) {
+        self.out.push(Spot {
+            p,
+            yaw_rad,
+            ..self.base
+        });
+    }
+
+    fn vehicle(&mut self, o: &ObjectNode, lane_role: Option<(RelationKind, LaneRole)>, stated: &[(Edge, Option<Target>)], near_thing: bool) {
+        let parked = o.state == Some(ObjectState::Parked) || lane_role.is_some_and(|r| r.0 == RelationKind::ParkedOn);
+        let two_wheels = matches!(o.class, Class::Bicycle | Class::Motorcycle);
+        let across = lane_role.is_some_and(|(r, _)| matches!(r, RelationKind::Crossing | RelationKind::Across));
+        match lane_role {
+            Some((_, LaneRole::Carpark)) => self.carpark(),
+            Some((_, role)) if is_roadside(role) => self.edge(role),
+            Some((_, role)) if is_walk(role) && o.class == Class::Bicycle => self.walks(),
+            Some((_, role)) if across => {
+                self.crosswise(role);
+                self.lanes(LaneRole::Cross, false);
+            }
+            Some((RelationKind::ParkedOn, role)) => {
+                self.lanes(role, false);
+                self.edge(LaneRole::Roadside);
+            }
+            Some((relation, role)) => {
+                self.lanes(role, false);
+                if relation == RelationKind::Blocking {
+                    // A bus across the road blocks it too.
+                    self.base.cost += 1.0;
+                    self.crosswise(role);
+                    self.base.cost -= 1.0;
+                }
+            }
+            None if parked => {
+                self.edge(LaneRole::Roadside);
+                self.base.cost += 0.4;
+                self.carpark();
+                if stated.iter().any(|(e, _)| !matches!(e.relation, RelationKind::ParkedOn | RelationKind::On)) {
+                    self.base.cost += 1.6;
+                    self.lanes(LaneRole::Road, false);
+                    self.base.cost -= 1.6;
+                }
+                self.base.cost -= 0.4;
+            }
+            None => {
+                self.lanes(LaneRole::Road, false);
+                if two_wheels || o.state == Some(ObjectState::Waiting) || o.state.is_none() {
+                    self.base.cost += 1.5;
+                    self.edge(LaneRole::Roadside);
+                    self.base.cost -= 1.5;
+                }
+            }
+        }
+        if stated.iter().any(|(e, _)| e.relation == RelationKind::WaitingAt) {
+            self.lanes(LaneRole::Road, false);
+        }
+        if near_thing && (parked || two_wheels || self.base.still) {
+            self.base.cost += 2.0;
+            self.around(stated);
+            self.base.cost -= 2.0;
+        }
+    }
+
+    /// Along lanes, in their direction.
+    fn lanes(&mut self, role: LaneRole, people: bool) {
+        let from = self.out.len();
+        self.lanes_of(role, people);
+        if self.own_way {
+            // "ahead" and "behind" mean our side of the road unless more was said.
+            for s in &mut self.out[from..] {
+                s.cost += if s.yaw_rad.cos() < -0.3 { 4.0 } else { 0.0 };
+            }
+        }
+    }
+
+    fn lanes_of(&mut self, role: LaneRole, people: bool) {
+        let roadwide = matches!(role, LaneRole::Road);
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            if !roadwide && l.role != role {
+                continue;
+            }
+            // Traffic keeps to its lane; the ego's is kept free where nothing else was said.
+            let extra = if roadwide && l.role == LaneRole::Ego && l.p.length() < 9.0 { 1.5 } else { 0.0 };
+            let across = self.draw.range(-0.25, 0.25);
+            let yaw = l.dir.to_angle() + if people { self.draw.range(-PI, PI) } else { self.draw.range(-0.02, 0.02) };
+            let old = self.base.cost;
+            self.base.cost += extra;
+            self.push(l.p + l.dir.perp() * across, yaw);
+            if people {
+                for off in [-1.2, 1.2] {
+                    self.push(l.p + l.dir.perp() * off, yaw);
+                }
+            }
+            self.base.cost = old;
+        }
+        if matches!(role, LaneRole::Road) && self.map.points.is_empty() {
+            self.cells(BevLayer::DrivableArea.bit(), 2, |_| 0.0);
+        }
+    }
+
+    /// At the outer edge of the outermost lanes, in the direction of the lane.
+    fn edge(&mut self, role: LaneRole) {
+        let surface = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+        let half = self.size_m.y / 2.0;
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            if l.role == LaneRole::Cross && role != LaneRole::Roadside {
+                continue;
+            }
+            for side in [-1.0, 1.0] {
+                let out = l.dir.perp() * side;
+                // How far the surface goes on.
+                let mut reach = 0.0;
+                while reach < 7.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
+                    reach += 0.2;
+                }
+                let blocked = reach >= 7.4 || reach < half;
+                // Another lane lies between: not the outermost.
+                let inner = self.map.points.iter().any(|m| {
+                    let d = m.p - l.p;
+                    d.length_squared() < 36.0 && d.dot(out) > 2.0 && d.dot(l.dir).abs() < 1.0
+                });
+                if blocked || inner {
+                    continue;
+                }
+                let left = self.map.course(l.p + out * reach).is_some_and(|c| c.1 > 0.0);
+                let wanted = match role {
+                    LaneRole::LeftRoadside => left,
+                    LaneRole::RightRoadside => !left,
+                    _ => true,
+                };
+                if !wanted {
+                    continue;
+                }
+                let off = (reach - half - 0.15).max(0.0);
+                let crosses = matches!(l.role, LaneRole::Cross);
+                let old = self.base.cost;
+                self.base.cost += if crosses { 0.7 } else { 0.0 };
+                self.push(l.p + out * off, l.dir.to_angle());
+                self.base.cost = old;
+            }
+        }
+        if self.base.anywhere && self.out.is_empty() {
+            self.verge();
+        }
+    }
+
+    /// Across a lane, for cones and barriers: beside one another.
+    fn across_lane(&mut self, role: LaneRole, class: Class) {
+        let roadwide = matches!(role, LaneRole::Road);
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            if !(roadwide || l.role == role) || l.p.length() < 5.0 {
+                continue;
+            }
+            let offsets: &[f64] = if class == Class::Barrier { &[0.0] } else { &[0.0, -0.65, 0.65, -1.25, 1.25] };
+            let behind = if l.p.x < 0.0 { 1.0 } else { 0.0 };
+            for off in offsets {
+                let old = self.base.cost;
+                self.base.cost += behind;
+                self.push(l.p + l.dir.perp() * *off, l.dir.to_angle());
+                self.base.cost = old;
+            }
+        }
+    }
+
+    /// On the road, across the lane.
+    fn crosswise(&mut self, role: LaneRole) {
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            if !matches!(role, LaneRole::Road) && l.role != role {
+                continue;
+            }
+            for turn in [FRAC_PI_2, -FRAC_PI_2] {
+                for off in [0.0, 1.5, -1.5] {
+                    self.push(l.p + l.dir.perp() * off, l.dir.to_angle() + turn);
+                }
+            }
+        }
+    }
+
+    fn cells(&mut self, bits: u32, step: usize, yaw: impl Fn(DVec2) -> f64) {
+        for x in (0..GridSpec::NX).step_by(step) {
+            for y in (0..GridSpec::NY).step_by(step) {
+                if self.map.layout.cell(x, y) & bits != 0 {
+                    let p = GridSpec::center(x, y, 0).truncate();
+                    let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
+                    self.push(p + jitter, yaw(p));
+                }
+            }
+        }
+    }
+
+    fn walks(&mut self) {
+        let from = self.out.len();
+        self.cells(BevLayer::Walkway.bit(), 2, |_| 0.0);
+        for i in from..self.out.len() {
+            let lane = self.map.nearest(self.out[i].p).map_or(0.0, |l| l.dir.to_angle());
+            let turn = if self.base.still { -FRAC_PI_2 } else if self.draw.chance(0.5) { 0.0 } else { PI };
+            let jitter = self.draw.range(-0.2, 0.2);
+            self.out[i].yaw_rad = lane + turn + jitter;
+        }
+    }
+
+    fn crossing_people(&mut self) {
+        self.base.on_road = true;
+        // On a crossing if there is one, else right across the road.
+        for outline in &self.map.crossings {
+            let mid = outline.iter().sum::<DVec2>() / outline.len() as f64;
+            let long = outline
+                .iter()
+                .zip(outline.iter().cycle().skip(1))
+                .map(|(a, b)| *b - *a)
+                .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+                .unwrap_or(DVec2::Y);
+            let axis = long.normalize_or(DVec2::Y);
+            for k in -6..=6 {
+                for w in [-0.9, 0.0, 0.9] {
+                    let p = mid + axis * (long.length() / 2.0 * f64::from(k) / 7.0) + axis.perp() * w;
+                    for turn in [0.0, PI] {
+                        self.push(p, axis.to_angle() + turn);
+                    }
+                }
+            }
+        }
+        let old = self.base.cost;
+        self.base.cost += 1.0;
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            for turn in [FRAC_PI_2, -FRAC_PI_2] {
+                for off in [-1.3, 0.0, 1.3] {
+                    self.push(l.p + l.dir.perp() * off, l.dir.to_angle() + turn);
+                }
+            }
+        }
+        self.base.cost = old;
+    }
+
+    fn carpark(&mut self) {
+        let lot = BevLayer::CarparkArea.bit();
+        let from = self.out.len();
+        self.cells(lot, 2, |_| 0.0);
+        for i in from..self.out.len() {
+            let lane = self.map.nearest(self.out[i].p).map_or(0.0, |l| l.dir.to_angle());
+            let beside = self.map.nearest(self.out[i].p).is_some_and(|l| l.p.distance(self.out[i].p) < 6.5);
+            let turn = if beside { 0.0 } else { FRAC_PI_2 * (1.0 - 2.0 * self.draw.below(2) as f64) };
+            self.out[i].yaw_rad = lane + turn;
+        }
+    }
+
+    /// Beside the road where no sidewalk is.
+    fn verge(&mut self) {
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            for side in [-1.0, 1.0] {
+                let mut off = 2.0;
+                while off < 14.0 && self.map.has(BevLayer::DrivableArea.bit(), l.p + l.dir.perp() * side * off) {
+                    off += 0.4;
+                }
+                if off < 14.0 {
+                    self.push(l.p + l.dir.perp() * side * (off + 0.8), l.dir.to_angle());
+                }
+            }
+        }
+    }
+
+    /// Around the things that were named.
+    fn around(&mut self, stated: &[(Edge, Option<Target>)]) {
+        for (e, t) in stated {
+            let Some(Target::Thing(b)) = t else {
+                continue;
+            };
+            let center = b.center_m.truncate();
+            let axis = course(b);
+            let half = b.size_m / 2.0;
+            let own = self.size_m / 2.0;
+            let yaw = if b.class == Class::Pedestrian || matches!(b.class, Class::TrafficCone | Class::Barrier) {
+                self.map.nearest(center).map_or(0.0, |l| l.dir.to_angle())
+            } else {
+                axis.to_angle()
+            };
+            for along in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] {
+                for extra in [0.6, 1.2, 2.0, 3.0, 4.5] {
+                    let (fx, fy) = (half.x + own.x + extra, half.y + own.y + extra);
+                    for p in [
+                        center + axis * fx + axis.perp() * along * 0.5,
+                        center - axis * fx + axis.perp() * along * 0.5,
+                        center + axis.perp() * fy + axis * along,
+                        center - axis.perp() * fy + axis * along,
+                    ] {
+                        self.push(p, yaw);
+                    }
+                }
+            }
+            if let (RelationKind::Between, Some(other)) = (e.relation, e.and) {
+                let _ = other;
+            }
+            if let Some(d) = e.distance_m {
+                let origin = if b.id.0 == u32::MAX { DVec2::ZERO } else { center };
+                for k in 0..48 {
+                    let turn = DVec2::from_angle(f64::from(k) * PI / 24.0);
+                    self.push(origin + turn * d.min(80.0), yaw);
+                }
+            }
+        }
+        let things: Vec<DVec2> = stated
+            .iter()
+            .filter(|(e, _)| e.relation == RelationKind::Between)
+            .filter_map(|(_, t)| match t {
+                Some(Target::Thing(b)) => Some(b.center_m.truncate()),
+                _ => None,
+            })
+            .collect();
+        if let Some(a) = things.first() {
+            for k in 0..80 {
+                let turn = DVec2::from_angle(f64::from(k) * PI / 8.0);
+                self.push(*a + turn * (1.0 + f64::from(k) * 0.3), 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Tokens to senses: the longest run of words that the lexicon knows, read from left to right.
+
+use super::description::Count;
+use super::lexicon::{LONGEST, Sense, look_up, nearest};
+use super::tokens::{Span, Token, TokenKind};
+use super::words::places;
+
+/// What an item is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tag {
+    /// A run of words with a meaning.
+    Is(Sense),
+    /// Digits.
+    Number(f64),
+    /// A comma.
+    Comma,
+    /// The end of a sentence.
+    Stop,
+    /// A colon, a dash, a bracket.
+    Mark,
+    /// Not in the lexicon.
+    Unknown,
+}
+
+/// A run of tokens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// What it means.
+    pub tag: Tag,
+    /// Its words, as looked up.
+    pub words: String,
+    /// Where it stood.
+    pub span: Span,
+    /// What a misspelt word was taken for.
+    pub read_as: Option<&'static str>,
+}
+
+fn is_place_like(sense: Sense) -> bool {
+    matches!(sense, Sense::Place(..) | Sense::FarSide | Sense::BothSides(_))
+}
+
+/// Tags all tokens.
+pub fn tag(tokens: &[Token]) -> Vec<Item> {
+    let word = |i: usize| {
+        tokens
+            .get(i)
+            .filter(|t| matches!(t.kind, TokenKind::Word | TokenKind::Symbol))
+            .map(|t| t.text.as_str())
+    };
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let token = &tokens[i];
+        let plain = match token.kind {
+            TokenKind::Number(v) => Some(number(v, tokens.get(i + 1))),
+            TokenKind::Comma => Some(Tag::Comma),
+            TokenKind::Stop => Some(Tag::Stop),
+            TokenKind::Mark => Some(Tag::Mark),
+            TokenKind::Word | TokenKind::Symbol => None,
+        };
+        if let Some(tag) = plain {
+            out.push(Item {
+                tag,
+                words: token.text.clone(),
+                span: token.span,
+                read_as: None,
+            });
+            i += 1;
+            continue;
+        }
+        let run = |from: usize, n: usize| -> Option<String> {
+            let words: Option<Vec<&str>> = (from..from + n).map(word).collect();
+            words.map(|w| w.join(" "))
+        };
+        let found = (1..=LONGEST).rev().find_map(|n| {
+            let words = run(i, n)?;
+            let sense = look_up(&words)?;
+            // "on the left" must not tear "left lane" apart.
+            let torn = n > 1
+                && !is_place_like(sense)
+                && (i + 1..i + n).any(|from| {
+                    (i + n - from + 1..=LONGEST)
+                        .filter_map(|m| run(from, m))
+                        .any(|w| look_up(&w).is_some_and(is_place_like) && w.split(' ').next().is_some_and(is_side))
+                });
+            (!torn).then_some((n, words, sense))
+        });
+        let (n, words, tag, read_as) = match found {
+            Some((n, words, sense)) => (n, words, Tag::Is(sense), None),
+            None => {
+                let guess = nearest(&token.text);
+                let tag = guess.and_then(look_up).map_or(Tag::Unknown, Tag::Is);
+                (1, token.text.clone(), tag, guess)
+            }
+        };
+        out.push(Item {
+            tag,
+            words,
+            span: token.span.to(tokens[i + n - 1].span),
+            read_as,
+        });
+        i += n;
+    }
+    settle(out)
+}
+
+fn is_side(word: &str) -> bool {
+    let sides = places::LEFT.split('|').chain(places::RIGHT.split('|'));
+    sides.into_iter().any(|s| s.split(' ').next() == Some(word))
+}
+
+fn number(v: f64, _next: Option<&Token>) -> Tag {
+    Tag::Number(v)
+}
+
+/// Words whose sense hangs on their neighbours: "crossing", "pedestrian crossing", "parking", "twenty five".
+fn settle(items: Vec<Item>) -> Vec<Item> {
+    let mut out: Vec<Item> = Vec::new();
+    for (i, item) in items.iter().enumerate() {
+        let next = items.get(i + 1);
+        let after_next = items.get(i + 2);
+        let before = out.last();
+        let follows_place = before.is_some_and(|b| {
+            matches!(
+                b.tag,
+                Tag::Is(Sense::Article(_) | Sense::In | Sense::At | Sense::Rel(_) | Sense::Color(_) | Sense::Not)
+            ) || matches!(b.words.as_str(), "my" | "with" | "wide" | "our" | "of")
+        });
+        match (item.words.as_str(), item.tag) {
+            ("crossing", _) => {
+                // After an article or a preposition it is a place, after a noun it is done by it.
+                let sense = if follows_place || before.is_none() && !next.is_some_and(leads_to_road) {
+                    look_up("crosswalk")
+                } else {
+                    look_up("walking across")
+                };
+                out.push(Item {
+                    tag: sense.map_or(Tag::Unknown, Tag::Is),
+                    ..item.clone()
+                });
+            }
+            ("pedestrian crossing", _) if next.is_some_and(leads_to_road) => {
+                // "a pedestrian crossing the road"
+                let cut = item.span.start + "pedestrian".len();
+                out.push(Item {
+                    tag: look_up("pedestrian").map_or(Tag::Unknown, Tag::Is),
+                    words: "pedestrian".into(),
+                    span: Span {
+                        start: item.span.start,
+                        end: cut,
+                    },
+                    read_as: None,
+                });
+                out.push(Item {
+                    tag: look_up("walking across").map_or(Tag::Unknown, Tag::Is),
+                    words: "crossing".into(),
+                    span: Span {
+                        start: cut + 1,
+                        end: item.span.end,
+                    },
+                    read_as: None,
+                });
+            }
+            ("parking", _) if !follows_place => out.push(Item {
+                tag: look_up("parked").map_or(Tag::Unknown, Tag::Is),
+                ..item.clone()
+            }),
+            // "double decker" and the like are longer runs; "a couple" alone is two people.
+            ("a couple" | "couple", Tag::Is(Sense::Count(_))) if !next.is_some_and(continues_noun) => {
+                let tag = look_up("pedestrian").map_or(Tag::Unknown, Tag::Is);
+                out.push(item.clone());
+                out.push(Item { tag, ..item.clone() });
+            }
+            (_, Tag::Is(Sense::Count(units))) if units.is_exact() && (1..10).contains(&units.n) => {
+                let tens = out.last().and_then(|b| match b.tag {
+                    Tag::Is(Sense::Count(c)) if c.is_exact() && c.n >= 20 && c.n % 10 == 0 && c.n < 100 => Some(c.n),
+                    _ => None,
+                });
+                match (tens, out.last_mut()) {
+                    (Some(tens), Some(last)) => {
+                        last.tag = Tag::Is(Sense::Count(Count::exactly(tens + units.n)));
+                        last.words = format!("{} {}", last.words, item.words);
+                        last.span = last.span.to(item.span);
+                    }
+                    _ => out.push(item.clone()),
+                }
+            }
+            // "18-wheeler"
+            (_, Tag::Number(_)) if next.is_some_and(|n| matches!(n.words.as_str(), "wheeler" | "wheelers" | "tonner" | "seater")) => {}
+            (_, Tag::Number(hour)) if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) => {
+                let pm = next.is_some_and(|n| n.words == "pm");
+                out.push(Item {
+                    tag: Tag::Is(Sense::Time(time_of(hour, pm))),
+                    ..item.clone()
+                });
+            }
+            ("am" | "pm" | "oclock", _) if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Time(_)))) => {
+                if let Some(last) = out.last_mut() {
+                    last.span = last.span.to(item.span);
+                }
+            }
+            // 22:30
+            (_, Tag::Number(hour))
+                if next.is_some_and(|n| n.words == ":")
+                    && after_next.is_some_and(|n| matches!(n.tag, Tag::Number(m) if m < 60.0))
+                    && hour < 25.0 =>
+            {
+                out.push(Item {
+                    tag: Tag::Is(Sense::Time(time_of(hour, false))),
+                    ..item.clone()
+                });
+            }
+            _ => out.push(item.clone()),
+        }
+    }
+    out
+}
+
+fn time_of(hour: f64, pm: bool) -> super::description::TimeOfDay {
+    use super::description::TimeOfDay::{Dawn, Day, Dusk, Night};
+    let hour = if pm && hour < 12.0 { hour + 12.0 } else { hour };
+    match hour {
+        h if h < 5.0 => Night,
+        h if h < 8.0 => Dawn,
+        h if h < 18.0 => Day,
+        h if h < 21.0 => Dusk,
+        _ => Night,
+    }
+}
+
+fn leads_to_road(item: &Item) -> bool {
+    matches!(
+        item.tag,
+        Tag::Is(Sense::Article(_) | Sense::Place(..) | Sense::In | Sense::At | Sense::Attribute(_))
+    ) || matches!(item.words.as_str(), "my" | "our" | "from" | "in front of" | "behind" | "ahead of" | "in front")
+}
+
+fn continues_noun(item: &Item) -> bool {
+    matches!(
+        item.tag,
+        Tag::Is(Sense::Noun(..) | Sense::Color(_) | Sense::Size(_) | Sense::State(_, false) | Sense::Attribute(_) | Sense::EgoRel(_) | Sense::Pick(_))
+    ) || item.words == "of"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tokens::tokens;
+    use super::*;
+
+    fn words(prompt: &str) -> Vec<String> {
+        tag(&tokens(prompt)).into_iter().map(|i| i.words).collect()
+    }
+
+    #[test]
+    fn longest_runs_but_no_torn_places() {
+        assert_eq!(words("on the left"), ["on the left"]);
+        assert_eq!(words("on the left lane"), ["on", "the", "left lane"]);
+        assert_eq!(words("on the left side of the road"), ["on", "the", "left side of the road"]);
+        assert_eq!(words("on the left side of the bus"), ["on the left side of", "the", "bus"]);
+        assert_eq!(words("twenty five cars"), ["twenty five", "cars"]);
+        assert_eq!(words("a pedestrian crossing the road"), ["a", "pedestrian", "crossing", "the", "road"]);
+        assert_eq!(words("at the pedestrian crossing"), ["at", "the", "pedestrian crossing"]);
+    }
+}

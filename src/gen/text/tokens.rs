@@ -1,0 +1,154 @@
+//! A prompt to words, numbers and marks, each with the bytes it came from.
+
+use serde::{Deserialize, Serialize};
+
+/// Bytes `start..end` of the prompt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Span {
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+impl Span {
+    /// From the first byte of one to the last of the other.
+    pub fn to(self, other: Span) -> Span {
+        Span {
+            start: self.start.min(other.start),
+            end: self.end.max(other.end),
+        }
+    }
+
+    /// The text it names; empty if it does not fit the prompt.
+    pub fn of(self, prompt: &str) -> &str {
+        prompt.get(self.start..self.end).unwrap_or("")
+    }
+}
+
+/// What a token is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TokenKind {
+    /// A word in lower case, without apostrophes.
+    Word,
+    /// A number, as digits.
+    Number(f64),
+    /// A comma.
+    Comma,
+    /// The end of a sentence: . ; ! ? and line breaks.
+    Stop,
+    /// A colon, a dash, a bracket, a slash.
+    Mark,
+    /// Anything else: emoji and the like.
+    Symbol,
+}
+
+/// A word, a number or a mark.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Token {
+    /// What it is.
+    pub kind: TokenKind,
+    /// In lower case.
+    pub text: String,
+    /// Where it stood.
+    pub span: Span,
+}
+
+/// Longest prompt that is read, bytes. What lies beyond is named as not understood.
+pub const LONGEST: usize = 20_000;
+
+fn is_word(c: char) -> bool {
+    c.is_alphabetic() || matches!(c, '\'' | '’' | '`')
+}
+
+/// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
+pub fn tokens(prompt: &str) -> Vec<Token> {
+    let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
+    let end_of = |i: usize| chars.get(i).map_or(chars.last().map_or(0, |(at, c)| at + c.len_utf8()), |c| c.0);
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < chars.len() {
+        let c = chars[i].1;
+        let mut j = i + 1;
+        let digit = |k: usize| chars.get(k).is_some_and(|(_, c)| c.is_ascii_digit());
+        let mut push = |kind, text: String, i: usize, j: usize| {
+            let span = Span {
+                start: chars[i].0,
+                end: end_of(j),
+            };
+            out.push(Token { kind, text, span });
+        };
+        if c.is_ascii_digit() || (c == '.' && digit(j)) {
+            let mut text = String::from(c);
+            while j < chars.len() {
+                let d = chars[j].1;
+                // "1,000" and "2.5" go on; "2, 3" and "2." do not.
+                let thousand = d == ',' && digit(j + 1) && digit(j + 2) && digit(j + 3) && !digit(j + 4);
+                if d.is_ascii_digit() || (d == '.' && digit(j + 1) && !text.contains('.')) {
+                    text.push(d);
+                } else if !thousand {
+                    break;
+                }
+                j += 1;
+            }
+            let value = text.parse().unwrap_or(f64::INFINITY);
+            // "2x cars" counts, and so does "cars x2".
+            let times = chars.get(j).is_some_and(|(_, c)| matches!(c, 'x' | '×'))
+                && !chars.get(j + 1).is_some_and(|(_, c)| is_word(*c) || c.is_ascii_digit());
+            push(TokenKind::Number(value), text, i, j);
+            j += usize::from(times);
+        } else if matches!(c, 'x' | '×') && digit(j) {
+            // the x of x2
+        } else if is_word(c) {
+            while j < chars.len() && is_word(chars[j].1) {
+                j += 1;
+            }
+            let text: String = chars[i..j]
+                .iter()
+                .flat_map(|(_, c)| c.to_lowercase())
+                .filter(|c| !matches!(c, '\'' | '’' | '`'))
+                .collect();
+            if !text.is_empty() {
+                push(TokenKind::Word, text, i, j);
+            }
+        } else {
+            match c {
+                ',' | '，' | '、' | '&' | '+' => push(TokenKind::Comma, ",".into(), i, j),
+                '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => push(TokenKind::Stop, ".".into(), i, j),
+                ':' | '(' | ')' | '/' | '—' | '–' | '[' | ']' | '"' | '“' | '”' | '#' | '|' | '*' => {
+                    push(TokenKind::Mark, c.into(), i, j);
+                }
+                '-' | '_' => {
+                    // Between spaces it parts clauses, inside a word it parts words.
+                    let spaced = i > 0 && chars[i - 1].1 == ' ' && chars.get(i + 1).is_some_and(|c| c.1 == ' ');
+                    if spaced {
+                        push(TokenKind::Mark, "-".into(), i, j);
+                    }
+                }
+                '\u{200d}' | '\u{fe0f}' | '\u{fe0e}' => {}
+                c if c.is_whitespace() || c.is_control() => {}
+                c => push(TokenKind::Symbol, c.into(), i, j),
+            }
+        }
+        i = j;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_numbers_and_marks() {
+        let texts = |p: &str| tokens(p).into_iter().map(|t| t.text).collect::<Vec<_>>();
+        assert_eq!(texts("Don't, T-junction 20m"), ["dont", ",", "t", "junction", "20", "m"]);
+        assert_eq!(texts("2x cars x5 1,000 2, 3"), ["2", "cars", "5", "1000", "2", ",", "3"]);
+        assert_eq!(texts("2.5 m. 🚗"), ["2.5", "m", ".", "🚗"]);
+        let prompt = "Zwölf 夜 cars";
+        let last = tokens(prompt).pop().expect("a token");
+        assert_eq!(last.span.of(prompt), "cars");
+        assert!(tokens("").is_empty());
+        assert_eq!(tokens(&"9".repeat(400))[0].kind, TokenKind::Number(f64::INFINITY));
+    }
+}

@@ -1,0 +1,6 @@
+//! The lexicon's tables: what English words mean for a driving scene.
+
+pub mod edits;
+pub mod objects;
+pub mod places;
+pub mod style;

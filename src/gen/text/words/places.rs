@@ -1,0 +1,187 @@
+//! Words for places, relations, edits, and the small words between them.
+
+use super::super::description::{Anchor, Road};
+use crate::scene::graph::LaneRole as L;
+use crate::scene::graph::RelationKind as R;
+
+/// Sides as said before or after a noun.
+pub const LEFT: &str = "left|left hand|lefthand";
+/// The other one.
+pub const RIGHT: &str = "right|right hand|righthand";
+
+/// Strips that have sides: anchor without side, left, right, words.
+pub const SIDED: &[(L, L, L, &str)] = &[
+    (
+        L::Roadside,
+        L::LeftRoadside,
+        L::RightRoadside,
+        "roadside|kerb|curb|kerbside|curbside|shoulder|hard shoulder|verge|parking lane|parking strip|parking bay|parking bays|edge of the road|road edge|kerb side|edge of the street|\
+         roads edge|lay by|layby|side of road|parking spot|parking space|parking spaces|parking place|road side|bus stop|bus bay|gutter|bike lane|cycle lane|bicycle lane|cycle path|bike path|edge of the carriageway|loading bay|breakdown lane|emergency lane|street edge|taxi rank|bus lane",
+    ),
+    (
+        L::Sidewalk,
+        L::LeftSidewalk,
+        L::RightSidewalk,
+        "sidewalk|pavement|footpath|footway|walkway|side walk|pedestrian path|foot path|pedestrian walkway|pedestrian area|footpavement",
+    ),
+];
+
+/// Places without sides.
+pub const PLACES: &[(Anchor, Option<Road>, &str)] = &[
+    (
+        Anchor::Lane(L::Ego),
+        None,
+        "my lane|our lane|ego lane|egos lane|the ego lane|own lane|my own lane|our own lane|current lane|ego vehicles lane|lane im in|lane i am in|lane were in|lane we are in|lane of the ego|\
+         lane of the ego vehicle|host lane|my path|our path|my way|our way|my side of the road|our side of the road|lane|same lane|driving lane|the same lane as me|same lane as me|same lane as us|lane ahead|lane in front of me|my driving lane|path of the ego vehicle|path of the ego|ego path|lane of my car|traffic lane|my side|our side|my lane ahead|our lane ahead",
+    ),
+    (
+        Anchor::Lane(L::Left),
+        None,
+        "left lane|left hand lane|lane to my left|lane to our left|lane on the left|lane to the left|lane on my left|lane on our left|next lane to the left|passing lane|fast lane|overtaking lane|lane left of me|\
+         lane left of mine|left driving lane|leftmost lane|adjacent left lane|lane to the left of me|lane to the left of mine|far left lane|inside lane|inner lane|neighbouring left lane",
+    ),
+    (
+        Anchor::Lane(L::Right),
+        None,
+        "right lane|right hand lane|lane to my right|lane to our right|lane on the right|lane to the right|lane on my right|lane on our right|next lane to the right|slow lane|lane right of me|lane right of mine|\
+         rightmost lane|adjacent right lane|lane to the right of me|lane to the right of mine|far right lane|outside lane|outer lane|neighbouring right lane",
+    ),
+    (
+        Anchor::Lane(L::Oncoming),
+        None,
+        "oncoming lane|oncoming lanes|opposite lane|opposing lane|oncoming traffic lane|wrong side of the road|opposite carriageway|other carriageway|oncoming side|contraflow lane|opposite lanes|opposing lanes|\
+         lane for oncoming traffic|lane of oncoming traffic|lane in the opposite direction|lane in the other direction|opposing traffic lane|oncoming carriageway|lane coming the other way|wrong lane|wrong side",
+    ),
+    (Anchor::Lane(L::Cross), None, "cross street|side street|side road|crossing road|crossing street|intersecting road|intersecting street|cross road|cross traffic lane|adjoining road|side streets|perpendicular road|perpendicular street"),
+    (
+        Anchor::Lane(L::Road),
+        None,
+        "road|street|roadway|carriageway|lanes|tarmac|asphalt|middle of the road|middle of the street|centre of the road|center of the road|center of the street|centre of the street|driveable area|drivable area|travel lanes|lanes of traffic|entire road|whole road|all lanes|both lanes|way",
+    ),
+    (Anchor::Lane(L::Carpark), Some(Road::Parking), "car park|carpark|parking lot|parking area|parking garage|parking|parking deck|parking ground|lot|car parks|supermarket car park|supermarket parking lot"),
+    (
+        Anchor::Crossing,
+        None,
+        "crosswalk|zebra crossing|pedestrian crossing|zebra|pelican crossing|cross walk|zebra stripes|crossing|ped crossing|foot crossing|puffin crossing|pedestrian crosswalk|zebra cross|school crossing|croswalk",
+    ),
+    (Anchor::Junction, Some(Road::Intersection), "junction|intersection|crossroads|crossroad|four way intersection|4 way intersection|four way junction|four way stop|4 way stop|road junction|street corner|corner|4 way junction|four way crossing|road crossing|\
+        signalised intersection|signalized intersection|signalised junction|traffic lights|traffic light|red light|lights|stop line|stop sign|traffic signal|traffic signals|red lights|stop light|stoplight|red traffic light|junctoin|intersecton|four way crossroads|x junction"),
+    (Anchor::Junction, Some(Road::TJunction), "t junction|t intersection|three way intersection|three way junction|tee junction|3 way intersection|t crossing|3 way junction|three way stop|y junction|fork|fork in the road|t shaped junction|t section"),
+    (Anchor::Junction, Some(Road::Roundabout), "roundabout|traffic circle|rotary|gyratory|round about|circle|island roundabout|mini roundabout"),
+];
+
+/// Relations that need a place or an object after them.
+pub const RELATIONS: &[(R, &str)] = &[
+    (R::InFrontOf, "in front of|ahead of|infront of|in the front of|right in front of|just in front of|directly in front of|immediately in front of|directly ahead of|before|just ahead of|straight ahead of|downstream of|right ahead of|shortly before|leading|leads|up ahead of"),
+    (R::Behind, "behind|in back of|at the back of|at the rear of|to the rear of|right behind|just behind|directly behind|immediately behind|straight behind|in the rear of|after|past|beyond|upstream of|hidden behind|half hidden behind|partially hidden behind|occluded by|close behind"),
+    (R::LeftOf, "left of|to the left of|on the left of|to the left hand side of|on the left side of|on the left hand side of|at the left of|left side of|to the left side of|left hand side of|on left of|on left side of|at the left side of|on the lefthand side of|just left of|directly left of|immediately left of|immediately to the left of|directly to the left of|just to the left of|along the left side of|at the left hand side of|along the left of|down the left side of"),
+    (R::RightOf, "right of|to the right of|on the right of|to the right hand side of|on the right side of|on the right hand side of|at the right of|right side of|to the right side of|right hand side of|on right of|on right side of|at the right side of|on the righthand side of|just right of|directly right of|immediately right of|immediately to the right of|directly to the right of|just to the right of|along the right side of|at the right hand side of|along the right of|down the right side of"),
+    (R::Near, "near|near to|close to|in the vicinity of|not far from|around|in the area of|nearby to|close by|somewhere near|within reach of|in close proximity to|nearer to|close up to|surrounding|not far away from|very close to|right near|in proximity to"),
+    (R::NextTo, "next to|beside|besides|alongside|adjacent to|abreast of|at the side of|right next to|level with|directly next to|side by side with|by the side of|along side|right beside|directly beside|alongside of|flanking|immediately next to|just next to|neighbouring|parallel to"),
+    (R::FarFrom, "far from|far away from|a long way from|well away from|distant from|at a distance from"),
+    (R::Between, "between|in between|sandwiched between|wedged between|squeezed between|amid|stuck between|in the gap between|from between"),
+    (R::Across, "opposite|across from|opposite of|opposite to|on the other side from|directly opposite|facing across from"),
+    (R::Blocking, "blocking|block|blocks|obstructing|obstructs|obstruct|closing off|closes off|close off|closing|closes|barring|in the way of|cutting off|cuts off|blocking off|block off|blocks off|obstructing the way of|sealing off|impeding|standing in the way of|occupying|occupies|taking up|takes up|sealing|cordoning off|cordon off|blockading|is blocking|are blocking|barricading|stopping traffic in|narrowing"),
+    (R::Facing, "facing|faces|face|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards"),
+    (R::FacingAway, "facing away from|looking away from|driving away from|walking away from|moving away from|turned away from|going away from|heading away from|with its back to|with their backs to|riding away from|running away from|pointing away from|speeding away from|drives away from|walks away from"),
+    (R::Following, "following|follows|follow|tailgating|tailgates|trailing|trails|chasing|chases|driving behind|drives behind|riding behind|closely following|in pursuit of|tailing|close on the heels of|hot on the heels of|queuing behind|queueing behind|queued behind|cycling behind|rides behind|stuck behind|waiting behind|travelling behind|traveling behind|shadowing|pursuing|lined up behind|walking behind"),
+    (R::Crossing, "crossing|crosses|cross|walking across|running across|walks across|runs across|riding across|cycling across|stepping onto|steps onto|jaywalking across|hurrying across|dashing across|running onto|stepping into|walks over|walking over|going across|strolling across|stepping out onto|runs over|running over|rushing across|run across|walk across|goes across|pushing a pram across|pushing a stroller across|dashes across|darting across|stepping off|traversing|driving across|turning across|drives across|steps out onto|steps into|moving across|heading across|about to cross|making their way across|making his way across|making her way across|jogging across|going over|pass over|wandering across|step onto"),
+    (R::SameDirection, "in the same direction as|same direction as|travelling with|traveling with|going the same way as|in the direction of"),
+    (R::OppositeDirection, "in the opposite direction to|in the opposite direction of|in the other direction from|against the direction of|opposite direction to"),
+];
+
+/// Relations to the ego vehicle that need nothing after them; followed by "of", they take what follows.
+pub const EGO_RELATIONS: &[(&[R], &str)] = &[
+    (&[R::InFrontOf], "ahead|in front|up ahead|straight ahead|directly ahead|further ahead|just ahead|right ahead|farther ahead|up front|down the road|down the street|further down the road|upcoming|further on|right in front|directly in front|up the road|immediately ahead|close ahead|dead ahead|further along|straight in front|further down the street|down the lane|further up the road|up the street|ahead on the road|ahead in the road|coming up|in my view ahead|ahead in the distance|at the front|forwards|infront|to the front|in the front|away ahead|off ahead"),
+    (&[R::InFrontOf, R::FarFrom], "in the distance|far ahead|far away ahead|in the far distance|in the background|off in the distance|on the horizon|way ahead|way in front|well ahead|a long way ahead|far in front|further away|at the far end of the road|at the end of the road|at the end of the street|far down the road|far down the street"),
+    (&[R::Behind], "behind|from behind|at the rear|in the back|to the rear|in the rear|further behind|just behind|right behind|at the back|directly behind|in the rear view mirror|in my mirror|in the mirror|in my rear view mirror|behind on the road|close behind|in the rearview mirror|to the back|in my rearview mirror|backwards"),
+    (&[R::LeftOf], "on the left|to the left|at left|on my left|on our left|to my left|to our left|on the left side|on the left hand side|on left|at the left|left|leftwards|to the left hand side|on the left flank|on my left hand side|on my left side|on the lefthand side|to the left side|off to the left|over on the left|left hand side|left side|from the left|at my left|from my left|on the ego vehicles left|along the left|down the left|on its left hand|at the left side|on our left hand side|on left side|over to the left|away to the left"),
+    (&[R::RightOf], "on the right|to the right|at right|on my right|on our right|to my right|to our right|on the right side|on the right hand side|on right|at the right|right|rightwards|to the right hand side|on the right flank|on my right hand side|on my right side|on the righthand side|to the right side|off to the right|over on the right|right hand side|right side|from the right|at my right|from my right|on the ego vehicles right|along the right|down the right|on its right hand|at the right side|on our right hand side|on right side|over to the right|away to the right"),
+    (&[R::InFrontOf, R::LeftOf], "front left|ahead left|ahead to the left|ahead on the left|in front to the left|in front on the left|ahead and to the left|ahead and left|to the front left|on the front left|at the front left|diagonally left ahead|left ahead|to my front left|ahead to my left|ahead on my left|ahead and to my left|in front and to the left|in front left|forward left|at ten oclock|up ahead on the left|up ahead to the left|to the left ahead|on the left ahead"),
+    (&[R::InFrontOf, R::RightOf], "front right|ahead right|ahead to the right|ahead on the right|in front to the right|in front on the right|ahead and to the right|ahead and right|to the front right|on the front right|at the front right|diagonally right ahead|right ahead on the right|to my front right|ahead to my right|ahead on my right|ahead and to my right|in front and to the right|in front right|forward right|at two oclock|up ahead on the right|up ahead to the right|to the right ahead|on the right ahead"),
+    (&[R::Behind, R::LeftOf], "rear left|back left|behind left|behind to the left|behind on the left|behind and to the left|to the rear left|on the rear left|at the rear left|to my rear left|behind to my left|behind on my left|left behind|behind and left|behind and to my left|at the back left|in the back left"),
+    (&[R::Behind, R::RightOf], "rear right|back right|behind right|behind to the right|behind on the right|behind and to the right|to the rear right|on the rear right|at the rear right|to my rear right|behind to my right|behind on my right|behind and right|behind and to my right|at the back right|in the back right"),
+    (&[R::Near], "nearby|close by|close|in the vicinity|near here|around here|in close proximity"),
+    (&[R::FarFrom], "far away|far off|distant|a long way off|a long way away|far|further off"),
+    (&[R::SameDirection], "in the same direction|going my way|going our way|in my direction|same direction|going the same way|in our direction|same way"),
+    (&[R::OppositeDirection], "in the opposite direction|oncoming|coming the other way|going the other way|coming towards|approaching|from the opposite direction|in the other direction|coming from the opposite direction|coming from ahead|on coming|opposing|going the opposite way|coming the opposite way|driving the wrong way|travelling the other way|traveling the other way|heading the other way|coming from the front|from the other direction|opposite direction|going in the opposite direction|driving in the opposite direction|coming in the opposite direction|coming at me|incoming"),
+    (&[R::Facing], "facing forward"),
+];
+
+/// What is done to the thing named before: "my lane is blocked by cones".
+pub const REVERSED: &[(R, &str)] = &[
+    (R::Blocking, "blocked by|is blocked by|are blocked by|closed by|closed off by|obstructed by|barred by|blocked off by|blocked with|closed with|is closed by|is closed off by|cut off by|obstructed with|sealed off by|coned off by|coned off with|blocked off with|occupied by|closed off with|cordoned off by|cordoned off with|is obstructed by|is occupied by|shut by|barricaded by|blocked completely by|partially blocked by|partly blocked by"),
+    (R::Following, "towing|tows|pulling|pulls|hauling|hauls|dragging|followed by|is followed by|are followed by|trailed by|pursued by|chased by|being followed by|tailed by|tailgated by|with behind"),
+    (R::InFrontOf, "preceded by|led by|is preceded by|is led by"),
+    (R::NextTo, "flanked by|accompanied by"),
+    (R::Near, "surrounded by"),
+    (R::Crossing, "crossed by|is crossed by"),
+    (R::On, "occupied with"),
+];
+
+/// Places said in a whole phrase, without a noun of their own: relation and anchor.
+pub const FIXED: &[(R, Anchor, &str)] = &[
+    (R::Crossing, Anchor::Lane(L::Road), "jaywalking|jaywalks|jaywalk|crossing over|stepping out|crosses over|running out"),
+    (R::WaitingAt, Anchor::Crossing, "waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street"),
+    (R::On, Anchor::Lane(L::Oncoming), "on the other side of the divider|on the opposite side of the divider"),
+    (R::Near, Anchor::Junction, "turning at the lights"),
+    (R::On, Anchor::Lane(L::Road), "in the middle"),
+];
+
+/// "Across the street": on its far side, seen from the ego in right-hand traffic.
+pub const FAR_SIDE: &str = "across the street|across the road|on the other side of the road|on the other side of the street|other side of the road|other side of the street|on the opposite side of the road|on the opposite side of the street|on the far side of the road|on the far side of the street|on the other side|on the opposite side|over the road|on the far side|on the other side of the carriageway";
+/// One on each side.
+pub const BOTH_SIDES: &str = "on both sidewalks|on both pavements|on both footpaths|both sidewalks|both pavements|on either sidewalk|on each sidewalk|on both kerbs|on both curbs|at both kerbs|on both footways|on both sides|on either side|on each side|both sides|either side|each side|along both sides|on the left and right|left and right|on the left and on the right|to the left and right|on the left and the right|to both sides|at both sides|along each side|down both sides|on the left and right side|on the left and right sides|on the left and right hand side";
+/// Prepositions whose meaning depends on the place that follows.
+pub const IN: &str = "in|on|onto|into|along|inside|within|over|upon|through|down|up|in the middle of|in the centre of|in the center of|throughout|atop|on top of|all over|all along|occupying part of|out on|on to|inside of|off|line|lines|lining";
+/// The same, less exact.
+pub const AT: &str = "at|by|outside|waiting for|stopped for|before the|waits for|wait for|stopping for|stops for|stop for|yielding to|yielding for";
+/// Next to a strip or an object.
+pub const ACROSS: &str = "across";
+
+/// The ego vehicle.
+pub const EGO: &str = "me|us|ego|my car|our car|my vehicle|our vehicle|the ego vehicle|ego vehicle|ego car|the ego car|myself|host vehicle|own car|own vehicle|my own car|i|we|self|the ego|the av|the camera|camera|mine|ours|driver of the ego|the host|our own car|the viewer|viewer|our own vehicle|host car|ego agent";
+
+/// Words that point back.
+pub const PRONOUNS: &str = "it|them|they|that|this|those|these|its|their|him|her|he|she|same one|that one|this one|itself|the latter|theirs|each other|one another";
+/// Part of a group.
+pub const PARTS: &str = "another|another one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the remaining three";
+
+/// Words that turn around what follows.
+pub const NOT: &str = "no|not|without|without any|no more|never|free of|devoid of|lacking|isnt|arent|aint|zero|none|neither|nor|not a single|no single|there are no|there is no|there isnt|there arent|not any|empty of|clear of|absolutely no|absent|minus|except|except for|excluding|nary a|doesnt|dont|wont|dont want|dont include|do not include|with no|having no|avoid|omit|not a|not one|hardly any|is not|are not|but no|no other|sans|rather than|instead of|do not want";
+
+/// Words that carry no meaning here.
+pub const FILLERS: &str = "the|a bit|of|there is|there are|theres|there|is|are|was|were|be|been|being|please|show|show me|give me|i want|i would like|id like|generate|create a scene|create|make a scene|scene|a scene|picture|image|view|\
+    showing|depicting|depict|depicts|with|and|has|have|having|where|which|who|whose|as|so|then|now|just|very|really|quite|rather|also|too|to|from|for|my|our|your|his|driving scene|street scene|road scene|traffic scene|city scene|\
+    situation|scenario|set|setting|featuring|features|feature|containing|contains|includes|including|include|consisting of|made up of|while|when|during|it is|its a|its|at the moment|currently|visible|can be seen|seen|i see|we see|see|you see|i am|im|\
+    we are|were|imagine|lets|let|lets have|have a|describe|draw|render|simulate|simulation|video|photo|frame|weather|conditions|condition|sky|skies|under|time|oclock|hours|hour|traffic is|a view of|dash cam|dashcam|street view|day with|\
+    exactly|only|just|about|approximately|roughly|around about|at least|at most|maybe|perhaps|possibly|probably|slightly|extremely|pretty|fairly|little bit|somewhat|more or less|directly|immediately|right there|hand|side|typical|total|in total|altogether|\
+    place|located|situated|positioned at|found|present|appears|appear|appearing|emerging|emerges|standing there|over there|here|out|off|up|down|away|back|front|something like|like|such as|some kind of|kind of|sort of|type of|all|any|each|every|everyone|whole|entire|\
+    their way|his way|her way|slowly moving along|along the way|by itself|on its own|alone|together|at once|again|still|already|in the scene|in view|in sight|around me|around us|in the picture|in the image|of them|atmosphere|mood|lighting|background|foreground|style|environment|surroundings|area|region|location|district|zone|part|section|stretch|spot|position|direction|distance|of distance|on a|on an|in a|in an|at a|at an|during a|during the|under a|under the|\
+    her|his|them all|if|do|does|did|would|could|should|can|will|shall|may|might|must|because|since|until|although|though|however|well|ok|okay|hi|hello|hey|thanks|thank you|near future|first|finally|next|meanwhile|simultaneously|additionally|moreover|furthermore|else|addition|plus|both of them|add in|in addition|wait a|cars lane|than|usual|usually|nothing special|nothing|from my perspective|from the drivers perspective|from the drivers seat|from the ego perspective|perspective|point of view|pov|seen from|dust off|beautiful|nice|lovely|pleasant|good|bad|perfect|great|gentle|soft|cold|cool|freshly|fresh|i drive|we drive|i am driving|im driving|we are driving|driving down|i drive along|we drive along|i am on|we are on|i approach|we approach|i am approaching|we are approaching|approaching an|urban driving scene|drive|covered|everywhere|covering|turns to|after a|after the|seems|seem|looks|look|against|traffic in|traffic on|or so|even|got|get|whilst|amongst|among|amidst|onwards|ready|parts|level|moment|other than that|otherwise|apart from that|that is|that are|who is|who are|which is|which are|thats|whos|the scene|scene of|early|late|rush|season|from left to right|from right to left|left to right|right to left|in pairs|pairs|in a group|in groups|in file|in twos|working|work|in a row|in a line|in line|row|line|one behind the other|one after another|one after the other|in single file|in a queue|blocked|closed|trucker|busily|at work|having a chat|in conversation|hand in hand|full|view|clearly|suddenly|there should be|should be|should|slight|gets|moment|various kinds of|rows|side by side|next to each other|beside each other|abreast|driver|drivers";
+
+/// Length units and the metres in them.
+pub const UNITS: &[(f64, &str)] = &[
+    (1.0, "m|meter|meters|metre|metres|ms|mtr|mtrs|meteres"),
+    (0.3048, "ft|foot|feet"),
+    (0.9144, "yd|yard|yards|yds"),
+    (1000.0, "km|kilometer|kilometers|kilometre|kilometres|kms"),
+    (1609.344, "mile|miles|mi"),
+    (0.01, "cm|centimeter|centimeters|centimetre|centimetres"),
+    (4.6, "car length|car lengths|cars length|cars lengths"),
+    (0.0254, "inch|inches"),
+];
+
+/// Half and quarter of a unit.
+pub const FRACTIONS: &[(f64, &str)] = &[
+    (0.5, "half a|half|a half|half of a"),
+    (0.25, "quarter of a|a quarter of a|a quarter|quarter"),
+    (1.5, "one and a half|a unit and a half"),
+];
+
+/// Words between a distance and what it is measured from.
+pub const AWAY: &str = "away from|from|away|off|apart from|distance from|distant from|out from|out";
+/// Not farther than.
+pub const WITHIN: &str = "within|less than|under|not more than|no more than|at most|closer than|no further than|no farther than|up to|fewer than";
+/// Farther than.
+pub const BEYOND: &str = "more than|over|at least|further than|farther than|greater than|beyond|no less than";
