@@ -48,11 +48,16 @@ fn findings_lead_to_their_place_and_are_fixed() {
     let mut bench = Bench::new();
     bench.off();
     bench.app().state.checks_open = true;
-    let no_errors = |b: &mut Bench| {
+    let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
         !b.app().checking.is_stale(rev)
     };
-    bench.wait_until("the checks", no_errors);
+    bench.wait_until("the checks", checked);
+    bench.steps(3);
+    // It stands on the left lane, as the bench has put it.
+    bench.click("Turn to the lane's heading: car 7 faces against its lane, 180 degrees from it");
+    assert_eq!(bench.history(), ["Open", "Turn to the lane's heading"]);
+    bench.wait_until("the checks", checked);
     bench.steps(3);
     assert!(
         bench
@@ -65,7 +70,7 @@ fn findings_lead_to_their_place_and_are_fixed() {
     for _ in 0..12 {
         bench.key(Modifiers::NONE, Key::PageUp);
     }
-    bench.wait_until("the checks", no_errors);
+    bench.wait_until("the checks", checked);
     bench.steps(3);
     let text = "Warning: car 7 hovers 1.2 m above the ground";
     assert!(bench.harness.query_by_label(text).is_some());
@@ -82,7 +87,7 @@ fn findings_lead_to_their_place_and_are_fixed() {
         class: Class::Manmade,
     };
     bench.app().document.apply("Paint", &floats).expect("sound");
-    bench.wait_until("the checks", no_errors);
+    bench.wait_until("the checks", checked);
     bench.steps(3);
     bench.click("Fix all (2)");
     assert_eq!(bench.frame().occupancy.get(30, 30, 9), Class::Free.id());
