@@ -214,13 +214,14 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     let mut bench = Bench::new();
     bench.off();
     bench.click("Paint carpark area");
+    let before = bench.frame().layout.count(BevLayer::CarparkArea);
     bench.ask(ToolCommand::Shape(PaintShape::Rectangle));
     let corners = [bench.bev(-20.0, 20.0), bench.bev(-12.0, 30.0)];
     bench.press_and_move(&corners, Modifiers::NONE);
     assert!(bench.app().document.is_dragging(), "shown while drawing");
     bench.button(corners[1], false, Modifiers::NONE);
     bench.steps(2);
-    let count = bench.frame().layout.count(BevLayer::CarparkArea);
+    let count = bench.frame().layout.count(BevLayer::CarparkArea) - before;
     assert!((450..=560).contains(&count), "{count}");
     bench.ask(ToolCommand::Shape(PaintShape::Stroke));
     let ends = [
