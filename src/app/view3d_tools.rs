@@ -355,6 +355,8 @@ pub(super) fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec
 mod tests {
     use std::collections::BTreeMap;
 
+    use glam::DVec3;
+
     use super::*;
     use crate::scene::{BevLayout, VoxelGrid};
 

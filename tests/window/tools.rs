@@ -144,6 +144,8 @@ fn copies_rows_mirror_images_and_lanes() {
     };
     bench.ask(ToolCommand::Row(row));
     assert_eq!(bench.frame().boxes.len(), 6);
+    // Without it the arrow of the new boxes would lie there.
+    bench.ask(ToolCommand::ChooseNone);
     bench.click_at(14.0, 3.0, Modifiers::NONE);
     bench.ask(ToolCommand::Mirror(false));
     let b = bench.car(7);
@@ -212,13 +214,14 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     let mut bench = Bench::new();
     bench.off();
     bench.click("Paint carpark area");
+    let before = bench.frame().layout.count(BevLayer::CarparkArea);
     bench.ask(ToolCommand::Shape(PaintShape::Rectangle));
     let corners = [bench.bev(-20.0, 20.0), bench.bev(-12.0, 30.0)];
     bench.press_and_move(&corners, Modifiers::NONE);
     assert!(bench.app().document.is_dragging(), "shown while drawing");
     bench.button(corners[1], false, Modifiers::NONE);
     bench.steps(2);
-    let count = bench.frame().layout.count(BevLayer::CarparkArea);
+    let count = bench.frame().layout.count(BevLayer::CarparkArea) - before;
     assert!((450..=560).contains(&count), "{count}");
     bench.ask(ToolCommand::Shape(PaintShape::Stroke));
     let ends = [
@@ -252,7 +255,12 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
         bench.steps(30);
     }
     bench.key(Modifiers::NONE, Key::Enter);
-    assert!(bench.has(BevLayer::DrivableArea, 0.0, -32.0) && bench.has(BevLayer::RoadDivider, 0.0, -29.9));
+    assert!(bench.has(BevLayer::DrivableArea, 0.0, -32.0));
+    assert!(
+        [-30.2, -29.8]
+            .iter()
+            .any(|y| bench.has(BevLayer::RoadDivider, 0.0, *y))
+    );
     assert_eq!(bench.frame().layout.polylines.len(), lines + 3);
 
     bench.click("Paint walkway");

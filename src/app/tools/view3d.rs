@@ -93,7 +93,9 @@ fn on_plane(ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
         return None;
     }
     let t = (point_m[axis] - ray.origin_in_ego[axis]) / d;
-    (0.0..400.0).contains(&t).then(|| ray.at(t))
+    // Not by distance: the rays of an orthographic view begin far away.
+    let p = ray.at(t);
+    (t >= 0.0 && p.abs().max_element() < 400.0).then_some(p)
 }
 
 fn class_of(state: &UiState, verb: VoxelVerb) -> Class {
