@@ -10,7 +10,8 @@ use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
 use super::state::{CameraMode, LidarModel};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
-use crate::generation::sensors::learned::{self, Drops};
+use crate::generation::sensors::learned::Drops;
+use crate::generation::sensors::learned_caster::LearnedCaster;
 use crate::generation::sensors::lidar::EgoBox;
 use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
@@ -140,12 +141,13 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
     }
 }
 
-/// What is kept between requests: the exact sweep and the rig that it belongs to, the network once it was asked for,
-/// the last full pictures.
+/// What is kept between requests: the exact sweep and the learned one with the rigs that they belong to, the network
+/// once it was asked for, the last full pictures.
 #[derive(Default)]
 struct Kept {
     lidar: Option<(Arc<SensorRig>, Caster)>,
     net: Option<Arc<LidarNet>>,
+    learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
 }
@@ -174,11 +176,21 @@ impl Kept {
 
     /// `None` where the network cannot be had; the exact sweep takes its place.
     fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
-        let (rig, drops) = (&scene.rig, if lost_echoes { Drops::Keep } else { Drops::Likely });
+        let drops = if lost_echoes { Drops::Keep } else { Drops::Likely };
+        let (grid, rig) = (&scene.frame().occupancy, &scene.rig);
         if self.net.is_none() {
             self.net = LidarNet::bundled().ok();
         }
-        learned::rig_sweep(self.net.as_ref()?, &scene.frame().occupancy, rig, drops).ok()
+        let net = self.net.as_ref()?;
+        match &mut self.learned {
+            Some((of, caster)) if of == rig => caster.update(grid).ok()?,
+            kept => {
+                let caster = LearnedCaster::of_rig(net.clone(), grid, rig).ok()?;
+                *kept = caster.map(|caster| (rig.clone(), caster));
+            }
+        }
+        let sweep = self.learned.as_ref().map(|(_, caster)| caster.sweep(drops));
+        Some(sweep.unwrap_or_default())
     }
 }
 

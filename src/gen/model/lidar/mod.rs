@@ -7,6 +7,7 @@ pub mod neus;
 pub mod prior;
 pub mod sites;
 pub mod sparse;
+pub mod update;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -14,9 +15,9 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use self::field::{APPEARANCE, Field, HIDDEN, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all};
+use self::field::{APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all};
 use self::prior::Cells;
-use self::sites::{CHILDREN, Level, Sites, Volume, physical, surface};
+use self::sites::{CHILDREN, Sites, Volume, physical, surface};
 use self::sparse::{Block, Convolution, normed};
 use super::layers::{Linear, Norm};
 use super::{ModelError, check_finite};
@@ -31,6 +32,8 @@ const SHAPE: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 const CLASSES: usize = Class::FREE as usize;
 /// Rows that go through a linear layer in one piece.
 const PIECE: usize = 512;
+/// Numbers that the field holds of a voxel.
+const ROW: usize = HIDDEN + 4 + APPEARANCE;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 128;
 /// Width of the two hidden layers behind a ray.
@@ -186,45 +189,80 @@ impl LidarNet {
     /// The field of a scene in the vertical convention of labels. It depends on the voxels alone: keep it for other
     /// poses and patterns. Labels beyond the table count as `others`.
     pub fn field(&self, grid: &VoxelGrid) -> Result<Field, ModelError> {
-        let labels = physical(grid);
-        let keys = surface(&labels);
-        let classes = keys
-            .iter()
-            .map(|k| labels[*k as usize].min(CLASSES as u8 - 1))
-            .collect();
+        let (keys, classes) = voxels(grid);
         self.field_of(keys, classes)
     }
 
     /// The same of sorted, unique voxels at their physical height, and their classes.
     pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<Field, ModelError> {
-        let x = normed(&self.norm, &self.features(&keys, &classes));
-        check_finite("features of the LiDAR's voxels", &x)?;
-        let geometry = self.geometry.parallel(&x, PIECE);
-        let appearance = self.appearance.parallel(&x, PIECE);
-        let rows = geometry.chunks_exact(HIDDEN + 4);
-        Ok(Field {
-            volume: Volume::new(SHAPE, &keys),
+        let mut field = Field {
+            hidden: vec![Line([0.0; HIDDEN]); keys.len() + 1],
+            planes: vec![[0.0; 4]; keys.len() + 1],
+            appearance: vec![Line([0.0; APPEARANCE]); keys.len() + 1],
             cells: Cells::new(&keys, &classes),
-            hidden: rows.clone().map(|r| std::array::from_fn(|i| r[i])).collect(),
-            planes: rows.map(|r| std::array::from_fn(|i| r[HIDDEN + i])).collect(),
-            appearance: appearance
-                .chunks_exact(APPEARANCE)
-                .map(|r| std::array::from_fn(|i| r[i]))
-                .collect(),
+            volume: Volume::new(SHAPE, &keys),
+            keys,
             classes,
-        })
+        };
+        let rows = self.rows(&field.keys, &field.classes)?;
+        let pieces = rows.par_chunks(ROW * PIECE).zip(
+            field
+                .hidden
+                .par_chunks_mut(PIECE)
+                .zip(field.planes.par_chunks_mut(PIECE))
+                .zip(field.appearance.par_chunks_mut(PIECE)),
+        );
+        pieces.for_each(|(rows, ((hidden, planes), appearance))| {
+            for (i, row) in rows.chunks_exact(ROW).enumerate() {
+                (hidden[i], planes[i], appearance[i]) = parts(row);
+            }
+        });
+        Ok(field)
+    }
+
+    /// What the field holds of each voxel: hidden numbers, plane, appearance, side by side.
+    fn rows(&self, keys: &[u32], classes: &[u8]) -> Result<Vec<f32>, ModelError> {
+        let x = normed(&self.norm, &self.features(keys, classes));
+        check_finite("features of the LiDAR's voxels", &x)?;
+        let width = self.config.widths[0];
+        let mut out = vec![0.0; keys.len() * ROW];
+        out.par_chunks_mut(PIECE * ROW)
+            .zip(x.par_chunks(PIECE * width))
+            .for_each_init(
+                || vec![0.0; PIECE * (HIDDEN + 4)],
+                |room, (out, x)| {
+                    let rows = x.len() / width;
+                    for (layer, at, wide) in [
+                        (&self.geometry, 0, HIDDEN + 4),
+                        (&self.appearance, HIDDEN + 4, APPEARANCE),
+                    ] {
+                        layer.rows(x, &mut room[..rows * wide]);
+                        for (to, from) in out.chunks_exact_mut(ROW).zip(room.chunks_exact(wide)) {
+                            to[at..at + wide].copy_from_slice(from);
+                        }
+                    }
+                },
+            );
+        Ok(out)
     }
 
     /// What the UNet makes of the voxels, `[site][channel]`.
     fn features(&self, keys: &[u32], classes: &[u8]) -> Vec<f32> {
         let width = self.config.widths[0];
-        let mut x = Vec::with_capacity(keys.len() * width);
-        for (key, class) in keys.iter().zip(classes) {
-            let [_, _, z] = Level::place(SHAPE, *key);
-            let of_class = &self.class_table[usize::from(*class) * width..][..width];
-            let of_height = &self.height_table[z * width..][..width];
-            x.extend(of_class.iter().zip(of_height).map(|(a, b)| a + b));
-        }
+        let mut x = vec![0.0; keys.len() * width];
+        x.par_chunks_mut(PIECE * width)
+            .zip(keys.par_chunks(PIECE))
+            .zip(classes.par_chunks(PIECE))
+            .for_each(|((x, keys), classes)| {
+                for ((x, key), class) in x.chunks_exact_mut(width).zip(keys).zip(classes) {
+                    let z = *key as usize % SHAPE[2];
+                    let of_class = &self.class_table[usize::from(*class) * width..][..width];
+                    let of_height = &self.height_table[z * width..][..width];
+                    for ((x, a), b) in x.iter_mut().zip(of_class).zip(of_height) {
+                        *x = a + b;
+                    }
+                }
+            });
         match &self.unet {
             Some(unet) if !keys.is_empty() => unet.apply(x, &Sites::new(SHAPE, keys.to_vec())),
             _ => x,
@@ -275,6 +313,26 @@ impl LidarNet {
     }
 }
 
+/// The voxels that the network works on, in rising order, and their classes.
+fn voxels(grid: &VoxelGrid) -> (Vec<u32>, Vec<u8>) {
+    let labels = physical(grid);
+    let keys = surface(&labels);
+    let classes = keys
+        .iter()
+        .map(|k| labels[*k as usize].min(CLASSES as u8 - 1))
+        .collect();
+    (keys, classes)
+}
+
+/// The numbers of a voxel as the field holds them.
+fn parts(row: &[f32]) -> (Line, [f32; 4], Line) {
+    (
+        Line(std::array::from_fn(|i| row[i])),
+        std::array::from_fn(|i| row[HIDDEN + i]),
+        Line(std::array::from_fn(|i| row[HIDDEN + 4 + i])),
+    )
+}
+
 impl Unet {
     fn new(w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
         let strided = |w: &mut WeightFile<'_>, name: &str, from: usize, to: usize| {
@@ -291,7 +349,6 @@ impl Unet {
 
     fn apply(&self, mut x0: Vec<f32>, sites: &Sites) -> Vec<f32> {
         let [l0, l1, l2] = &sites.levels;
-        let add = |x: &mut [f32], more: &[f32]| x.iter_mut().zip(more).for_each(|(v, m)| *v += m);
         self.enter[0].apply(&mut x0, &l0.around);
         let mut x1 = self.down[0].apply(&x0, &l1.children);
         self.enter[1].apply(&mut x1, &l1.around);
@@ -299,9 +356,9 @@ impl Unet {
         self.middle
             .iter()
             .for_each(|block| block.apply(&mut x2, &l2.around));
-        add(&mut x1, &self.up[0].apply(&x2, &l1.parent));
+        self.up[0].add(&x2, &l1.parent, &mut x1);
         self.leave[0].apply(&mut x1, &l1.around);
-        add(&mut x0, &self.up[1].apply(&x1, &l0.parent));
+        self.up[1].add(&x1, &l0.parent, &mut x0);
         self.leave[1].apply(&mut x0, &l0.around);
         x0
     }
