@@ -1674,7 +1674,7 @@ fn light_along(eye: vec3f, ray: vec3f, pixel: f32) -> Sample {
                         let between = normal_or(to_sun_in_ego() - d, n);
                         let power = exp2(2.0 + 9.0 * s.gloss);
                         let spot = powi(max(dot(n, between), 0.0), power) * (power + 2.0) * 0.125;
-                        color += sun * (s.mirror * min(spot, 60.0) * max(facing, 0.0));
+                        color += sun * (s.mirror * min(spot, 25.0) * max(facing, 0.0));
                     }
                 }
             } else if strength > 0.0 {

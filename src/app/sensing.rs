@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
+use super::graphics::Graphics;
 use super::state::{CameraMode, LidarModel};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
@@ -150,6 +151,8 @@ struct Kept {
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
+    /// The graphics card, once views that it can draw were asked for.
+    graphics: Option<Option<Graphics>>,
 }
 
 impl Kept {
@@ -207,10 +210,16 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());
-    let mut prepared = None;
+    let (mut prepared, graphics) = (None, &mut kept.graphics);
     let mut view = |camera, size, quick| {
-        let prepared = prepared.get_or_insert_with(|| Prepared::new(scene, wanted.mode, wanted.source));
-        prepared.view(scene, camera, size, quick)
+        let (prepared, on_card) = prepared.get_or_insert_with(|| {
+            let prepared = Prepared::new(scene, wanted.mode, wanted.source);
+            let card = prepared.suits_card().then(|| graphics.get_or_insert_with(Graphics::find));
+            let on_card = card.and_then(Option::as_mut).is_some_and(|c| prepared.upload(c));
+            (prepared, on_card)
+        });
+        let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
+        prepared.view(scene, camera, size, quick, card)
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {

@@ -100,6 +100,7 @@ struct Corners {
     base: usize,
     cell: [usize; 3],
     share: [f32; 3],
+    weights: [[f32; 2]; 3],
 }
 
 impl Field {
@@ -122,6 +123,7 @@ impl Field {
         Some(Corners {
             base: place[0] * steps[0] + place[1] * steps[1] + place[2],
             cell: place,
+            weights: share.map(|s| [1.0 - s, 1.0 - (1.0 - s)]),
             share,
         })
     }
@@ -133,11 +135,8 @@ impl Field {
         let steps = self.volume.steps;
         let bits = [corner >> 2, corner >> 1 & 1, corner & 1];
         let site = self.volume.sites[c.base + bits[0] * steps[0] + bits[1] * steps[1] + bits[2]] as usize;
-        let (mut offset, mut weight) = ([0.0f32; 3], 1.0f32);
-        for a in 0..3 {
-            offset[a] = c.share[a] - bits[a] as f32;
-            weight *= 1.0 - offset[a].abs();
-        }
+        let offset = [0, 1, 2].map(|a| c.share[a] - bits[a] as f32);
+        let weight = c.weights[0][bits[0]] * c.weights[1][bits[1]] * c.weights[2][bits[2]];
         // No branch: which corners are there is anybody's guess.
         (site, if site < self.classes.len() { weight } else { 0.0 }, offset)
     }
@@ -148,39 +147,40 @@ impl Field {
         let Some(corners) = self.corners(p_in_ego).filter(|c| self.cells.is_active(c.cell)) else {
             return FREE_SDF_M;
         };
-        let (mut there, mut plane, mut blended) = (0.0f32, 0.0f32, [0.0f32; HIDDEN]);
+        let (mut there, mut planes, mut blended) = (0.0f32, [0.0f32; 4], [0.0f32; HIDDEN]);
         for corner in 0..8 {
             let (site, weight, offset) = self.corner(&corners, corner);
             there += weight;
-            let [a, bx, by, bz] = self.planes[site];
-            plane += weight * (a + bx * offset[0] + by * offset[1] + bz * offset[2]);
-            let hidden = &self.hidden[site].0;
-            for i in 0..HIDDEN {
-                blended[i] += weight * hidden[i];
+            let (own, at) = (&self.planes[site], [1.0, offset[0], offset[1], offset[2]]);
+            for ((sum, own), at) in planes.iter_mut().zip(own).zip(at) {
+                *sum += weight * own * at;
+            }
+            for (b, h) in blended.iter_mut().zip(&self.hidden[site].0) {
+                *b += weight * h;
             }
         }
         if there <= 0.0 {
             return FREE_SDF_M;
         }
-        for i in 0..HIDDEN {
-            blended[i] = (blended[i] + there * head.support[i]).max(0.0);
+        let plane = (planes[0] + planes[1]) + (planes[2] + planes[3]);
+        for (b, support) in blended.iter_mut().zip(&head.support) {
+            *b = (*b + there * support).max(0.0);
         }
         // Four sums side by side: none waits for the one before.
         let mut sums = [[0.0f32; HIDDEN]; 4];
         sums[0] = head.first_bias;
-        for four in 0..HIDDEN / 4 {
-            for (k, sum) in sums.iter_mut().enumerate() {
-                let (h, weights) = (blended[four * 4 + k], &head.first[four * 4 + k]);
-                for i in 0..HIDDEN {
-                    sum[i] += h * weights[i];
+        for (four, weights) in blended.chunks_exact(4).zip(head.first.chunks_exact(4)) {
+            for ((sum, h), weights) in sums.iter_mut().zip(four).zip(weights) {
+                for (n, w) in sum.iter_mut().zip(weights) {
+                    *n += h * w;
                 }
             }
         }
-        let mut parts = [0.0f32; HIDDEN];
-        for i in 0..HIDDEN {
-            let n = (sums[0][i] + sums[1][i]) + (sums[2][i] + sums[3][i]);
-            parts[i] = n.max(0.0) * head.second[i];
-        }
+        let [a, b, c, d] = &sums;
+        let mut parts: [f32; HIDDEN] = std::array::from_fn(|i| {
+            let n = (a[i] + b[i]) + (c[i] + d[i]);
+            n.max(0.0) * head.second[i]
+        });
         let mut half = HIDDEN / 2;
         while half > 0 {
             for i in 0..half {
@@ -198,9 +198,8 @@ impl Field {
         if let Some(corners) = self.corners(p_in_ego) {
             for corner in 0..8 {
                 let (site, weight, _) = self.corner(&corners, corner);
-                let looks = &self.appearance[site].0;
-                for i in 0..APPEARANCE {
-                    out[i] += weight * looks[i];
+                for (o, a) in out.iter_mut().zip(&self.appearance[site].0) {
+                    *o += weight * a;
                 }
             }
         }

@@ -18,7 +18,7 @@ use serde::Deserialize;
 use self::field::{APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all};
 use self::prior::Cells;
 use self::sites::{CHILDREN, Sites, Volume, physical, surface};
-use self::sparse::{Block, Convolution, normed};
+use self::sparse::{Block, Convolution};
 use super::layers::{Linear, Norm};
 use super::{ModelError, check_finite};
 use crate::generation::weights::{self, WeightFile, WeightsError};
@@ -32,8 +32,6 @@ const SHAPE: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 const CLASSES: usize = Class::FREE as usize;
 /// Rows that go through a linear layer in one piece.
 const PIECE: usize = 512;
-/// Numbers that the field holds of a voxel.
-const ROW: usize = HIDDEN + 4 + APPEARANCE;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 128;
 /// Width of the two hidden layers behind a ray.
@@ -204,46 +202,52 @@ impl LidarNet {
             keys,
             classes,
         };
-        let rows = self.rows(&field.keys, &field.classes)?;
-        let pieces = rows.par_chunks(ROW * PIECE).zip(
-            field
-                .hidden
-                .par_chunks_mut(PIECE)
-                .zip(field.planes.par_chunks_mut(PIECE))
-                .zip(field.appearance.par_chunks_mut(PIECE)),
-        );
-        pieces.for_each(|(rows, ((hidden, planes), appearance))| {
-            for (i, row) in rows.chunks_exact(ROW).enumerate() {
-                (hidden[i], planes[i], appearance[i]) = parts(row);
-            }
-        });
+        let Field {
+            keys,
+            classes,
+            hidden,
+            planes,
+            appearance,
+            ..
+        } = &mut field;
+        self.fill(keys, classes, [hidden, appearance], planes)?;
         Ok(field)
     }
 
-    /// What the field holds of each voxel: hidden numbers, plane, appearance, side by side.
-    fn rows(&self, keys: &[u32], classes: &[u8]) -> Result<Vec<f32>, ModelError> {
-        let x = normed(&self.norm, &self.features(keys, classes));
-        check_finite("features of the LiDAR's voxels", &x)?;
+    /// What the field holds of each voxel: hidden numbers and appearance, planes. The lists may be longer.
+    fn fill(
+        &self,
+        keys: &[u32],
+        classes: &[u8],
+        [hidden, appearance]: [&mut [Line]; 2],
+        planes: &mut [[f32; 4]],
+    ) -> Result<(), ModelError> {
+        let x = self.features(keys, classes);
         let width = self.config.widths[0];
-        let mut out = vec![0.0; keys.len() * ROW];
-        out.par_chunks_mut(PIECE * ROW)
-            .zip(x.par_chunks(PIECE * width))
-            .for_each_init(
-                || vec![0.0; PIECE * (HIDDEN + 4)],
-                |room, (out, x)| {
-                    let rows = x.len() / width;
-                    for (layer, at, wide) in [
-                        (&self.geometry, 0, HIDDEN + 4),
-                        (&self.appearance, HIDDEN + 4, APPEARANCE),
-                    ] {
-                        layer.rows(x, &mut room[..rows * wide]);
-                        for (to, from) in out.chunks_exact_mut(ROW).zip(room.chunks_exact(wide)) {
-                            to[at..at + wide].copy_from_slice(from);
-                        }
+        x.par_chunks(PIECE * width)
+            .zip(hidden.par_chunks_mut(PIECE))
+            .zip(appearance.par_chunks_mut(PIECE))
+            .zip(planes.par_chunks_mut(PIECE))
+            .try_for_each_init(
+                || (vec![0.0; PIECE * width], vec![0.0; PIECE * (HIDDEN + 4)]),
+                |(normed, out), (((x, hidden), appearance), planes)| {
+                    let (rows, normed) = (x.len() / width, &mut normed[..x.len()]);
+                    self.norm.rows(x, normed);
+                    check_finite("features of the LiDAR's voxels", normed)?;
+                    self.geometry.rows(normed, &mut out[..rows * (HIDDEN + 4)]);
+                    let rows_of = out.chunks_exact(HIDDEN + 4).zip(&mut *hidden).zip(planes);
+                    for ((row, hidden), plane) in rows_of.take(rows) {
+                        hidden.0.copy_from_slice(&row[..HIDDEN]);
+                        plane.copy_from_slice(&row[HIDDEN..]);
                     }
+                    self.appearance.rows(normed, &mut out[..rows * APPEARANCE]);
+                    let rows_of = out.chunks_exact(APPEARANCE).zip(&mut *appearance);
+                    for (row, looks) in rows_of.take(rows) {
+                        looks.0.copy_from_slice(row);
+                    }
+                    Ok(())
                 },
-            );
-        Ok(out)
+            )
     }
 
     /// What the UNet makes of the voxels, `[site][channel]`.
@@ -324,15 +328,6 @@ fn voxels(grid: &VoxelGrid) -> (Vec<u32>, Vec<u8>) {
     (keys, classes)
 }
 
-/// The numbers of a voxel as the field holds them.
-fn parts(row: &[f32]) -> (Line, [f32; 4], Line) {
-    (
-        Line(std::array::from_fn(|i| row[i])),
-        std::array::from_fn(|i| row[HIDDEN + i]),
-        Line(std::array::from_fn(|i| row[HIDDEN + 4 + i])),
-    )
-}
-
 impl Unet {
     fn new(w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
         let strided = |w: &mut WeightFile<'_>, name: &str, from: usize, to: usize| {
@@ -349,17 +344,19 @@ impl Unet {
 
     fn apply(&self, mut x0: Vec<f32>, sites: &Sites) -> Vec<f32> {
         let [l0, l1, l2] = &sites.levels;
-        self.enter[0].apply(&mut x0, &l0.around);
+        // One buffer for all norms: fresh memory costs as much as what is written into it.
+        let mut room = Vec::new();
+        self.enter[0].apply(&mut x0, &l0.around, &mut room);
         let mut x1 = self.down[0].apply(&x0, &l1.children);
-        self.enter[1].apply(&mut x1, &l1.around);
+        self.enter[1].apply(&mut x1, &l1.around, &mut room);
         let mut x2 = self.down[1].apply(&x1, &l2.children);
-        self.middle
-            .iter()
-            .for_each(|block| block.apply(&mut x2, &l2.around));
+        for block in &self.middle {
+            block.apply(&mut x2, &l2.around, &mut room);
+        }
         self.up[0].add(&x2, &l1.parent, &mut x1);
-        self.leave[0].apply(&mut x1, &l1.around);
+        self.leave[0].apply(&mut x1, &l1.around, &mut room);
         self.up[1].add(&x1, &l0.parent, &mut x0);
-        self.leave[1].apply(&mut x0, &l0.around);
+        self.leave[1].apply(&mut x0, &l0.around, &mut room);
         x0
     }
 }

@@ -155,9 +155,12 @@ impl Block {
         })
     }
 
-    /// In place.
-    pub fn apply(&self, x: &mut [f32], around: &Gather) {
-        let normed = normed(&self.norm, x);
+    /// In place; `normed` is room that may be used again.
+    pub fn apply(&self, x: &mut [f32], around: &Gather, normed: &mut Vec<f32>) {
+        normed.resize(x.len().max(normed.len()), 0.0);
+        let normed = &mut normed[..x.len()];
+        norm_all(&self.norm, x, normed);
+        let normed = &*normed;
         let width = self.conv.bias.len();
         x.par_chunks_mut(PIECE * width)
             .zip(&around.pieces)
@@ -166,7 +169,7 @@ impl Block {
                 |(inner, add), (x, piece)| {
                     inner.resize(x.len(), 0.0);
                     add.resize(x.len(), 0.0);
-                    self.conv.piece(&normed, piece, inner);
+                    self.conv.piece(normed, piece, inner);
                     inner.iter_mut().for_each(|v| *v = v.max(0.0));
                     self.linear.rows(inner, add);
                     x.iter_mut().zip(&*add).for_each(|(v, a)| *v += a);
@@ -176,13 +179,11 @@ impl Block {
 }
 
 /// Layer norm of every row, on all cores.
-pub fn normed(norm: &Norm, x: &[f32]) -> Vec<f32> {
+fn norm_all(norm: &Norm, x: &[f32], out: &mut [f32]) {
     let piece = PIECE * norm.scale.len();
-    let mut out = vec![0.0; x.len()];
     out.par_chunks_mut(piece)
         .zip(x.par_chunks(piece))
         .for_each(|(out, x)| norm.rows(x, out));
-    out
 }
 
 #[cfg(test)]

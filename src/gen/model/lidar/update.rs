@@ -1,10 +1,10 @@
 //! The field after an edit: only voxels within the network's sight of a changed one are computed anew, with what lies
 //! within sight of those; all others keep their numbers. Bit for bit the field of a fresh run.
 
-use super::field::Field;
+use super::field::{Field, HIDDEN, Line};
 use super::prior::Cells;
 use super::sites::{Level, Volume};
-use super::{LidarNet, ROW, SHAPE, parts, voxels};
+use super::{LidarNet, SHAPE, voxels};
 use crate::generation::model::ModelError;
 use crate::scene::VoxelGrid;
 
@@ -99,10 +99,15 @@ impl LidarNet {
             let sites: Vec<usize> = (0..next.keys.len()).filter(near).collect();
             let keys: Vec<u32> = sites.iter().map(|s| next.keys[*s]).collect();
             let classes: Vec<u8> = sites.iter().map(|s| next.classes[*s]).collect();
-            let rows = self.rows(&keys, &classes)?;
-            for (site, row) in sites.iter().zip(rows.chunks_exact(ROW)) {
+            let mut lines = [keys.len(); 2].map(|n| vec![Line([0.0; HIDDEN]); n]);
+            let mut planes = vec![[0.0; 4]; keys.len()];
+            let [hidden, appearance] = &mut lines;
+            self.fill(&keys, &classes, [hidden, appearance], &mut planes)?;
+            for (i, site) in sites.iter().enumerate() {
                 if region.holds(next.keys[*site]) {
-                    (next.hidden[*site], next.planes[*site], next.appearance[*site]) = parts(row);
+                    next.hidden[*site] = hidden[i];
+                    next.appearance[*site] = appearance[i];
+                    next.planes[*site] = planes[i];
                 }
             }
         }

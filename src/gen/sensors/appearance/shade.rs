@@ -116,7 +116,7 @@ impl Look {
                     let half = (to_sun + view).normalize_or(n);
                     let power = 2f32.powf(2.0 + 9.0 * s.gloss);
                     let spot = n.dot(half).max(0.0).powf(power) * (power + 2.0) * 0.125;
-                    out += air.sun * (s.mirror * spot.min(60.0) * facing.max(0.0));
+                    out += air.sun * (s.mirror * spot.min(25.0) * facing.max(0.0));
                 }
             }
         } else if strength > 0.0 {
