@@ -303,7 +303,7 @@ fn cast_block(index: u32, o: vec3f, d: vec3f, t_in: f32, t_out: f32, stride: f32
         let mask = column_mask(cell.x * CY + cell.y);
         if any((mask & z_bits(qo.z + qd.z * t, qo.z + qd.z * t_end)) != vec2u(0u)) {
             var k = ceil(t / stride) * stride;
-            for (var guard = 0; guard < 64 && k < t_end; guard++) {
+            for (var guard = 0; guard < 256 && k < t_end; guard++) {
                 let p = o + d * k;
                 let z = to_field(p).z;
                 if z >= 0.0 && z < f32(NZ - 1u) {
