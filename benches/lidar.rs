@@ -26,8 +26,7 @@ fn main() {
             answers.iter().filter(|a| a.is_hit()).count()
         });
         let mut with_car = grid.clone();
-        for (x, y, z) in
-            (118..130).flat_map(|x| (106..111).flat_map(move |y| (1..6).map(move |z| (x, y, z))))
+        for (x, y, z) in (118..130).flat_map(|x| (106..111).flat_map(move |y| (1..6).map(move |z| (x, y, z))))
         {
             let free = grid.get(x, y, z) == Class::FREE;
             with_car.set(x, y, z, if free { Class::Car.id() } else { Class::FREE });

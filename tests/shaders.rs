@@ -45,7 +45,11 @@ fn every_shader_file_is_listed_and_validates() {
 }
 
 fn all() -> impl Iterator<Item = Shader> {
-    SHADERS.iter().chain(COMPUTE_SHADERS).copied().chain([appearance()])
+    SHADERS
+        .iter()
+        .chain(COMPUTE_SHADERS)
+        .copied()
+        .chain([appearance()])
 }
 
 fn computes(shader: &Shader) -> bool {

@@ -75,11 +75,10 @@ impl Graphics {
     /// Maps of the cloud that was set last; `None` if the processor has to draw them.
     pub fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
         let options = SplatOptions::default();
-        let drawn = self.splats.as_mut()?.render_raw(
-            std::slice::from_ref(camera),
-            [width, height],
-            &options,
-        );
+        let drawn = self
+            .splats
+            .as_mut()?
+            .render_raw(std::slice::from_ref(camera), [width, height], &options);
         let Ok(mut maps) = drawn else {
             self.splats = None;
             return None;
@@ -170,7 +169,10 @@ mod tests {
         ] {
             let prepared = Prepared::new(&scene, mode, source);
             let on_card = prepared.upload(&mut card);
-            assert_eq!(on_card, source != CameraSource::Voxels || mode == CameraMode::Picture);
+            assert_eq!(
+                on_card,
+                source != CameraSource::Voxels || mode == CameraMode::Picture
+            );
             let size = [96, 54];
             let there = prepared.view(&scene, 1, size, true, on_card.then_some(&mut card));
             let here = prepared.view(&scene, 1, size, true, None);

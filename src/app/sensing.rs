@@ -214,7 +214,9 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
     let mut view = |camera, size, quick| {
         let (prepared, on_card) = prepared.get_or_insert_with(|| {
             let prepared = Prepared::new(scene, wanted.mode, wanted.source);
-            let card = prepared.suits_card().then(|| graphics.get_or_insert_with(Graphics::find));
+            let card = prepared
+                .suits_card()
+                .then(|| graphics.get_or_insert_with(Graphics::find));
             let on_card = card.and_then(Option::as_mut).is_some_and(|c| prepared.upload(c));
             (prepared, on_card)
         });

@@ -142,7 +142,9 @@ fn is_complete(path: &Path, arrays: &[&str], frames: usize) -> bool {
     };
     let holds = |h: &serde_json::Value, name: &str| {
         let count = h.pointer(&format!("/{name}/shape/0"));
-        count.and_then(serde_json::Value::as_u64).is_some_and(|n| n >= frames as u64)
+        count
+            .and_then(serde_json::Value::as_u64)
+            .is_some_and(|n| n >= frames as u64)
     };
     header().is_some_and(|h| arrays.iter().all(|name| holds(&h, name)))
 }
@@ -212,10 +214,13 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let run = |frames| {
             let make = |i: usize| -> std::io::Result<Small> { Ok(Small(i as u8)) };
-            write(folder.path(), frames, make, |_| true).expect("written").resumed_shards
+            write(folder.path(), frames, make, |_| true)
+                .expect("written")
+                .resumed_shards
         };
         let counts = || -> Vec<Vec<u8>> {
-            let read = |shard: usize| std::fs::read(folder.path().join(format!("shard_{shard:05}.safetensors")));
+            let read =
+                |shard: usize| std::fs::read(folder.path().join(format!("shard_{shard:05}.safetensors")));
             let values = |bytes: Vec<u8>| {
                 let file = safetensors::SafeTensors::deserialize(&bytes).expect("a shard");
                 file.tensor("value").expect("its array").data().to_vec()

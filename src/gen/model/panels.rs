@@ -122,7 +122,9 @@ impl Panels {
         out: &mut [f32],
         out_stride: usize,
     ) {
-        let last = pairs.iter().fold([0, 0], |m: [u32; 2], p| [m[0].max(p[0]), m[1].max(p[1])]);
+        let last = pairs
+            .iter()
+            .fold([0, 0], |m: [u32; 2], p| [m[0].max(p[0]), m[1].max(p[1])]);
         if pairs.is_empty() || self.n == 0 {
             return;
         }
@@ -151,7 +153,16 @@ impl Panels {
                 .flat_map(|p| a[p[1] as usize * a_stride..][..k].iter().copied())
                 .collect();
             let mut product = vec![0.0; pairs.len() * columns];
-            plain(&gathered, k, b, wide, [pairs.len(), columns, k], Start::Zero, &mut product, columns);
+            plain(
+                &gathered,
+                k,
+                b,
+                wide,
+                [pairs.len(), columns, k],
+                Start::Zero,
+                &mut product,
+                columns,
+            );
             for (pair, add) in pairs.iter().zip(product.chunks_exact(columns)) {
                 let to = &mut out[pair[0] as usize * out_stride + first..][..columns];
                 to.iter_mut().zip(add).for_each(|(v, a)| *v += a);

@@ -38,7 +38,11 @@ pub fn cast(world: &World, origin: DVec3, dir: DVec3, max_range_m: f64) -> Optio
         let range_m = -origin.z / dir.z;
         let p = origin + dir * range_m;
         if GridSpec::column_at(p.x, p.y).is_none() && range_m > 0.0 && range_m <= max_range_m {
-            let class = if is_street(world, p) { Class::DriveableSurface } else { Class::Terrain };
+            let class = if is_street(world, p) {
+                Class::DriveableSurface
+            } else {
+                Class::Terrain
+            };
             best = Some(Behind {
                 range_m,
                 class,
@@ -106,10 +110,11 @@ fn stands(world: &World, p: DVec3, axis: usize, row: usize) -> Option<(Class, u3
 /// True where a street that leaves the grid would go on.
 fn is_street(world: &World, p: DVec3) -> bool {
     let most = GRID_M - 0.2;
-    let edge = p.truncate().clamp(glam::DVec2::splat(-most), glam::DVec2::splat(most));
-    GridSpec::column_at(edge.x, edge.y).is_some_and(|[x, y]| {
-        world.layout.cells()[x * GridSpec::NY + y] & BevLayer::DrivableArea.bit() != 0
-    })
+    let edge = p
+        .truncate()
+        .clamp(glam::DVec2::splat(-most), glam::DVec2::splat(most));
+    GridSpec::column_at(edge.x, edge.y)
+        .is_some_and(|[x, y]| world.layout.cells()[x * GridSpec::NY + y] & BevLayer::DrivableArea.bit() != 0)
 }
 
 #[cfg(test)]
@@ -135,7 +140,10 @@ mod tests {
             walls += usize::from(hit.instance > 0);
             street += usize::from(hit.instance > 0 && is_street(&world, p));
         }
-        assert!(found > 1000 && walls > 500 && street == 0, "{found} {walls} {street}");
+        assert!(
+            found > 1000 && walls > 500 && street == 0,
+            "{found} {walls} {street}"
+        );
         for bad in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::Z, -DVec3::Z] {
             let hit = cast(&world, origin, bad, 90.0);
             assert!(hit.is_none_or(|h| h.range_m.is_finite()));

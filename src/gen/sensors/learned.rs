@@ -39,7 +39,10 @@ pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
     // Casts saturate: a box of any size covers at most the grid, NaN nothing.
     let range = |axis: usize, n: usize| {
         let at = |p: DVec3| GridSpec::to_voxel_units(p)[axis].floor();
-        let (low, high) = (at(ego.center_m - ego.size_m / 2.0), at(ego.center_m + ego.size_m / 2.0));
+        let (low, high) = (
+            at(ego.center_m - ego.size_m / 2.0),
+            at(ego.center_m + ego.size_m / 2.0),
+        );
         (low.max(0.0) as usize).min(n)..(high + 1.0).clamp(0.0, n as f64) as usize
     };
     for x in range(0, GridSpec::NX) {
@@ -254,7 +257,12 @@ mod tests {
             };
             let (here, there) = (field(0, 0), field(96, 40));
             assert!(!here.planes.is_empty());
-            for (a, b) in here.hidden.iter().flat_map(|l| l.0).zip(there.hidden.iter().flat_map(|l| l.0)) {
+            for (a, b) in here
+                .hidden
+                .iter()
+                .flat_map(|l| l.0)
+                .zip(there.hidden.iter().flat_map(|l| l.0))
+            {
                 assert!((a - b).abs() <= 1e-5 * a.abs().max(1.0), "{a} {b}");
             }
             assert!(

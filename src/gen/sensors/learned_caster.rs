@@ -57,11 +57,7 @@ impl LearnedCaster {
     }
 
     /// The first LiDAR of a rig on its moving vehicle; `None` if it has none.
-    pub fn of_rig(
-        net: Arc<LidarNet>,
-        grid: &VoxelGrid,
-        rig: &SensorRig,
-    ) -> Result<Option<Self>, ModelError> {
+    pub fn of_rig(net: Arc<LidarNet>, grid: &VoxelGrid, rig: &SensorRig) -> Result<Option<Self>, ModelError> {
         let ego = Some(EgoBox::of_rig(rig));
         let new = |pattern| Self::new(net, grid, pattern, rig.ego_speed_mps, ego);
         rig.lidars.first().map(new).transpose()
@@ -124,7 +120,10 @@ fn reached(region: &Region) -> [DVec3; 2] {
 /// (NaN): it is shot again to no effect.
 fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
     let o = GridSpec::to_voxel_units(ray.origin);
-    let inverse = ray.direction.to_array().map(|d| if d == 0.0 { 1e300 } else { 1.0 / d });
+    let inverse = ray
+        .direction
+        .to_array()
+        .map(|d| if d == 0.0 { 1e300 } else { 1.0 / d });
     let inverse = DVec3::from_array(inverse);
     let (a, b) = ((*low - o) * inverse, (*high - o) * inverse);
     let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(reach));
@@ -156,8 +155,8 @@ mod tests {
         for i in 0..8 {
             let (x0, y0) = (draw.below(190), draw.below(194));
             let label = if i % 3 == 2 { Class::FREE } else { Class::Car.id() };
-            for (x, y, z) in (x0..x0 + 9)
-                .flat_map(|x| (y0..y0 + 5).flat_map(move |y| (1..6).map(move |z| (x, y, z))))
+            for (x, y, z) in
+                (x0..x0 + 9).flat_map(|x| (y0..y0 + 5).flat_map(move |y| (1..6).map(move |z| (x, y, z))))
             {
                 grid.set(x, y, z, label);
             }

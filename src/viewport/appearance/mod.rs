@@ -97,7 +97,9 @@ impl LookRenderer {
         let binding: u64 = limits.max_storage_buffer_binding_size;
         let most = binding.min(limits.max_buffer_size);
         if bytes > most {
-            return Err(LookError(format!("{bytes} bytes are needed at once, {most} can be had")));
+            return Err(LookError(format!(
+                "{bytes} bytes are needed at once, {most} can be had"
+            )));
         }
         Ok(())
     }

@@ -10,8 +10,8 @@ use anyhow::{Context, bail};
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::app::graphics::{Graphics, OnCard};
 use crate::app::camera_views::march;
+use crate::app::graphics::{Graphics, OnCard};
 use crate::app::{open, picture};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::appearance::{

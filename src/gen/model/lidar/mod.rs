@@ -15,7 +15,9 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use self::field::{APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all};
+use self::field::{
+    APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all,
+};
 use self::prior::Cells;
 use self::sites::{CHILDREN, Sites, Volume, physical, surface};
 use self::sparse::{Block, Convolution};

@@ -208,7 +208,11 @@ impl Cells {
             let forward = direction[axis] > 0.0;
             walk.place += at as usize * stride;
             walk.steps[axis] = if forward { stride } else { stride.wrapping_neg() };
-            walk.left[axis] = if forward { N[axis] - 1 - at as usize } else { at as usize };
+            walk.left[axis] = if forward {
+                N[axis] - 1 - at as usize
+            } else {
+                at as usize
+            };
             if inv[axis].is_finite() {
                 walk.plane[axis] = at + f64::from(u8::from(forward));
                 walk.next[axis] = (walk.plane[axis] - o[axis]) * inv[axis];

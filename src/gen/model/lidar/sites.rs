@@ -121,9 +121,8 @@ impl Level {
         let volume = Volume::new(shape, &keys);
         let places: Vec<u32> = keys.iter().map(|k| volume.place(*k) as u32).collect();
         let first = volume.steps[0] + volume.steps[1] + 1;
-        let steps: [usize; TAPS] = std::array::from_fn(|tap| {
-            tap / 9 * volume.steps[0] + tap / 3 % 3 * volume.steps[1] + tap % 3
-        });
+        let steps: [usize; TAPS] =
+            std::array::from_fn(|tap| tap / 9 * volume.steps[0] + tap / 3 % 3 * volume.steps[1] + tap % 3);
         let around = Gather::new(keys.len(), TAPS, keys.len(), |row, tap| {
             volume.sites[places[row] as usize - first + steps[tap]]
         });
@@ -241,7 +240,8 @@ fn coarser(fine: &mut Level) -> Level {
     });
     coarse.children = Gather::new(sites, CHILDREN, fine_sites, |row, tap| {
         let [x, y, z] = Level::place(shape, coarse.keys[row]);
-        fine.volume.at([2 * x + tap / 4, 2 * y + tap / 2 % 2, 2 * z + tap % 2])
+        fine.volume
+            .at([2 * x + tap / 4, 2 * y + tap / 2 % 2, 2 * z + tap % 2])
     });
     coarse
 }
@@ -297,7 +297,9 @@ mod tests {
                 let parents = fine.parent.pairs(tap).map(|[child, parent]| [parent, child]);
                 assert_eq!(children, parents.collect::<Vec<_>>());
             }
-            let all = (0..CHILDREN).map(|tap| fine.parent.pairs(tap).count()).sum::<usize>();
+            let all = (0..CHILDREN)
+                .map(|tap| fine.parent.pairs(tap).count())
+                .sum::<usize>();
             assert_eq!(all, fine.keys.len());
         }
         assert!(Sites::new([200, 200, 16], Vec::new()).levels[2].keys.is_empty());

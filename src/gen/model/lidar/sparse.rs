@@ -162,19 +162,17 @@ impl Block {
         norm_all(&self.norm, x, normed);
         let normed = &*normed;
         let width = self.conv.bias.len();
-        x.par_chunks_mut(PIECE * width)
-            .zip(&around.pieces)
-            .for_each_init(
-                || (Vec::new(), Vec::new()),
-                |(inner, add), (x, piece)| {
-                    inner.resize(x.len(), 0.0);
-                    add.resize(x.len(), 0.0);
-                    self.conv.piece(normed, piece, inner);
-                    inner.iter_mut().for_each(|v| *v = v.max(0.0));
-                    self.linear.rows(inner, add);
-                    x.iter_mut().zip(&*add).for_each(|(v, a)| *v += a);
-                },
-            );
+        x.par_chunks_mut(PIECE * width).zip(&around.pieces).for_each_init(
+            || (Vec::new(), Vec::new()),
+            |(inner, add), (x, piece)| {
+                inner.resize(x.len(), 0.0);
+                add.resize(x.len(), 0.0);
+                self.conv.piece(normed, piece, inner);
+                inner.iter_mut().for_each(|v| *v = v.max(0.0));
+                self.linear.rows(inner, add);
+                x.iter_mut().zip(&*add).for_each(|(v, a)| *v += a);
+            },
+        );
     }
 }
 

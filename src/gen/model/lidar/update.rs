@@ -171,8 +171,11 @@ fn cheaper(regions: &[Region]) -> Option<(usize, usize, Region)> {
 /// The new voxels with the numbers of those that were there before, zeros for the others.
 fn kept(old: &Field, keys: Vec<u32>, classes: Vec<u8>) -> Field {
     let n = keys.len() + 1;
-    let (mut hidden, mut planes, mut appearance) =
-        (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
+    let (mut hidden, mut planes, mut appearance) = (
+        Vec::with_capacity(n),
+        Vec::with_capacity(n),
+        Vec::with_capacity(n),
+    );
     let nothing = old.keys.len();
     let mut copy = |from: std::ops::Range<usize>| {
         hidden.extend_from_slice(&old.hidden[from.clone()]);
@@ -186,7 +189,11 @@ fn kept(old: &Field, keys: Vec<u32>, classes: Vec<u8>) -> Field {
         while at < nothing && old.keys[at] < *key {
             at += 1;
         }
-        let site = if at < nothing && old.keys[at] == *key { at } else { nothing };
+        let site = if at < nothing && old.keys[at] == *key {
+            at
+        } else {
+            nothing
+        };
         if site == run.end && site < nothing {
             run.end += 1;
         } else {
@@ -230,8 +237,8 @@ mod tests {
         let grid = complete(&World::random(5), Vertical::Occ3d);
         let block = |grid: &VoxelGrid, x0: usize, y0: usize, label: u8| {
             let mut grid = grid.clone();
-            for (x, y, z) in (x0..x0 + 11)
-                .flat_map(|x| (y0..y0 + 5).flat_map(move |y| (2..6).map(move |z| (x, y, z))))
+            for (x, y, z) in
+                (x0..x0 + 11).flat_map(|x| (y0..y0 + 5).flat_map(move |y| (2..6).map(move |z| (x, y, z))))
             {
                 grid.set(x.min(199), y.min(199), z, label);
             }

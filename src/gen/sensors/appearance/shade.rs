@@ -7,7 +7,6 @@ use super::material::Surface;
 use super::noise::ramp;
 use crate::scene::look::{FAR_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, MIRROR_M, SHADOW_M};
 
-
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {

@@ -194,13 +194,20 @@ impl Paint {
         let (mut crossings, mut outlines) = (Vec::new(), Vec::new());
         for c in &self.crossings {
             crossings.extend([(outlines.len() / 2) as u32, c.outline.len() as u32]);
-            crossings.extend([c.low, c.high, c.along].iter().flat_map(|p| [bits(p.x), bits(p.y)]));
+            crossings.extend(
+                [c.low, c.high, c.along]
+                    .iter()
+                    .flat_map(|p| [bits(p.x), bits(p.y)]),
+            );
             outlines.extend(c.outline.iter().flat_map(|p| [bits(p.x), bits(p.y)]));
         }
         out.push(Section::Crossings, crossings);
         out.push(Section::Outlines, outlines);
         out.at[Section::CrossingCount as usize] = self.crossings.len() as u32;
-        for (section, of) in [(Section::Allowed, &self.allowed), (Section::Orphans, &self.orphans)] {
+        for (section, of) in [
+            (Section::Allowed, &self.allowed),
+            (Section::Orphans, &self.orphans),
+        ] {
             let mut cells = of.clone();
             cells.resize(GridSpec::COLUMNS, 0);
             out.push(section, cells);
