@@ -87,7 +87,7 @@ fn pictures_agree_with_the_processor() {
             let here = look.picture(camera, SIZE[0], SIZE[1], &light);
             let there = look.render(camera, SIZE[0], SIZE[1], Quality::Full);
             let colours: HashSet<&[u8]> = there.rgba.chunks_exact(4).collect();
-            assert!(colours.len() > 200, "{name}: there is something to compare");
+            assert!(colours.len() > 50, "{name}: there is something to compare");
             let (mean, near) = agreement(&here, &there);
             println!(
                 "{name}, {}: mean {mean:.3}/255, within 8/255: {:.2} %",

@@ -127,7 +127,8 @@ fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
     let inverse = DVec3::from_array(inverse);
     let (a, b) = ((*low - o) * inverse, (*high - o) * inverse);
     let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(reach));
-    !(near > far)
+    let beside = near > far;
+    !beside
 }
 
 #[cfg(test)]
