@@ -2,8 +2,8 @@
 
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use sceneloom::viewport::shaders::{COMPUTE_SHADERS, SHADERS, Shader};
-use sceneloom::viewport::{FRAME_UNIFORM_BYTES, SPLAT_UNIFORM_BYTES};
+use sceneloom::viewport::shaders::{COMPUTE_SHADERS, SHADERS, Shader, appearance};
+use sceneloom::viewport::{APPEARANCE_UNIFORM_BYTES, FRAME_UNIFORM_BYTES, SPLAT_UNIFORM_BYTES};
 
 #[test]
 fn every_shader_file_is_listed_and_validates() {
@@ -30,10 +30,10 @@ fn every_shader_file_is_listed_and_validates() {
             panic!("{}: {}", shader.name, e.emit_to_string(shader.source));
         }
         let entries: Vec<&str> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-        if COMPUTE_SHADERS.iter().any(|s| s.name == shader.name) {
+        if computes(&shader) {
             let compute = |e: &naga::EntryPoint| e.stage == naga::ShaderStage::Compute;
             assert!(!entries.is_empty() && module.entry_points.iter().all(compute));
-            downlevel(shader, &module);
+            downlevel(&shader, &module);
         } else {
             assert!(
                 entries.contains(&"vs_main") && entries.contains(&"fs_main"),
@@ -44,8 +44,16 @@ fn every_shader_file_is_listed_and_validates() {
     }
 }
 
-fn all() -> impl Iterator<Item = &'static Shader> {
-    SHADERS.iter().chain(COMPUTE_SHADERS)
+fn all() -> impl Iterator<Item = Shader> {
+    SHADERS
+        .iter()
+        .chain(COMPUTE_SHADERS)
+        .copied()
+        .chain([appearance()])
+}
+
+fn computes(shader: &Shader) -> bool {
+    COMPUTE_SHADERS.iter().any(|s| s.name == shader.name) || shader.name == "appearance"
 }
 
 /// A compute shader keeps to what the smallest devices offer, entry point by entry point: four
@@ -77,7 +85,8 @@ fn uniforms_are_as_large_here_as_there() {
         let module = naga::front::wgsl::parse_str(shader.source).expect("checked above");
         let mut layouter = Layouter::default();
         layouter.update(module.to_ctx()).expect("sized types");
-        let (name, bytes) = match COMPUTE_SHADERS.iter().any(|s| s.name == shader.name) {
+        let (name, bytes) = match computes(&shader) {
+            true if shader.name == "appearance" => ("View", APPEARANCE_UNIFORM_BYTES),
             true => ("Batch", SPLAT_UNIFORM_BYTES),
             false => ("Frame", FRAME_UNIFORM_BYTES),
         };

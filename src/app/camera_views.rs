@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::graphics::Graphics;
 use super::state::{CameraMode, CameraSource, LidarModel, UiState};
 use crate::generation::sensors::appearance::{CameraImage, Conditions, Look, Quality};
 use crate::generation::sensors::cloud::GaussianCloud;
@@ -170,12 +171,36 @@ impl Prepared {
         }
     }
 
-    /// What camera `camera` of the scene's rig shows. Panics if the rig has no such camera.
-    pub fn view(&self, scene: &Scene, camera: usize, [width, height]: [u32; 2], quick: bool) -> CameraView {
+    /// True for what a graphics card can draw.
+    pub fn suits_card(&self) -> bool {
+        matches!(self, Self::Splats(_) | Self::Look(_))
+    }
+
+    /// Takes it up to a graphics card; false if the processor has to draw it.
+    pub fn upload(&self, card: &mut Graphics) -> bool {
+        match self {
+            Self::Splats(cloud) => card.set_cloud(cloud),
+            Self::Look(look) => card.set_look(look),
+            _ => false,
+        }
+    }
+
+    /// What camera `camera` of the scene's rig shows, drawn by the card that this was taken up to, if any. Panics if the
+    /// rig has no such camera.
+    pub fn view(
+        &self,
+        scene: &Scene,
+        camera: usize,
+        [width, height]: [u32; 2],
+        quick: bool,
+        mut card: Option<&mut Graphics>,
+    ) -> CameraView {
         let (frame, of) = (scene.frame(), &scene.rig.cameras[camera]);
         let picture = match self {
             Self::Splats(cloud) => {
-                CameraPicture::Maps(splat::render(cloud, of, width, height, &SplatOptions::default()))
+                let drawn = card.as_mut().and_then(|c| c.maps(of, [width, height]));
+                let draw = || splat::render(cloud, of, width, height, &SplatOptions::default());
+                CameraPicture::Maps(drawn.unwrap_or_else(draw))
             }
             Self::March(march) => {
                 CameraPicture::Maps(march.render(of, width, height).into_camera_maps(&of.name))
@@ -187,7 +212,8 @@ impl Prepared {
             }
             Self::Look(look) => {
                 let quality = if quick { Quality::Preview } else { Quality::Full };
-                CameraPicture::Picture(look.render(of, width, height, quality))
+                let drawn = card.and_then(|c| c.picture(look, of, [width, height], quality));
+                CameraPicture::Picture(drawn.unwrap_or_else(|| look.render(of, width, height, quality)))
             }
         };
         CameraView {

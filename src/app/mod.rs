@@ -18,6 +18,7 @@ mod execute;
 pub mod export;
 mod exporting;
 mod file_dialogs;
+pub mod graphics;
 mod icons;
 pub mod keymap;
 mod keys;

@@ -7,10 +7,12 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
+use super::graphics::Graphics;
 use super::state::{CameraMode, LidarModel};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
-use crate::generation::sensors::learned::{self, Drops};
+use crate::generation::sensors::learned::Drops;
+use crate::generation::sensors::learned_caster::LearnedCaster;
 use crate::generation::sensors::lidar::EgoBox;
 use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
@@ -140,14 +142,17 @@ fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn())
     }
 }
 
-/// What is kept between requests: the exact sweep and the rig that it belongs to, the network once it was asked for,
-/// the last full pictures.
+/// What is kept between requests: the exact sweep and the learned one with the rigs that they belong to, the network
+/// once it was asked for, the last full pictures.
 #[derive(Default)]
 struct Kept {
     lidar: Option<(Arc<SensorRig>, Caster)>,
     net: Option<Arc<LidarNet>>,
+    learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
+    /// The graphics card, once views that it can draw were asked for.
+    graphics: Option<Option<Graphics>>,
 }
 
 impl Kept {
@@ -174,11 +179,21 @@ impl Kept {
 
     /// `None` where the network cannot be had; the exact sweep takes its place.
     fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
-        let (rig, drops) = (&scene.rig, if lost_echoes { Drops::Keep } else { Drops::Likely });
+        let drops = if lost_echoes { Drops::Keep } else { Drops::Likely };
+        let (grid, rig) = (&scene.frame().occupancy, &scene.rig);
         if self.net.is_none() {
             self.net = LidarNet::bundled().ok();
         }
-        learned::rig_sweep(self.net.as_ref()?, &scene.frame().occupancy, rig, drops).ok()
+        let net = self.net.as_ref()?;
+        match &mut self.learned {
+            Some((of, caster)) if of == rig => caster.update(grid).ok()?,
+            kept => {
+                let caster = LearnedCaster::of_rig(net.clone(), grid, rig).ok()?;
+                *kept = caster.map(|caster| (rig.clone(), caster));
+            }
+        }
+        let sweep = self.learned.as_ref().map(|(_, caster)| caster.sweep(drops));
+        Some(sweep.unwrap_or_default())
     }
 }
 
@@ -195,10 +210,18 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());
-    let mut prepared = None;
+    let (mut prepared, graphics) = (None, &mut kept.graphics);
     let mut view = |camera, size, quick| {
-        let prepared = prepared.get_or_insert_with(|| Prepared::new(scene, wanted.mode, wanted.source));
-        prepared.view(scene, camera, size, quick)
+        let (prepared, on_card) = prepared.get_or_insert_with(|| {
+            let prepared = Prepared::new(scene, wanted.mode, wanted.source);
+            let card = prepared
+                .suits_card()
+                .then(|| graphics.get_or_insert_with(Graphics::find));
+            let on_card = card.and_then(Option::as_mut).is_some_and(|c| prepared.upload(c));
+            (prepared, on_card)
+        });
+        let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
+        prepared.view(scene, camera, size, quick, card)
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {

@@ -88,8 +88,8 @@ pub trait Shard: Send + Sized {
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)>;
 }
 
-/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`. Shards that hold all arrays are kept, so an
-/// interrupted run resumes. `make` makes frame i; its first error ends the run. `progress` gets the number of
+/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`. Shards that hold all arrays of their frames are kept,
+/// so an interrupted run resumes, and a larger one adds to what is there. `make` makes frame i; its first error ends the run. `progress` gets the number of
 /// finished frames and may end the run by returning false.
 pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     dir: &Path,
@@ -106,7 +106,7 @@ pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     for (shard, first) in (0..frames).step_by(SHARD_FRAMES).enumerate() {
         let path = dir.join(format!("shard_{shard:05}.safetensors"));
         let n = SHARD_FRAMES.min(frames - first);
-        if is_complete(&path, F::ARRAYS) {
+        if is_complete(&path, F::ARRAYS, n) {
             report.resumed_shards += 1;
             done.fetch_add(n, Ordering::Relaxed);
             continue;
@@ -128,8 +128,9 @@ pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     Ok(report)
 }
 
-/// True for a shard that holds every array; older ones lack some.
-fn is_complete(path: &Path, arrays: &[&str]) -> bool {
+/// True for a shard that holds every array, older ones lack some, of at least `frames` frames: that of an end that is no
+/// longer the end has fewer.
+fn is_complete(path: &Path, arrays: &[&str], frames: usize) -> bool {
     let header = || -> Option<serde_json::Value> {
         let mut file = std::fs::File::open(path).ok()?;
         let mut length = [0; 8];
@@ -139,7 +140,13 @@ fn is_complete(path: &Path, arrays: &[&str]) -> bool {
         file.take(length).read_to_end(&mut header).ok()?;
         serde_json::from_slice(&header).ok()
     };
-    header().is_some_and(|h| arrays.iter().all(|name| h.get(name).is_some()))
+    let holds = |h: &serde_json::Value, name: &str| {
+        let count = h.pointer(&format!("/{name}/shape/0"));
+        count
+            .and_then(serde_json::Value::as_u64)
+            .is_some_and(|n| n >= frames as u64)
+    };
+    header().is_some_and(|h| arrays.iter().all(|name| holds(&h, name)))
 }
 
 fn write_shard<F: Shard>(path: &PathBuf, frames: &[F]) -> std::io::Result<u64> {
@@ -186,3 +193,46 @@ impl Shard for OccupancyFrame {
 
 /// Shape of a grid.
 const VOXELS: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Small(u8);
+
+    impl Shard for Small {
+        const ARRAYS: &'static [&'static str] = &["value"];
+
+        fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
+            vec![(Dtype::U8, Vec::new(), frames.iter().map(|f| f.0).collect())]
+        }
+    }
+
+    /// A short last shard is made anew when more frames are asked for, a full one is left alone; fewer ask for nothing.
+    #[test]
+    fn a_short_shard_is_not_complete_for_more_frames() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let run = |frames| {
+            let make = |i: usize| -> std::io::Result<Small> { Ok(Small(i as u8)) };
+            write(folder.path(), frames, make, |_| true)
+                .expect("written")
+                .resumed_shards
+        };
+        let counts = || -> Vec<Vec<u8>> {
+            let read =
+                |shard: usize| std::fs::read(folder.path().join(format!("shard_{shard:05}.safetensors")));
+            let values = |bytes: Vec<u8>| {
+                let file = safetensors::SafeTensors::deserialize(&bytes).expect("a shard");
+                file.tensor("value").expect("its array").data().to_vec()
+            };
+            (0..3).map_while(|s| read(s).ok()).map(values).collect()
+        };
+        assert_eq!(run(SHARD_FRAMES + 3), 0);
+        assert_eq!(run(SHARD_FRAMES + 3), 2);
+        assert_eq!(run(SHARD_FRAMES + 5), 1, "the second is short");
+        assert_eq!(counts(), [(0..32).collect::<Vec<u8>>(), (32..37).collect()]);
+        assert_eq!(run(2 * SHARD_FRAMES + 1), 1);
+        assert_eq!(run(7), 1);
+        assert_eq!(counts().iter().map(Vec::len).collect::<Vec<_>>(), [32, 32, 1]);
+    }
+}

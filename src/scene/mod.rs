@@ -9,6 +9,7 @@ pub mod grid;
 pub mod infer;
 pub mod inferred;
 pub mod layout;
+pub mod look;
 pub mod pose;
 pub mod raster;
 pub mod rig;

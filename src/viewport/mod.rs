@@ -5,6 +5,7 @@
 //! coordinates are in the ego frame, which is the world of this view. One drawable is one file here
 //! and one shader of the same name in `shaders/`.
 
+pub mod appearance;
 mod background;
 mod camera;
 mod device;
@@ -26,6 +27,7 @@ mod voxels;
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
+pub use appearance::{APPEARANCE_UNIFORM_BYTES, LookError, LookRenderer};
 pub use camera::{ViewCamera, ViewPreset};
 pub use device::headless_device;
 pub use error::ViewportError;

@@ -42,3 +42,11 @@ pub const COMPUTE_SHADERS: &[Shader] = &[
     shader!("splat_sort", "splat"),
     shader!("splat_tiles", "splat"),
 ];
+
+/// The shader that computes camera pictures, with constants in front.
+pub fn appearance() -> Shader {
+    Shader {
+        name: "appearance",
+        source: super::appearance::appearance_source(),
+    }
+}

@@ -110,6 +110,65 @@ impl Panels {
             );
         }
     }
+
+    /// For every pair [to, from]: row `to` of `out` += row `from` of `a` times rows `from_k..from_k + k` of the matrix.
+    /// No `to` occurs twice. Which pairs stand together changes no bit of a row. One thread.
+    pub fn add_pairs(
+        &self,
+        a: &[f32],
+        a_stride: usize,
+        pairs: &[[u32; 2]],
+        [from_k, k]: [usize; 2],
+        out: &mut [f32],
+        out_stride: usize,
+    ) {
+        let last = pairs
+            .iter()
+            .fold([0, 0], |m: [u32; 2], p| [m[0].max(p[0]), m[1].max(p[1])]);
+        if pairs.is_empty() || self.n == 0 {
+            return;
+        }
+        let [to, from] = last.map(|v| v as usize);
+        assert!(k > 0 && from_k + k <= self.k && from * a_stride + k <= a.len());
+        assert!(to * out_stride + self.n <= out.len() && out_stride >= self.n);
+        for first in (0..self.n).step_by(PANEL) {
+            let (wide, columns) = (width(self.n, first), PANEL.min(self.n - first));
+            let b = &self.values()[first * self.k + from_k * wide..][..k * wide];
+            #[cfg(target_arch = "x86_64")]
+            if ours() {
+                let sizes = avx512::Sizes {
+                    a_stride,
+                    b_stride: wide,
+                    out_stride,
+                    n: columns,
+                    k,
+                };
+                // SAFETY: the machine has AVX-512; by the asserts every row of a pair lies inside its slice, and
+                // `b` holds k rows of a whole number of sixteens.
+                unsafe { avx512::pairs(pairs, &sizes, a.as_ptr(), b.as_ptr(), out[first..].as_mut_ptr()) };
+                continue;
+            }
+            let gathered: Vec<f32> = pairs
+                .iter()
+                .flat_map(|p| a[p[1] as usize * a_stride..][..k].iter().copied())
+                .collect();
+            let mut product = vec![0.0; pairs.len() * columns];
+            plain(
+                &gathered,
+                k,
+                b,
+                wide,
+                [pairs.len(), columns, k],
+                Start::Zero,
+                &mut product,
+                columns,
+            );
+            for (pair, add) in pairs.iter().zip(product.chunks_exact(columns)) {
+                let to = &mut out[pair[0] as usize * out_stride + first..][..columns];
+                to.iter_mut().zip(add).for_each(|(v, a)| *v += a);
+            }
+        }
+    }
 }
 
 /// Columns that the panel beginning at column `first` of `n` takes in memory.
@@ -247,6 +306,79 @@ mod avx512 {
                 1 => of!(1),
                 2 => of!(2),
                 _ => of!(3),
+            }
+        }
+    }
+
+    /// out[to] += a[from] b for each pair [to, from] of rows.
+    ///
+    /// # Safety
+    /// AVX-512F; the rows of every pair and k rows of b (to a whole number of sixteens) must be valid.
+    #[target_feature(enable = "avx512f")]
+    pub unsafe fn pairs(pairs: &[[u32; 2]], s: &Sizes, a: *const f32, b: *const f32, out: *mut f32) {
+        macro_rules! of {
+            ($p:expr, $vectors:literal) => {
+                match $p.len() {
+                    1 => pairs_of::<1, $vectors>($p, s, a, b, out),
+                    2 => pairs_of::<2, $vectors>($p, s, a, b, out),
+                    3 => pairs_of::<3, $vectors>($p, s, a, b, out),
+                    4 => pairs_of::<4, $vectors>($p, s, a, b, out),
+                    5 => pairs_of::<5, $vectors>($p, s, a, b, out),
+                    6 => pairs_of::<6, $vectors>($p, s, a, b, out),
+                    7 => pairs_of::<7, $vectors>($p, s, a, b, out),
+                    _ => pairs_of::<ROWS, $vectors>($p, s, a, b, out),
+                }
+            };
+        }
+        for some in pairs.chunks(ROWS) {
+            // SAFETY: handed on.
+            unsafe {
+                match s.n.div_ceil(LANES) {
+                    1 => of!(some, 1),
+                    2 => of!(some, 2),
+                    _ => of!(some, 3),
+                }
+            }
+        }
+    }
+
+    #[target_feature(enable = "avx512f")]
+    #[inline]
+    unsafe fn pairs_of<const R: usize, const V: usize>(
+        pairs: &[[u32; 2]],
+        s: &Sizes,
+        a: *const f32,
+        b: *const f32,
+        out: *mut f32,
+    ) {
+        let mask = |v: usize| -> u16 { (0xffff_u32 >> (LANES - (s.n - v * LANES).min(LANES))) as u16 };
+        let mut sums: [[__m512; V]; R] = [[_mm512_setzero_ps(); V]; R];
+        // SAFETY: the caller's promise; masked loads and stores touch n values of a row.
+        unsafe {
+            let from: [*const f32; R] = std::array::from_fn(|r| a.add(pairs[r][1] as usize * s.a_stride));
+            let to: [*mut f32; R] = std::array::from_fn(|r| out.add(pairs[r][0] as usize * s.out_stride));
+            for (to, sums) in to.iter().zip(&mut sums) {
+                for (v, sum) in sums.iter_mut().enumerate() {
+                    *sum = _mm512_maskz_loadu_ps(mask(v), to.add(v * LANES));
+                }
+            }
+            for k in 0..s.k {
+                let row = b.add(k * s.b_stride);
+                let mut columns = [_mm512_setzero_ps(); V];
+                for (v, c) in columns.iter_mut().enumerate() {
+                    *c = _mm512_loadu_ps(row.add(v * LANES));
+                }
+                for (from, sums) in from.iter().zip(&mut sums) {
+                    let value = _mm512_set1_ps(*from.add(k));
+                    for (sum, c) in sums.iter_mut().zip(columns) {
+                        *sum = _mm512_fmadd_ps(value, c, *sum);
+                    }
+                }
+            }
+            for (to, sums) in to.iter().zip(&sums) {
+                for (v, sum) in sums.iter().enumerate() {
+                    _mm512_mask_storeu_ps(to.add(v * LANES), mask(v), *sum);
+                }
             }
         }
     }

@@ -27,19 +27,38 @@ pub fn is_dropped(drop_logit: f32) -> bool {
 
 /// The field of a scene as the network sees it, without the voxels of the own vehicle.
 pub fn field(net: &LidarNet, grid: &VoxelGrid, exclude: Option<EgoBox>) -> Result<Field, ModelError> {
-    let Some(ego) = exclude else {
-        return net.field(grid);
-    };
+    net.field(&seen(grid, exclude))
+}
+
+/// A grid without what stands in the place of the own vehicle.
+pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
     let mut seen = grid.clone();
-    for (x, y, z, class) in grid.iter_set() {
-        let near = (GridSpec::center(x, y, z) - ego.center_m)
-            .abs()
-            .cmple(ego.size_m / 2.0);
-        if near.all() && !class_is_ground(class) {
-            seen.set(x, y, z, Class::FREE);
+    let Some(ego) = exclude else {
+        return seen;
+    };
+    // Casts saturate: a box of any size covers at most the grid, NaN nothing.
+    let range = |axis: usize, n: usize| {
+        let at = |p: DVec3| GridSpec::to_voxel_units(p)[axis].floor();
+        let (low, high) = (
+            at(ego.center_m - ego.size_m / 2.0),
+            at(ego.center_m + ego.size_m / 2.0),
+        );
+        (low.max(0.0) as usize).min(n)..(high + 1.0).clamp(0.0, n as f64) as usize
+    };
+    for x in range(0, GridSpec::NX) {
+        for y in range(1, GridSpec::NY) {
+            for z in range(2, GridSpec::NZ) {
+                let class = grid.get(x, y, z);
+                let near = (GridSpec::center(x, y, z) - ego.center_m)
+                    .abs()
+                    .cmple(ego.size_m / 2.0);
+                if class != Class::FREE && near.all() && !class_is_ground(class) {
+                    seen.set(x, y, z, Class::FREE);
+                }
+            }
         }
     }
-    net.field(&seen)
+    seen
 }
 
 fn class_is_ground(label: impl Into<u8>) -> bool {
@@ -238,7 +257,12 @@ mod tests {
             };
             let (here, there) = (field(0, 0), field(96, 40));
             assert!(!here.planes.is_empty());
-            for (a, b) in here.hidden.iter().flatten().zip(there.hidden.iter().flatten()) {
+            for (a, b) in here
+                .hidden
+                .iter()
+                .flat_map(|l| l.0)
+                .zip(there.hidden.iter().flat_map(|l| l.0))
+            {
                 assert!((a - b).abs() <= 1e-5 * a.abs().max(1.0), "{a} {b}");
             }
             assert!(

@@ -4,10 +4,12 @@
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
 pub mod appearance;
+pub mod backdrop;
 pub mod caster;
 pub mod cloud;
 pub mod color;
 pub mod learned;
+pub mod learned_caster;
 pub mod lidar;
 pub mod march;
 pub mod mpi;

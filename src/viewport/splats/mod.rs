@@ -5,12 +5,12 @@
 //! tile of 16 x 16 pixels, blend. Only what every device offers is used: no subgroups, four storage
 //! buffers a stage, the limits of `headless_device`.
 
-mod buffers;
+pub(in crate::viewport) mod buffers;
 mod encode;
 mod error;
 mod layout;
-mod pipelines;
-mod read;
+pub(in crate::viewport) mod pipelines;
+pub(in crate::viewport) mod read;
 
 use std::ops::Range;
 

@@ -108,7 +108,10 @@ impl Pipelines {
 }
 
 /// Runs `work` and turns what the device says against it into an error.
-pub(super) fn checked<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, SplatError> {
+pub(in crate::viewport) fn checked<T>(
+    device: &wgpu::Device,
+    work: impl FnOnce() -> T,
+) -> Result<T, SplatError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);

@@ -5,7 +5,7 @@ use crate::scene::splats::{MIN_DEPTH_COVERAGE, RawMaps};
 use crate::viewport::error::one_line;
 
 /// Waits for the device and shows the first `bytes` of a buffer to `look`.
-pub(super) fn mapped<T>(
+pub(in crate::viewport) fn mapped<T>(
     device: &wgpu::Device,
     buffer: &wgpu::Buffer,
     bytes: u64,

@@ -11,6 +11,7 @@ use serde_json::json;
 
 use super::{Common, Outcome, output};
 use crate::app::camera_views::march;
+use crate::app::graphics::{Graphics, OnCard};
 use crate::app::{open, picture};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::appearance::{
@@ -103,7 +104,12 @@ impl Render {
 
     fn appearance(&self, scene: &Scene) -> anyhow::Result<Vec<CameraImage>> {
         let said = Conditions::from_prompt(&scene.prompt);
-        let images = RayMarched.synthesize(&SynthesisInput {
+        // The same bytes on every machine, unless a card is asked for.
+        let marched: Box<dyn ViewSynthesizer> = match Graphics::forced() {
+            Some(card) => Box::new(OnCard::new(card)),
+            None => Box::new(RayMarched),
+        };
+        let images = marched.synthesize(&SynthesisInput {
             frame: scene.frame(),
             rig: &scene.rig,
             size: self.size,

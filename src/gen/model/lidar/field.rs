@@ -43,8 +43,16 @@ pub struct SdfHead {
     pub s: f32,
 }
 
-/// What the UNet found in a scene, ready for rays.
+/// Sixteen numbers of a site that lie in one cache line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct Line(pub [f32; HIDDEN]);
+
+/// What the UNet found in a scene, ready for rays. After the last site all lists but `keys` and `classes` hold one more
+/// of zeros, for the corners where no voxel is.
 pub struct Field {
+    /// The voxels in rising order.
+    pub keys: Vec<u32>,
     /// Where the voxels are.
     pub volume: Volume,
     /// Where samples are worth it.
@@ -52,11 +60,11 @@ pub struct Field {
     /// Label of each site.
     pub classes: Vec<u8>,
     /// `[site]`.
-    pub hidden: Vec<[f32; HIDDEN]>,
+    pub hidden: Vec<Line>,
     /// `[site]`: offset in m, slopes in m per voxel.
     pub planes: Vec<[f32; 4]>,
     /// `[site]`.
-    pub appearance: Vec<[f32; APPEARANCE]>,
+    pub appearance: Vec<Line>,
 }
 
 /// Where samples are taken.
@@ -83,12 +91,16 @@ pub struct Met {
     pub inputs: [f32; RAY_INPUTS],
     /// Samples that were taken.
     pub samples: u16,
+    /// What lies farther away did not matter, m.
+    pub reach_m: f32,
 }
 
 /// The eight voxel centres around a point.
 struct Corners {
     base: usize,
+    cell: [usize; 3],
     share: [f32; 3],
+    weights: [[f32; 2]; 3],
 }
 
 impl Field {
@@ -110,57 +122,73 @@ impl Field {
         let steps = self.volume.steps;
         Some(Corners {
             base: place[0] * steps[0] + place[1] * steps[1] + place[2],
+            cell: place,
+            weights: share.map(|s| [1.0 - s, 1.0 - (1.0 - s)]),
             share,
         })
     }
 
-    /// Calls `visit` with site, weight and offset from its centre (in voxels) for each corner that is there.
+    /// Site (the number of sites where there is none), weight (0 there) and offset from its centre (in voxels) of a
+    /// corner.
     #[inline(always)]
-    fn each(&self, c: &Corners, mut visit: impl FnMut(usize, f32, [f32; 3])) {
+    fn corner(&self, c: &Corners, corner: usize) -> (usize, f32, [f32; 3]) {
         let steps = self.volume.steps;
-        let missing = self.classes.len() as u32;
-        for corner in 0..8 {
-            let bits = [corner >> 2, corner >> 1 & 1, corner & 1];
-            let site = self.volume.sites[c.base + bits[0] * steps[0] + bits[1] * steps[1] + bits[2]];
-            if site >= missing {
-                continue;
-            }
-            let offset: [f32; 3] = std::array::from_fn(|a| c.share[a] - bits[a] as f32);
-            let weight = (1.0 - offset[0].abs()) * (1.0 - offset[1].abs()) * (1.0 - offset[2].abs());
-            visit(site as usize, weight, offset);
-        }
+        let bits = [corner >> 2, corner >> 1 & 1, corner & 1];
+        let site = self.volume.sites[c.base + bits[0] * steps[0] + bits[1] * steps[1] + bits[2]] as usize;
+        let offset = [0, 1, 2].map(|a| c.share[a] - bits[a] as f32);
+        let weight = c.weights[0][bits[0]] * c.weights[1][bits[1]] * c.weights[2][bits[2]];
+        // No branch: which corners are there is anybody's guess.
+        (site, if site < self.classes.len() { weight } else { 0.0 }, offset)
     }
 
     /// Signed distance at a point of the ego frame, m.
     #[inline(always)]
     pub fn sdf(&self, head: &SdfHead, p_in_ego: [f32; 3]) -> f32 {
-        let Some(corners) = self.corners(p_in_ego) else {
+        let Some(corners) = self.corners(p_in_ego).filter(|c| self.cells.is_active(c.cell)) else {
             return FREE_SDF_M;
         };
-        let (mut there, mut plane, mut blended) = (0.0f32, 0.0f32, [0.0f32; HIDDEN]);
-        self.each(&corners, |site, weight, offset| {
+        let (mut there, mut planes, mut blended) = (0.0f32, [0.0f32; 4], [0.0f32; HIDDEN]);
+        for corner in 0..8 {
+            let (site, weight, offset) = self.corner(&corners, corner);
             there += weight;
-            let [a, bx, by, bz] = self.planes[site];
-            plane += weight * (a + bx * offset[0] + by * offset[1] + bz * offset[2]);
-            for (b, h) in blended.iter_mut().zip(&self.hidden[site]) {
+            let (own, at) = (&self.planes[site], [1.0, offset[0], offset[1], offset[2]]);
+            for ((sum, own), at) in planes.iter_mut().zip(own).zip(at) {
+                *sum += weight * own * at;
+            }
+            for (b, h) in blended.iter_mut().zip(&self.hidden[site].0) {
                 *b += weight * h;
             }
-        });
+        }
         if there <= 0.0 {
             return FREE_SDF_M;
         }
-        let mut next = head.first_bias;
-        for ((b, support), weights) in blended.iter().zip(&head.support).zip(&head.first) {
-            let h = (b + there * support).max(0.0);
-            for (n, w) in next.iter_mut().zip(weights) {
-                *n += h * w;
+        let plane = (planes[0] + planes[1]) + (planes[2] + planes[3]);
+        for (b, support) in blended.iter_mut().zip(&head.support) {
+            *b = (*b + there * support).max(0.0);
+        }
+        // Four sums side by side: none waits for the one before.
+        let mut sums = [[0.0f32; HIDDEN]; 4];
+        sums[0] = head.first_bias;
+        for (four, weights) in blended.chunks_exact(4).zip(head.first.chunks_exact(4)) {
+            for ((sum, h), weights) in sums.iter_mut().zip(four).zip(weights) {
+                for (n, w) in sum.iter_mut().zip(weights) {
+                    *n += h * w;
+                }
             }
         }
-        let mut rest = head.second_bias;
-        for (n, w) in next.iter().zip(&head.second) {
-            rest += n.max(0.0) * w;
+        let [a, b, c, d] = &sums;
+        let mut parts: [f32; HIDDEN] = std::array::from_fn(|i| {
+            let n = (a[i] + b[i]) + (c[i] + d[i]);
+            n.max(0.0) * head.second[i]
+        });
+        let mut half = HIDDEN / 2;
+        while half > 0 {
+            for i in 0..half {
+                parts[i] += parts[i + half];
+            }
+            half /= 2;
         }
-        plane / there.max(LEAST_SUPPORT) + rest
+        plane / there.max(LEAST_SUPPORT) + (parts[0] + head.second_bias)
     }
 
     /// Appearance at a point, zero where no voxel is near.
@@ -168,11 +196,12 @@ impl Field {
     fn looks(&self, p_in_ego: [f32; 3]) -> [f32; APPEARANCE] {
         let mut out = [0.0; APPEARANCE];
         if let Some(corners) = self.corners(p_in_ego) {
-            self.each(&corners, |site, weight, _| {
-                for (o, a) in out.iter_mut().zip(&self.appearance[site]) {
+            for corner in 0..8 {
+                let (site, weight, _) = self.corner(&corners, corner);
+                for (o, a) in out.iter_mut().zip(&self.appearance[site].0) {
                     *o += weight * a;
                 }
-            });
+            }
         }
         out
     }
@@ -182,11 +211,12 @@ impl Field {
     fn class(&self, p_in_ego: [f32; 3]) -> u8 {
         let (mut best, mut class) = (-1.0, Class::FREE);
         if let Some(corners) = self.corners(p_in_ego) {
-            self.each(&corners, |site, weight, _| {
-                if weight > best {
+            for corner in 0..8 {
+                let (site, weight, _) = self.corner(&corners, corner);
+                if site < self.classes.len() && weight > best {
                     (best, class) = (weight, self.classes[site]);
                 }
-            });
+            }
         }
         class
     }
@@ -239,41 +269,54 @@ impl Field {
 
     #[inline(always)]
     fn shoot(&self, head: &SdfHead, ray: &Ray, sampling: Sampling, room: &mut Room) -> Met {
-        let (t, f, logs) = (&mut room.t, &mut room.f, &mut room.logs);
-        t.clear();
-        f.clear();
-        logs.clear();
-        let [origin, direction] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
-        let mut log_pass = 0.0f32;
-        let mut take = |position: f32| -> bool {
-            let value = self.sdf(head, along(origin, direction, position));
-            let log = neus::log_sigmoid(head.s * value);
-            log_pass += logs.last().map_or(0.0, |before| (log - before).min(0.0));
-            t.push(position);
-            f.push(value);
-            logs.push(log);
-            log_pass > OPAQUE && t.len() < MOST_SAMPLES
-        };
+        room.t.clear();
+        room.f.clear();
+        room.logs.clear();
+        let line @ [origin, direction] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
+        let (mut log_pass, mut reach_m) = (0.0f32, f32::INFINITY);
         match sampling {
-            Sampling::Prior => self
-                .cells
-                .samples(ray.origin, ray.direction, ray.range_m, &mut take),
+            Sampling::Prior => {
+                for position in self.cells.samples(ray.origin, ray.direction, ray.range_m) {
+                    if !self.take(head, line, position, &mut log_pass, room) {
+                        reach_m = position;
+                        break;
+                    }
+                }
+                self.refine(head, origin, direction, room);
+            }
             Sampling::Uniform(n) => {
                 let [near, far] = ray.range_m.map(|v| v as f32);
                 for i in 0..n.min(MOST_SAMPLES) {
-                    take(near + (far.min(60.0) - near) * (i as f32 + 0.5) / n as f32);
+                    let position = near + (far.min(60.0) - near) * (i as f32 + 0.5) / n as f32;
+                    self.take(head, line, position, &mut log_pass, room);
                 }
             }
         }
-        if sampling == Sampling::Prior {
-            self.refine(head, origin, direction, room);
+        let samples = [&room.t[..], &room.f, &room.logs];
+        let mut met = self.render(origin, direction, samples, &mut room.weights);
+        met.reach_m = reach_m;
+        met
+    }
+
+    /// Takes a sample; false if the ray need not go on.
+    #[inline(always)]
+    fn take(
+        &self,
+        head: &SdfHead,
+        [origin, direction]: [[f32; 3]; 2],
+        position: f32,
+        log_pass: &mut f32,
+        room: &mut Room,
+    ) -> bool {
+        let value = self.sdf(head, along(origin, direction, position));
+        let log = neus::log_sigmoid(head.s * value);
+        if let Some(before) = room.logs.last() {
+            *log_pass += (log - before).min(0.0);
         }
-        self.render(
-            origin,
-            direction,
-            [&room.t, &room.f, &room.logs],
-            &mut room.weights,
-        )
+        room.t.push(position);
+        room.f.push(value);
+        room.logs.push(log);
+        *log_pass > OPAQUE && room.t.len() < MOST_SAMPLES
     }
 
     /// Divides the heaviest interval where it is crossed, twice: the importance step of NeuS, at the one place where it

@@ -7,6 +7,7 @@ pub mod neus;
 pub mod prior;
 pub mod sites;
 pub mod sparse;
+pub mod update;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -14,10 +15,12 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use self::field::{APPEARANCE, Field, HIDDEN, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all};
+use self::field::{
+    APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all,
+};
 use self::prior::Cells;
-use self::sites::{CHILDREN, Level, Sites, Volume, physical, surface};
-use self::sparse::{Block, Convolution, normed};
+use self::sites::{CHILDREN, Sites, Volume, physical, surface};
+use self::sparse::{Block, Convolution};
 use super::layers::{Linear, Norm};
 use super::{ModelError, check_finite};
 use crate::generation::weights::{self, WeightFile, WeightsError};
@@ -186,45 +189,86 @@ impl LidarNet {
     /// The field of a scene in the vertical convention of labels. It depends on the voxels alone: keep it for other
     /// poses and patterns. Labels beyond the table count as `others`.
     pub fn field(&self, grid: &VoxelGrid) -> Result<Field, ModelError> {
-        let labels = physical(grid);
-        let keys = surface(&labels);
-        let classes = keys
-            .iter()
-            .map(|k| labels[*k as usize].min(CLASSES as u8 - 1))
-            .collect();
+        let (keys, classes) = voxels(grid);
         self.field_of(keys, classes)
     }
 
     /// The same of sorted, unique voxels at their physical height, and their classes.
     pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<Field, ModelError> {
-        let x = normed(&self.norm, &self.features(&keys, &classes));
-        check_finite("features of the LiDAR's voxels", &x)?;
-        let geometry = self.geometry.parallel(&x, PIECE);
-        let appearance = self.appearance.parallel(&x, PIECE);
-        let rows = geometry.chunks_exact(HIDDEN + 4);
-        Ok(Field {
-            volume: Volume::new(SHAPE, &keys),
+        let mut field = Field {
+            hidden: vec![Line([0.0; HIDDEN]); keys.len() + 1],
+            planes: vec![[0.0; 4]; keys.len() + 1],
+            appearance: vec![Line([0.0; APPEARANCE]); keys.len() + 1],
             cells: Cells::new(&keys, &classes),
-            hidden: rows.clone().map(|r| std::array::from_fn(|i| r[i])).collect(),
-            planes: rows.map(|r| std::array::from_fn(|i| r[HIDDEN + i])).collect(),
-            appearance: appearance
-                .chunks_exact(APPEARANCE)
-                .map(|r| std::array::from_fn(|i| r[i]))
-                .collect(),
+            volume: Volume::new(SHAPE, &keys),
+            keys,
             classes,
-        })
+        };
+        let Field {
+            keys,
+            classes,
+            hidden,
+            planes,
+            appearance,
+            ..
+        } = &mut field;
+        self.fill(keys, classes, [hidden, appearance], planes)?;
+        Ok(field)
+    }
+
+    /// What the field holds of each voxel: hidden numbers and appearance, planes. The lists may be longer.
+    fn fill(
+        &self,
+        keys: &[u32],
+        classes: &[u8],
+        [hidden, appearance]: [&mut [Line]; 2],
+        planes: &mut [[f32; 4]],
+    ) -> Result<(), ModelError> {
+        let x = self.features(keys, classes);
+        let width = self.config.widths[0];
+        x.par_chunks(PIECE * width)
+            .zip(hidden.par_chunks_mut(PIECE))
+            .zip(appearance.par_chunks_mut(PIECE))
+            .zip(planes.par_chunks_mut(PIECE))
+            .try_for_each_init(
+                || (vec![0.0; PIECE * width], vec![0.0; PIECE * (HIDDEN + 4)]),
+                |(normed, out), (((x, hidden), appearance), planes)| {
+                    let (rows, normed) = (x.len() / width, &mut normed[..x.len()]);
+                    self.norm.rows(x, normed);
+                    check_finite("features of the LiDAR's voxels", normed)?;
+                    self.geometry.rows(normed, &mut out[..rows * (HIDDEN + 4)]);
+                    let rows_of = out.chunks_exact(HIDDEN + 4).zip(&mut *hidden).zip(planes);
+                    for ((row, hidden), plane) in rows_of.take(rows) {
+                        hidden.0.copy_from_slice(&row[..HIDDEN]);
+                        plane.copy_from_slice(&row[HIDDEN..]);
+                    }
+                    self.appearance.rows(normed, &mut out[..rows * APPEARANCE]);
+                    let rows_of = out.chunks_exact(APPEARANCE).zip(&mut *appearance);
+                    for (row, looks) in rows_of.take(rows) {
+                        looks.0.copy_from_slice(row);
+                    }
+                    Ok(())
+                },
+            )
     }
 
     /// What the UNet makes of the voxels, `[site][channel]`.
     fn features(&self, keys: &[u32], classes: &[u8]) -> Vec<f32> {
         let width = self.config.widths[0];
-        let mut x = Vec::with_capacity(keys.len() * width);
-        for (key, class) in keys.iter().zip(classes) {
-            let [_, _, z] = Level::place(SHAPE, *key);
-            let of_class = &self.class_table[usize::from(*class) * width..][..width];
-            let of_height = &self.height_table[z * width..][..width];
-            x.extend(of_class.iter().zip(of_height).map(|(a, b)| a + b));
-        }
+        let mut x = vec![0.0; keys.len() * width];
+        x.par_chunks_mut(PIECE * width)
+            .zip(keys.par_chunks(PIECE))
+            .zip(classes.par_chunks(PIECE))
+            .for_each(|((x, keys), classes)| {
+                for ((x, key), class) in x.chunks_exact_mut(width).zip(keys).zip(classes) {
+                    let z = *key as usize % SHAPE[2];
+                    let of_class = &self.class_table[usize::from(*class) * width..][..width];
+                    let of_height = &self.height_table[z * width..][..width];
+                    for ((x, a), b) in x.iter_mut().zip(of_class).zip(of_height) {
+                        *x = a + b;
+                    }
+                }
+            });
         match &self.unet {
             Some(unet) if !keys.is_empty() => unet.apply(x, &Sites::new(SHAPE, keys.to_vec())),
             _ => x,
@@ -275,6 +319,17 @@ impl LidarNet {
     }
 }
 
+/// The voxels that the network works on, in rising order, and their classes.
+fn voxels(grid: &VoxelGrid) -> (Vec<u32>, Vec<u8>) {
+    let labels = physical(grid);
+    let keys = surface(&labels);
+    let classes = keys
+        .iter()
+        .map(|k| labels[*k as usize].min(CLASSES as u8 - 1))
+        .collect();
+    (keys, classes)
+}
+
 impl Unet {
     fn new(w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
         let strided = |w: &mut WeightFile<'_>, name: &str, from: usize, to: usize| {
@@ -291,18 +346,19 @@ impl Unet {
 
     fn apply(&self, mut x0: Vec<f32>, sites: &Sites) -> Vec<f32> {
         let [l0, l1, l2] = &sites.levels;
-        let add = |x: &mut [f32], more: &[f32]| x.iter_mut().zip(more).for_each(|(v, m)| *v += m);
-        self.enter[0].apply(&mut x0, &l0.around);
+        // One buffer for all norms: fresh memory costs as much as what is written into it.
+        let mut room = Vec::new();
+        self.enter[0].apply(&mut x0, &l0.around, &mut room);
         let mut x1 = self.down[0].apply(&x0, &l1.children);
-        self.enter[1].apply(&mut x1, &l1.around);
+        self.enter[1].apply(&mut x1, &l1.around, &mut room);
         let mut x2 = self.down[1].apply(&x1, &l2.children);
-        self.middle
-            .iter()
-            .for_each(|block| block.apply(&mut x2, &l2.around));
-        add(&mut x1, &self.up[0].apply(&x2, &l1.parent));
-        self.leave[0].apply(&mut x1, &l1.around);
-        add(&mut x0, &self.up[1].apply(&x1, &l0.parent));
-        self.leave[1].apply(&mut x0, &l0.around);
+        for block in &self.middle {
+            block.apply(&mut x2, &l2.around, &mut room);
+        }
+        self.up[0].add(&x2, &l1.parent, &mut x1);
+        self.leave[0].apply(&mut x1, &l1.around, &mut room);
+        self.up[1].add(&x1, &l0.parent, &mut x0);
+        self.leave[1].apply(&mut x0, &l0.around, &mut room);
         x0
     }
 }

@@ -18,6 +18,7 @@ const ENTRY_M: f64 = 1e-3;
 const STILL: f64 = 1e-30;
 
 /// Density of samples by cell.
+#[derive(PartialEq)]
 pub struct Cells {
     density: Vec<u8>, // [x][y][z]: 0 nothing, 1 ground only, 2 things
 }
@@ -33,6 +34,96 @@ pub struct Segment {
     pub density: f64,
     /// True if the ray came out of inactive space.
     pub begins_run: bool,
+}
+
+/// The active segments of a ray. No closures: what is inlined into a function that is compiled for wide vectors must
+/// be written out (see `kernels::vectorised`).
+pub struct Walk<'a> {
+    density: &'a [u8],
+    place: usize,
+    /// To the next cell along each axis, wrapping, and how many there are.
+    steps: [usize; 3],
+    left: [usize; 3],
+    next: [f64; 3],
+    origin: [f64; 3],
+    inverse: [f64; 3],
+    plane: [f64; 3],
+    t: f64,
+    leave: f64,
+    active_before: bool,
+    over: bool,
+}
+
+impl Iterator for Walk<'_> {
+    type Item = Segment;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Segment> {
+        // Ends: every turn takes one of `left`, or is the last.
+        while !self.over {
+            let next = self.next;
+            let axis = if next[0] <= next[1] && next[0] <= next[2] {
+                0
+            } else if next[1] <= next[2] {
+                1
+            } else {
+                2
+            };
+            let (from, end) = (self.t, next[axis].min(self.leave).max(self.t));
+            let density = self.density[self.place];
+            let begins_run = !self.active_before;
+            self.active_before = density > 0;
+            self.t = end;
+            if next[axis] >= self.leave || self.left[axis] == 0 {
+                self.over = true;
+            } else {
+                self.left[axis] -= 1;
+                self.place = self.place.wrapping_add(self.steps[axis]);
+                self.plane[axis] += if self.inverse[axis] > 0.0 { 1.0 } else { -1.0 };
+                self.next[axis] = (self.plane[axis] - self.origin[axis]) * self.inverse[axis];
+            }
+            if density > 0 {
+                return Some(Segment {
+                    from_m: from * GridSpec::VOXEL_M,
+                    to_m: end * GridSpec::VOXEL_M,
+                    density: if density == 1 { GROUND_DENSITY } else { 1.0 },
+                    begins_run,
+                });
+            }
+        }
+        None
+    }
+}
+
+/// Sample positions along a ray, m.
+pub struct Samples<'a> {
+    walk: Walk<'a>,
+    to_m: f64,
+    density: f64,
+    left: f64,
+    due: f64,
+}
+
+impl Iterator for Samples<'_> {
+    type Item = f32;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<f32> {
+        loop {
+            if self.due <= self.left {
+                self.left -= self.due;
+                self.due = SPACING_M;
+                return Some((self.to_m - self.left / self.density) as f32);
+            }
+            self.due -= self.left;
+            let segment = self.walk.next()?;
+            (self.to_m, self.density, self.left) = (segment.to_m, segment.density, segment.mass());
+            if segment.begins_run {
+                self.due = SPACING_M;
+                return Some((segment.from_m + ENTRY_M) as f32);
+            }
+        }
+    }
 }
 
 impl Segment {
@@ -61,29 +152,43 @@ impl Cells {
         Self { density }
     }
 
-    /// Visits the active segments of a ray between `near_m` and `far_m` in order until `visit` returns false. Nothing
-    /// is visited if an input is NaN or the direction zero.
+    /// True if one of the eight voxels around a cell is there.
     #[inline(always)]
-    pub fn walk(
-        &self,
-        origin_in_ego: DVec3,
-        direction: DVec3,
-        [near_m, far_m]: [f64; 2],
-        mut visit: impl FnMut(Segment) -> bool,
-    ) {
+    pub fn is_active(&self, [x, y, z]: [usize; 3]) -> bool {
+        self.density[(x * N[1] + y) * N[2] + z] > 0
+    }
+
+    /// The active segments of a ray between `near_m` and `far_m`, in order. There are none if an input is NaN or the
+    /// direction zero.
+    #[inline(always)]
+    pub fn walk(&self, origin_in_ego: DVec3, direction: DVec3, [near_m, far_m]: [f64; 2]) -> Walk<'_> {
         let unit = GridSpec::VOXEL_M;
         let o = GridSpec::to_voxel_units(origin_in_ego) + 0.5;
         let inverse = |d: f64| if d.abs() < STILL { f64::INFINITY } else { 1.0 / d };
         let inv = DVec3::new(inverse(direction.x), inverse(direction.y), inverse(direction.z));
+        let mut walk = Walk {
+            density: &self.density,
+            place: 0,
+            steps: [0; 3],
+            left: [0; 3],
+            next: [f64::INFINITY; 3],
+            origin: o.to_array(),
+            inverse: inv.to_array(),
+            plane: [0.0; 3],
+            t: 0.0,
+            leave: 0.0,
+            active_before: false,
+            over: true,
+        };
         let (mut enter, mut leave) = (near_m / unit, far_m / unit);
         if !o.is_finite() || !direction.is_finite() || enter.is_nan() || leave.is_nan() {
-            return;
+            return walk;
         }
         for axis in 0..3 {
             let n = N[axis] as f64;
             if inv[axis].is_infinite() {
                 if !(o[axis] >= 0.0 && o[axis] < n) {
-                    return;
+                    return walk;
                 }
                 continue;
             }
@@ -94,92 +199,39 @@ impl Cells {
         // A direction of zero leaves `leave` at the far end: there is no ray. NaN is no ray either.
         let inside = enter < leave;
         if !inside || !leave.is_finite() || direction == DVec3::ZERO {
-            return;
+            return walk;
         }
-        let mut cell = [0usize; 3];
-        let mut next = [f64::INFINITY; 3];
-        for axis in 0..3 {
+        for (axis, stride) in [N[1] * N[2], N[2], 1].into_iter().enumerate() {
             let at = (o[axis] + direction[axis] * enter)
                 .floor()
                 .clamp(0.0, (N[axis] - 1) as f64);
-            cell[axis] = at as usize;
-            if inv[axis].is_finite() {
-                let plane = at + f64::from(u8::from(direction[axis] > 0.0));
-                next[axis] = (plane - o[axis]) * inv[axis];
-            }
-        }
-        let mut t = enter;
-        let mut active_before = false;
-        // One step per plane at most.
-        for _ in 0..N[0] + N[1] + N[2] + 3 {
-            let axis = if next[0] <= next[1] && next[0] <= next[2] {
-                0
-            } else if next[1] <= next[2] {
-                1
-            } else {
-                2
-            };
-            let end = next[axis].min(leave);
-            let density = match self.density[(cell[0] * N[1] + cell[1]) * N[2] + cell[2]] {
-                0 => 0.0,
-                1 => GROUND_DENSITY,
-                _ => 1.0,
-            };
-            if density > 0.0 {
-                let segment = Segment {
-                    from_m: t * unit,
-                    to_m: end.max(t) * unit,
-                    density,
-                    begins_run: !active_before,
-                };
-                if !visit(segment) {
-                    return;
-                }
-            }
-            active_before = density > 0.0;
-            if next[axis] >= leave {
-                return;
-            }
-            t = end.max(t);
             let forward = direction[axis] > 0.0;
-            if forward && cell[axis] + 1 >= N[axis] || !forward && cell[axis] == 0 {
-                return;
+            walk.place += at as usize * stride;
+            walk.steps[axis] = if forward { stride } else { stride.wrapping_neg() };
+            walk.left[axis] = if forward {
+                N[axis] - 1 - at as usize
+            } else {
+                at as usize
+            };
+            if inv[axis].is_finite() {
+                walk.plane[axis] = at + f64::from(u8::from(forward));
+                walk.next[axis] = (walk.plane[axis] - o[axis]) * inv[axis];
             }
-            cell[axis] = if forward { cell[axis] + 1 } else { cell[axis] - 1 };
-            let plane = (cell[axis] + usize::from(forward)) as f64;
-            next[axis] = (plane - o[axis]) * inv[axis];
         }
+        (walk.t, walk.leave, walk.over) = (enter, leave, false);
+        walk
     }
 
-    /// Visits sample positions (m) in rising order until `visit` returns false: where a run of active cells begins,
-    /// then one per [`SPACING_M`] of density.
+    /// Sample positions (m) in rising order: where a run of active cells begins, then one per [`SPACING_M`] of density.
     #[inline(always)]
-    pub fn samples(
-        &self,
-        origin_in_ego: DVec3,
-        direction: DVec3,
-        range_m: [f64; 2],
-        mut visit: impl FnMut(f32) -> bool,
-    ) {
-        let mut due = SPACING_M;
-        self.walk(origin_in_ego, direction, range_m, |segment| {
-            if segment.begins_run {
-                due = SPACING_M;
-                if !visit((segment.from_m + ENTRY_M) as f32) {
-                    return false;
-                }
-            }
-            let mut left = segment.mass();
-            while due <= left {
-                left -= due;
-                due = SPACING_M;
-                if !visit((segment.to_m - left / segment.density) as f32) {
-                    return false;
-                }
-            }
-            due -= left;
-            true
-        });
+    pub fn samples(&self, origin_in_ego: DVec3, direction: DVec3, range_m: [f64; 2]) -> Samples<'_> {
+        Samples {
+            walk: self.walk(origin_in_ego, direction, range_m),
+            to_m: 0.0,
+            density: 1.0,
+            left: 0.0,
+            due: SPACING_M,
+        }
     }
 
     /// `n` samples at equal shares of the ray's density, u = (i + 1/2) / n through the inverse of its distribution:
@@ -191,11 +243,7 @@ impl Cells {
         range_m: [f64; 2],
         n: usize,
     ) -> Vec<f32> {
-        let mut segments = Vec::new();
-        self.walk(origin_in_ego, direction, range_m, |s| {
-            segments.push(s);
-            true
-        });
+        let segments: Vec<Segment> = self.walk(origin_in_ego, direction, range_m).collect();
         let total: f64 = segments.iter().map(Segment::mass).sum();
         let mut out = Vec::with_capacity(n);
         let some = total > 0.0; // not so for NaN
@@ -286,11 +334,7 @@ mod tests {
                 _ => DVec3::new(a.cos() * e.cos(), a.sin() * e.cos(), e.sin()),
             };
             let origin = DVec3::new(0.3, -0.7, 1.84);
-            let mut segments = Vec::new();
-            cells.walk(origin, direction, [0.0, 80.0], |s| {
-                segments.push(s);
-                true
-            });
+            let segments: Vec<Segment> = cells.walk(origin, direction, [0.0, 80.0]).collect();
             assert!(segments.windows(2).all(|w| w[0].to_m <= w[1].from_m + 1e-9));
             for k in 0..8000 {
                 let t = f64::from(k) * 0.01 + 0.005;
@@ -310,13 +354,9 @@ mod tests {
     #[test]
     fn samples_begin_each_run_and_are_spaced() {
         let cells = cells(&[[110, 100, 7], [130, 100, 7], [131, 100, 7]]);
-        let mut found = Vec::new();
         // Along the row of centres: the first voxel's cells reach from 3.8 to 4.6 m, the others' from 11.8 to 13 m.
         let origin = DVec3::new(0.0, 0.2, 2.0);
-        cells.samples(origin, DVec3::X, [1.0, 60.0], |t| {
-            found.push(t);
-            true
-        });
+        let found: Vec<f32> = cells.samples(origin, DVec3::X, [1.0, 60.0]).collect();
         let first = found.partition_point(|t| *t < 8.0);
         for (run, [from, to]) in [(&found[..first], [3.8f32, 4.6]), (&found[first..], [11.8, 13.0])] {
             assert!((run[0] - from - 0.001).abs() < 1e-4, "{found:?}");

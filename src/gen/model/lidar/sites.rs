@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use super::sparse::Gather;
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// How far the ground lies below its place in labels, and how far everything else is smeared down, in bins
@@ -14,101 +15,124 @@ pub const LEVELS: usize = 3;
 pub const TAPS: usize = 27;
 /// Children of a coarse site.
 pub const CHILDREN: usize = 8;
-/// Rows of a table that are filled in one piece.
+/// Columns that are worked on in one piece.
 const PIECE: usize = 1024;
 
 /// Labels with the vertical convention of Occ3D undone, `[x][y][z]`: the ground two bins up; of every vertical run of
 /// other things the lowest two voxels gone (all but the top, if it has no more).
 pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
     let mut out = vec![Class::FREE; GridSpec::VOXELS];
-    for (c, to) in out.chunks_exact_mut(GridSpec::NZ).enumerate() {
-        let from = grid.column(c / GridSpec::NY, c % GridSpec::NY);
-        let is_ground = |label: u8| Class::from_id(label).is_some_and(Class::is_ground);
-        let is_thing = |z: usize| z < GridSpec::NZ && from[z] != Class::FREE && !is_ground(from[z]);
-        let mut below = 0;
-        for z in 0..GridSpec::NZ {
-            if !is_thing(z) {
-                below = 0;
-                continue;
+    let kinds: [Kind; 256] = std::array::from_fn(|label| match Class::from_id(label as u8) {
+        _ if label == usize::from(Class::FREE) => Kind::Free,
+        Some(class) if class.is_ground() => Kind::Ground,
+        _ => Kind::Thing,
+    });
+    out.par_chunks_mut(GridSpec::NY * GridSpec::NZ)
+        .enumerate()
+        .for_each(|(x, slice)| {
+            for (y, to) in slice.chunks_exact_mut(GridSpec::NZ).enumerate() {
+                raise(grid.column(x, y), to, &kinds);
             }
-            if below >= RAISE || !is_thing(z + 1) {
-                to[z] = from[z];
-            }
-            below += 1;
+        });
+    out
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Free,
+    Ground,
+    Thing,
+}
+
+fn raise(from: &[u8; GridSpec::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
+    let kind = |z: usize| kinds[usize::from(from[z])];
+    let mut below = 0;
+    for z in 0..GridSpec::NZ {
+        if kind(z) != Kind::Thing {
+            below = 0;
+            continue;
         }
-        for (z, &label) in from.iter().enumerate() {
-            let raised = (z + RAISE).min(GridSpec::NZ - 1);
-            if is_ground(label) && to[raised] == Class::FREE {
-                to[raised] = label;
-            }
+        if below >= RAISE || z + 1 == GridSpec::NZ || kind(z + 1) != Kind::Thing {
+            to[z] = from[z];
+        }
+        below += 1;
+    }
+    for (z, &label) in from.iter().enumerate() {
+        let raised = (z + RAISE).min(GridSpec::NZ - 1);
+        if kind(z) == Kind::Ground && to[raised] == Class::FREE {
+            to[raised] = label;
         }
     }
-    out
 }
 
 /// Keys in rising order of the voxels of `[x][y][z]` labels that have a free neighbour: of six, the one below only above
 /// bin 3, since nothing looks at a building from underground.
 pub fn surface(labels: &[u8]) -> Vec<u32> {
     let (nx, ny, nz) = (GridSpec::NX, GridSpec::NY, GridSpec::NZ);
-    let free = |x: usize, y: usize, z: usize| labels[(x * ny + y) * nz + z] == Class::FREE;
-    let column = |c: usize| {
-        let (x, y) = (c / ny, c % ny);
-        let at_edge = x == 0 || y == 0 || x + 1 == nx || y + 1 == ny;
-        (0..nz).filter_map(move |z| {
-            let shows = || {
-                at_edge
-                    || free(x - 1, y, z)
-                    || free(x + 1, y, z)
-                    || free(x, y - 1, z)
-                    || free(x, y + 1, z)
-                    || z + 1 == nz
-                    || free(x, y, z + 1)
-                    || (z > RAISE + 1 && free(x, y, z - 1))
+    // Bit z of a column is a voxel that is not free.
+    let solid: Vec<u16> = labels
+        .par_chunks_exact(nz)
+        .with_min_len(PIECE)
+        .map(|column| {
+            let bits = column.iter().enumerate();
+            bits.fold(0, |bits, (z, l)| bits | u16::from(*l != Class::FREE) << z)
+        })
+        .collect();
+    let slice = |x: usize| {
+        let solid = &solid;
+        (0..ny).flat_map(move |y| {
+            let c = x * ny + y;
+            let own = solid[c];
+            let mut shows = if x == 0 || y == 0 || x + 1 == nx || y + 1 == ny {
+                own
+            } else {
+                own & !(solid[c - ny] & solid[c + ny] & solid[c - 1] & solid[c + 1])
             };
-            (!free(x, y, z) && shows()).then_some((c * nz + z) as u32)
+            // Above it; below it only above bin RAISE + 1.
+            shows |= own & !(own >> 1);
+            shows |= own & !(own << 1) & (u16::MAX << (RAISE + 2));
+            (0..nz)
+                .filter(move |z| shows >> z & 1 == 1)
+                .map(move |z| (c * nz + z) as u32)
         })
     };
-    (0..nx * ny).flat_map(column).collect()
+    let slices: Vec<Vec<u32>> = (0..nx).into_par_iter().map(|x| slice(x).collect()).collect();
+    slices.concat()
 }
 
-/// One level: sites in rising order of their keys, and tables of their neighbours' numbers; the number of sites stands
-/// for a neighbour that is not there.
+/// One level: sites in rising order of their keys, and who feeds whom.
 pub struct Level {
     /// Places along each axis.
     pub shape: [usize; 3],
     /// Keys, (x * ny + y) * nz + z.
     pub keys: Vec<u32>,
-    /// `[site][27]`, tap (dx, dy, dz) with dz fastest.
-    pub around: Vec<u32>,
-    /// `[site][8]`: sites of the finer level by corner (x, y, z), z fastest; empty at the finest.
-    pub children: Vec<u32>,
-    /// `[site][8]`: the coarse site above, at the place of the corner that this one is; empty at the coarsest.
-    pub parent: Vec<u32>,
+    /// Where they are.
+    pub volume: Volume,
+    /// 27 taps (dx, dy, dz) with dz fastest.
+    pub around: Gather,
+    /// 8 taps: sites of the finer level by corner (x, y, z), z fastest; no rows at the finest.
+    pub children: Gather,
+    /// 8 taps: the coarse site above, at the corner that this one is; no rows at the coarsest.
+    pub parent: Gather,
 }
 
 impl Level {
     fn new(shape: [usize; 3], keys: Vec<u32>) -> Self {
         let volume = Volume::new(shape, &keys);
-        let mut around = vec![0; keys.len() * TAPS];
-        around
-            .par_chunks_mut(PIECE * TAPS)
-            .zip(keys.par_chunks(PIECE))
-            .for_each(|(around, keys)| {
-                for (row, key) in around.chunks_exact_mut(TAPS).zip(keys) {
-                    let at = volume.place(*key);
-                    for (tap, site) in row.iter_mut().enumerate() {
-                        let steps = volume.steps;
-                        let place = at + tap / 9 * steps[0] + tap / 3 % 3 * steps[1] + tap % 3;
-                        *site = volume.sites[place - steps[0] - steps[1] - 1];
-                    }
-                }
-            });
+        let places: Vec<u32> = keys.iter().map(|k| volume.place(*k) as u32).collect();
+        let first = volume.steps[0] + volume.steps[1] + 1;
+        let steps: [usize; TAPS] =
+            std::array::from_fn(|tap| tap / 9 * volume.steps[0] + tap / 3 % 3 * volume.steps[1] + tap % 3);
+        let around = Gather::new(keys.len(), TAPS, keys.len(), |row, tap| {
+            volume.sites[places[row] as usize - first + steps[tap]]
+        });
         Self {
             shape,
             keys,
+            volume,
             around,
-            children: Vec::new(),
-            parent: Vec::new(),
+            children: Gather::none(),
+            parent: Gather::none(),
         }
     }
 
@@ -154,6 +178,12 @@ impl Volume {
     }
 }
 
+impl Volume {
+    fn at(&self, [x, y, z]: [usize; 3]) -> u32 {
+        self.sites[(x + 1) * self.steps[0] + (y + 1) * self.steps[1] + z + 1]
+    }
+}
+
 /// Sites of all levels.
 pub struct Sites {
     /// Finest first; each half as fine as the one before.
@@ -186,21 +216,33 @@ fn coarser(fine: &mut Level) -> Level {
     let above = |key: u32| {
         let [x, y, z] = Level::place(fine.shape, key);
         let corner = (x % 2) * 4 + (y % 2) * 2 + z % 2;
-        ((((x / 2) * shape[1] + y / 2) * shape[2] + z / 2) as u32, corner)
+        ([x / 2, y / 2, z / 2], corner as u32)
     };
-    let mut keys: Vec<u32> = fine.keys.iter().map(|k| above(*k).0).collect();
-    keys.sort_unstable();
-    keys.dedup();
-    let mut coarse = Level::new(shape, keys);
-    coarse.children = vec![fine.keys.len() as u32; coarse.keys.len() * CHILDREN];
-    fine.parent = vec![coarse.keys.len() as u32; fine.keys.len() * CHILDREN];
-    for (site, key) in fine.keys.iter().enumerate() {
-        let (parent_key, corner) = above(*key);
-        if let Ok(parent) = coarse.keys.binary_search(&parent_key) {
-            fine.parent[site * CHILDREN + corner] = parent as u32;
-            coarse.children[parent * CHILDREN + corner] = site as u32;
-        }
+    let mut there = vec![false; shape.iter().product()];
+    for key in &fine.keys {
+        let [x, y, z] = above(*key).0;
+        there[(x * shape[1] + y) * shape[2] + z] = true;
     }
+    let keys = (0..there.len() as u32).filter(|k| there[*k as usize]).collect();
+    let mut coarse = Level::new(shape, keys);
+    let (sites, fine_sites) = (coarse.keys.len(), fine.keys.len());
+    let parents: Vec<[u32; 2]> = fine
+        .keys
+        .iter()
+        .map(|key| {
+            let (place, corner) = above(*key);
+            [coarse.volume.at(place), corner]
+        })
+        .collect();
+    fine.parent = Gather::new(fine_sites, CHILDREN, sites, |row, tap| {
+        let [parent, corner] = parents[row];
+        if corner == tap as u32 { parent } else { u32::MAX }
+    });
+    coarse.children = Gather::new(sites, CHILDREN, fine_sites, |row, tap| {
+        let [x, y, z] = Level::place(shape, coarse.keys[row]);
+        fine.volume
+            .at([2 * x + tap / 4, 2 * y + tap / 2 % 2, 2 * z + tap % 2])
+    });
     coarse
 }
 
@@ -249,11 +291,16 @@ mod tests {
         assert_eq!(sites.levels[0].keys, [0, 1, 70, 143]);
         for [fine, coarse] in [[0, 1], [1, 2]] {
             let (fine, coarse) = (&sites.levels[fine], &sites.levels[coarse]);
-            let children = coarse
-                .children
-                .iter()
-                .filter(|c| (**c as usize) < fine.keys.len());
-            assert_eq!(children.count(), fine.keys.len());
+            for tap in 0..CHILDREN {
+                let mut children: Vec<[u32; 2]> = coarse.children.pairs(tap).collect();
+                children.sort_unstable_by_key(|[_, child]| *child);
+                let parents = fine.parent.pairs(tap).map(|[child, parent]| [parent, child]);
+                assert_eq!(children, parents.collect::<Vec<_>>());
+            }
+            let all = (0..CHILDREN)
+                .map(|tap| fine.parent.pairs(tap).count())
+                .sum::<usize>();
+            assert_eq!(all, fine.keys.len());
         }
         assert!(Sites::new([200, 200, 16], Vec::new()).levels[2].keys.is_empty());
     }

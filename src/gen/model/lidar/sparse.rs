@@ -4,11 +4,73 @@
 use rayon::prelude::*;
 
 use crate::generation::model::layers::{Linear, Norm, View};
-use crate::generation::model::panels::{Panels, Start};
+use crate::generation::model::panels::Panels;
 use crate::generation::weights::{WeightFile, WeightsError};
 
 /// Sites that are worked on together.
-const PIECE: usize = 256;
+pub const PIECE: usize = 256;
+
+/// Where the rows of a convolution take their inputs from: a piece is [`PIECE`] rows.
+pub struct Gather {
+    rows: usize,
+    pieces: Vec<Piece>,
+}
+
+/// One piece: pairs [row of the piece, site], tap by tap.
+struct Piece {
+    ends: Vec<u32>, // of each tap's pairs
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Gather {
+    /// For `rows` rows of `taps` taps each; `source(row, tap)` is the site there, `sites` or more for none.
+    pub fn new(rows: usize, taps: usize, sites: usize, source: impl Fn(usize, usize) -> u32 + Sync) -> Self {
+        let piece = |room: &mut Vec<[u32; 2]>, first: usize| {
+            let last = (first + PIECE).min(rows);
+            room.resize(PIECE * taps, [0; 2]);
+            let (mut ends, mut n) = (Vec::with_capacity(taps), 0);
+            for tap in 0..taps {
+                for row in first..last {
+                    // Written so that nothing has to be guessed by the processor: what is not there is overwritten.
+                    let site = source(row, tap);
+                    room[n] = [(row - first) as u32, site];
+                    n += usize::from((site as usize) < sites);
+                }
+                ends.push(n as u32);
+            }
+            Piece {
+                ends,
+                pairs: room[..n].to_vec(),
+            }
+        };
+        let firsts: Vec<usize> = (0..rows).step_by(PIECE).collect();
+        let pieces = firsts.into_par_iter().map_init(Vec::new, piece).collect();
+        Self { rows, pieces }
+    }
+
+    /// Of no rows.
+    pub fn none() -> Self {
+        Self {
+            rows: 0,
+            pieces: Vec::new(),
+        }
+    }
+
+    /// All pairs [row, site] of a tap, in order.
+    pub fn pairs(&self, tap: usize) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.pieces.iter().enumerate().flat_map(move |(i, piece)| {
+            let first = (i * PIECE) as u32;
+            piece.tap(tap).iter().map(move |[row, site]| [first + row, *site])
+        })
+    }
+}
+
+impl Piece {
+    fn tap(&self, tap: usize) -> &[[u32; 2]] {
+        let from = if tap == 0 { 0 } else { self.ends[tap - 1] };
+        &self.pairs[from as usize..self.ends[tap] as usize]
+    }
+}
 
 /// A sparse convolution; the weight's rows are ordered (tap, input).
 pub struct Convolution {
@@ -41,38 +103,37 @@ impl Convolution {
         }
     }
 
-    /// One row per row of the table `[rows][taps]`, each the sum over the taps of the sites of `x` that are there.
-    pub fn apply(&self, x: &[f32], table: &[u32]) -> Vec<f32> {
-        let (inputs, outputs, sites) = (self.inputs, self.bias.len(), x.len() / self.inputs);
-        let mut out = vec![0.0; table.len() / self.taps * outputs];
+    /// One row per row of the gather, each the sum over the taps of the sites of `x` that are there.
+    pub fn apply(&self, x: &[f32], from: &Gather) -> Vec<f32> {
+        let outputs = self.bias.len();
+        let mut out = vec![0.0; from.rows * outputs];
         out.par_chunks_mut(PIECE * outputs)
-            .zip(table.par_chunks(PIECE * self.taps))
-            .for_each_init(
-                || (vec![0.0; PIECE * inputs], vec![0.0; PIECE * outputs], Vec::new()),
-                |(gathered, product, rows), (out, table)| {
-                    out.chunks_exact_mut(outputs)
-                        .for_each(|row| row.copy_from_slice(&self.bias));
-                    for tap in 0..self.taps {
-                        rows.clear();
-                        for (row, sources) in table.chunks_exact(self.taps).enumerate() {
-                            let site = sources[tap] as usize;
-                            if site < sites {
-                                gathered[rows.len() * inputs..][..inputs]
-                                    .copy_from_slice(&x[site * inputs..][..inputs]);
-                                rows.push(row);
-                            }
-                        }
-                        let sizes = [rows.len(), tap * inputs, inputs];
-                        self.weight
-                            .multiply(gathered, inputs, sizes, Start::Zero, product, outputs);
-                        for (row, add) in rows.iter().zip(product.chunks_exact(outputs)) {
-                            let to = &mut out[row * outputs..][..outputs];
-                            to.iter_mut().zip(add).for_each(|(v, a)| *v += a);
-                        }
-                    }
-                },
-            );
+            .zip(&from.pieces)
+            .for_each(|(out, piece)| self.piece(x, piece, out));
         out
+    }
+
+    /// `out += `[`Self::apply`].
+    pub fn add(&self, x: &[f32], from: &Gather, out: &mut [f32]) {
+        let outputs = self.bias.len();
+        out.par_chunks_mut(PIECE * outputs)
+            .zip(&from.pieces)
+            .for_each_init(Vec::new, |room, (out, piece)| {
+                room.resize(out.len(), 0.0);
+                self.piece(x, piece, room);
+                out.iter_mut().zip(&*room).for_each(|(v, a)| *v += a);
+            });
+    }
+
+    fn piece(&self, x: &[f32], piece: &Piece, out: &mut [f32]) {
+        let outputs = self.bias.len();
+        out.chunks_exact_mut(outputs)
+            .for_each(|row| row.copy_from_slice(&self.bias));
+        for tap in 0..self.taps {
+            let rows = [tap * self.inputs, self.inputs];
+            self.weight
+                .add_pairs(x, self.inputs, piece.tap(tap), rows, out, outputs);
+        }
     }
 }
 
@@ -94,24 +155,33 @@ impl Block {
         })
     }
 
-    /// In place.
-    pub fn apply(&self, x: &mut [f32], around: &[u32]) {
-        let normed = normed(&self.norm, x);
-        let mut inner = self.conv.apply(&normed, around);
-        inner.iter_mut().for_each(|v| *v = v.max(0.0));
-        let add = self.linear.parallel(&inner, PIECE);
-        x.iter_mut().zip(&add).for_each(|(v, a)| *v += a);
+    /// In place; `normed` is room that may be used again.
+    pub fn apply(&self, x: &mut [f32], around: &Gather, normed: &mut Vec<f32>) {
+        normed.resize(x.len().max(normed.len()), 0.0);
+        let normed = &mut normed[..x.len()];
+        norm_all(&self.norm, x, normed);
+        let normed = &*normed;
+        let width = self.conv.bias.len();
+        x.par_chunks_mut(PIECE * width).zip(&around.pieces).for_each_init(
+            || (Vec::new(), Vec::new()),
+            |(inner, add), (x, piece)| {
+                inner.resize(x.len(), 0.0);
+                add.resize(x.len(), 0.0);
+                self.conv.piece(normed, piece, inner);
+                inner.iter_mut().for_each(|v| *v = v.max(0.0));
+                self.linear.rows(inner, add);
+                x.iter_mut().zip(&*add).for_each(|(v, a)| *v += a);
+            },
+        );
     }
 }
 
 /// Layer norm of every row, on all cores.
-pub fn normed(norm: &Norm, x: &[f32]) -> Vec<f32> {
+fn norm_all(norm: &Norm, x: &[f32], out: &mut [f32]) {
     let piece = PIECE * norm.scale.len();
-    let mut out = vec![0.0; x.len()];
     out.par_chunks_mut(piece)
         .zip(x.par_chunks(piece))
         .for_each(|(out, x)| norm.rows(x, out));
-    out
 }
 
 #[cfg(test)]

@@ -5,28 +5,14 @@
 use glam::{IVec3, Vec2, Vec3};
 
 use super::noise::{floor, hash1, unit, value3};
+use crate::scene::look::{BLOCK, BLOCKS, LEAVES, LookData, NX, NY, NZ, SURFACE, Section, TRUNK};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
-/// Voxels along each axis, with a free ring around, and room above the grid.
-const NX: usize = GridSpec::NX + 2;
-const NY: usize = GridSpec::NY + 2;
-const NZ: usize = 46;
 /// Cells between the middles of voxels.
 const CX: usize = NX - 1;
 const CY: usize = NY - 1;
-const BLOCK: usize = 8;
-/// Blocks along x and along y.
-pub const BLOCKS: usize = CX.div_ceil(BLOCK);
-/// Edge of a block, m.
-pub const BLOCK_M: f32 = (BLOCK as f64 * GridSpec::VOXEL_M) as f32;
-/// The field's surface.
-const SURFACE: f32 = 0.5;
 /// A cell whose corners all stay below this cannot hold a surface, roughness of leaves included.
 const FLOOR: u8 = 40;
-/// Label of trunks: plants that carry a crown.
-pub const TRUNK: u8 = 100;
-/// Roughness of leaves, in units of the field.
-const LEAVES: f32 = 0.85;
 
 /// A building, wall or pole: columns of voxels that hang together.
 #[derive(Clone, Copy, Debug)]
@@ -117,6 +103,21 @@ impl Field {
             structures,
             highest: top as f32 * 0.4 - 1.2,
         }
+    }
+
+    /// For the graphics card.
+    pub fn pack(&self, out: &mut LookData) {
+        let halves = |v: &u64| [*v as u32, (*v >> 32) as u32];
+        out.push_bytes(Section::Weight, &self.weight);
+        out.push_bytes(Section::Label, &self.label);
+        out.push(Section::Mask, self.mask.iter().flat_map(halves));
+        out.push(Section::Blocks, self.blocks.iter().flat_map(halves));
+        out.push(Section::StructureOf, self.structure.iter().map(|i| u32::from(*i)));
+        let structures = self.structures.iter().flat_map(|s| {
+            let [x, y, height] = [s.axis.x, s.axis.y, s.height_m].map(f32::to_bits);
+            [x, y, s.columns, height, s.id, u32::from(s.thin), 0, 0]
+        });
+        out.push(Section::Structures, structures);
     }
 
     /// Height above which there is nothing, m.

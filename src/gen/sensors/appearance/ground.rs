@@ -7,12 +7,9 @@ use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
 use crate::generation::sensors::march::ground::Ground as Columns;
+use crate::scene::look::{HIGHEST_M, KERB_M, LookData, Section};
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
 
-/// Height of a sidewalk, m.
-const KERB_M: f32 = 0.13;
-/// Nothing of the ground is higher, m.
-const HIGHEST_M: f32 = 0.2;
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
 const BLURS: usize = 3;
 
@@ -94,6 +91,15 @@ impl Ground {
             })
             .collect();
         Self { share, level }
+    }
+
+    /// For the graphics card.
+    pub fn pack(&self, out: &mut LookData) {
+        out.push(
+            Section::Share,
+            self.share.as_flattened().iter().map(|v| v.to_bits()),
+        );
+        out.push(Section::Level, self.level.iter().map(|l| u32::from(*l)));
     }
 
     /// True if there is nothing but level road within a metre of a point.

@@ -3,16 +3,15 @@
 use glam::{DVec3, Quat, Vec2, Vec3};
 
 use super::conditions::Conditions;
-use super::field::{BLOCK_M, BLOCKS, Field};
+use super::field::Field;
 use super::ground::Ground;
 use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::generation::sensors::march::paint::Paint;
 use crate::generation::sensors::march::{GroundHeight, ground, remove_voxels};
+use crate::scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M};
 use crate::scene::{Frame, SceneBox, SensorRig};
 
-/// Corner of the blocks, m: half a voxel and the ring outside the grid.
-const BLOCKS_FROM_M: f32 = -40.2;
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
 /// Things are listed this far around, m, for their contact shadows.
@@ -153,6 +152,21 @@ impl Look {
     #[inline]
     pub(super) fn anchor(&self, p: Vec3) -> Vec3 {
         self.turn * p + self.shift
+    }
+
+    /// Turn and way of [`Self::anchor`].
+    pub(super) fn anchoring(&self) -> (Quat, Vec3) {
+        (self.turn, self.shift)
+    }
+
+    /// Things near each block.
+    pub(super) fn lists(&self) -> impl Iterator<Item = &[u16]> {
+        self.lists.iter().map(Vec::as_slice)
+    }
+
+    /// Nothing is higher, m.
+    pub(super) fn highest_m(&self) -> f32 {
+        self.highest
     }
 
     /// A direction there.

@@ -3,10 +3,11 @@
 
 use glam::{IVec3, Vec2, Vec3};
 
-use super::field::{Structure, TRUNK};
+use super::field::Structure;
 use super::look::{Hit, Look, What};
 use super::noise::{fbm2, hash1, ramp, unit, unit3, value2, value3};
 use super::things::{Material, Thing, rgb};
+use crate::scene::look::{KERB_EDGE_M, KERB_SEEN_M, TRUNK};
 use crate::scene::{BevLayer, Class, PolylineKind};
 
 /// A surface to be lit.
@@ -108,7 +109,7 @@ impl Look {
         let p2 = p.truncate();
         let g = self.ground.at(p2, a);
         // The edge of the road, softened over a pixel.
-        let edge = (fp * 0.5).max(0.008);
+        let edge = (fp * 0.5).max(KERB_EDGE_M);
         let road = ((g.inside_road_m + 0.014) / edge * 0.5 + 0.5).clamp(0.0, 1.0);
         let mut s = Surface::matt(Vec3::ZERO, normal);
         if road > 0.0 {
@@ -132,9 +133,10 @@ impl Look {
             }
             // Kerbstones where the pavement meets the road.
             let out = -g.inside_road_m;
-            let kerb = ramp(0.21, 0.19, out) * ramp(0.7, 0.4, g.share[3] / rest);
+            // From afar they are narrower than a pixel, which would make them a bright thread.
+            let kerb = ramp(0.21, 0.19, out) * ramp(0.7, 0.4, g.share[3] / rest) * visible(fp, KERB_SEEN_M);
             if kerb > 0.0 {
-                let stone = 0.30 + 0.08 * value2(a * 7.0, 43) + 0.05 * value2(a * 1.1, 44);
+                let stone = 0.25 + 0.06 * value2(a * 7.0, 43) + 0.04 * value2(a * 1.1, 44);
                 let side = ramp(0.8, 0.4, normal.z);
                 c = c.lerp(
                     gray(stone) * Vec3::new(1.0, 0.985, 0.95) * (1.0 - 0.25 * side),
@@ -290,15 +292,7 @@ impl Look {
             }
             Class::Vegetation => self.plant(a, normal, fp),
             Class::Manmade => self.structure(hit, a, normal, fp),
-            _ => {
-                let [r, g, b] = class.color();
-                let calm = if class == Class::Others {
-                    rgb(104, 106, 104)
-                } else {
-                    rgb(r, g, b).lerp(gray(0.2), 0.4)
-                };
-                Surface::matt(calm * (0.8 + 0.4 * value3(a * 4.0, 21)), normal)
-            }
+            _ => Surface::matt(calm(class) * (0.8 + 0.4 * value3(a * 4.0, 21)), normal),
         };
         self.cover(&mut s, hit.p, if class == Class::Vegetation { 0.8 } else { 1.0 });
         s
@@ -665,6 +659,16 @@ impl Look {
             }
         }
         out
+    }
+}
+
+/// Colour of voxels that have no material of their own.
+pub(super) fn calm(class: Class) -> Vec3 {
+    let [r, g, b] = class.color();
+    if class == Class::Others {
+        rgb(104, 106, 104)
+    } else {
+        rgb(r, g, b).lerp(gray(0.2), 0.4)
     }
 }
 

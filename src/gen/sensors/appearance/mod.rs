@@ -8,6 +8,7 @@ mod ground;
 mod look;
 mod material;
 mod noise;
+mod pack;
 mod render;
 mod shade;
 mod sky;

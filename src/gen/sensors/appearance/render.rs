@@ -10,9 +10,7 @@ use super::shade::Sample;
 use super::{CameraImage, Quality};
 use crate::generation::sensors::march::CameraRays;
 use crate::scene::Camera;
-
-/// A pixel gets more samples if its tone differs from a neighbour's by more than this.
-const CONTRAST: f32 = 0.10;
+use crate::scene::look::CONTRAST;
 
 impl Look {
     /// The picture of one camera at `width` x `height` px.
@@ -77,6 +75,18 @@ impl Look {
                 }
             });
         }
+        self.finish(camera, [w, h], light)
+    }
+
+    /// The picture of light that was computed elsewhere, `width * height` linear colours: glare, exposure, tone.
+    pub fn picture(&self, camera: &Camera, width: u32, height: u32, light: &[[f32; 3]]) -> CameraImage {
+        let (w, h) = (width as usize, height as usize);
+        let mut light: Vec<Vec3> = light.iter().map(|c| Vec3::from_array(*c)).collect();
+        light.resize(w * h, Vec3::ZERO);
+        self.finish(camera, [w, h], light)
+    }
+
+    fn finish(&self, camera: &Camera, [w, h]: [usize; 2], mut light: Vec<Vec3>) -> CameraImage {
         glare(&mut light, w, h, self.air.lamps, self.air.exposure);
         let rgba = light
             .par_iter()

@@ -5,12 +5,7 @@ use glam::Vec3;
 use super::look::{Beam, Hit, Look, What};
 use super::material::Surface;
 use super::noise::ramp;
-
-/// Farthest shadow caster and mirrored thing, m.
-const SHADOW_M: f32 = 45.0;
-const MIRROR_M: f32 = 60.0;
-/// Nothing of the grid lies beyond, m.
-const FAR_M: f32 = 400.0;
+use crate::scene::look::{FAR_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, MIRROR_M, SHADOW_M};
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
@@ -120,7 +115,7 @@ impl Look {
                     let half = (to_sun + view).normalize_or(n);
                     let power = 2f32.powf(2.0 + 9.0 * s.gloss);
                     let spot = n.dot(half).max(0.0).powf(power) * (power + 2.0) * 0.125;
-                    out += air.sun * (s.mirror * spot.min(60.0) * facing.max(0.0));
+                    out += air.sun * (s.mirror * spot.min(25.0) * facing.max(0.0));
                 }
             }
         } else if strength > 0.0 {
@@ -131,7 +126,7 @@ impl Look {
         let below = air.bounce.lerp(air.ambient * 0.75, air.snow * 0.6);
         out += s.albedo * (air.ambient * sky + below * (1.0 - sky) + air.horizon * 0.08) * open;
         if !self.lamps.is_empty() {
-            out += self.lamp_light(hit.p, n, view, s);
+            out += self.lamp_light(hit.p, lift, n, view, s, follow);
         }
         if s.mirror > 0.008 {
             let grazing = (1.0 - n.dot(view).clamp(0.0, 1.0)).powi(5);
@@ -214,7 +209,8 @@ impl Look {
         open
     }
 
-    fn lamp_light(&self, p: Vec3, n: Vec3, view: Vec3, s: &Surface) -> Vec3 {
+    /// `lift` is a point a little above the surface, from which shadows are looked for if there are to be any.
+    fn lamp_light(&self, p: Vec3, lift: Vec3, n: Vec3, view: Vec3, s: &Surface, shadows: bool) -> Vec3 {
         let mut out = Vec3::ZERO;
         for lamp in &self.lamps {
             let to = lamp.at - p;
@@ -243,6 +239,17 @@ impl Look {
             let fade = ramp(1.0, 0.55, d2.sqrt() / lamp.range_m);
             let light = lamp.color * (beam * fade / (d2 + 0.6));
             let through = s.through * (-facing).max(0.0) * 0.5;
+            // Shadows of head lights, where they would be seen.
+            if shadows
+                && lamp.beam == Beam::Head
+                && facing.max(through) * light.max_element() * self.air.exposure > LAMP_SHADOW_LIGHT
+            {
+                let way = lamp.at - lift;
+                let far = way.length();
+                if far > LAMP_CLEAR_M && self.occluded(lift, way / far, far - LAMP_CLEAR_M) {
+                    continue;
+                }
+            }
             out += s.albedo * light * (facing.max(0.0) + through);
             if s.gloss > 0.2 && facing > 0.0 {
                 let half = (l + view).normalize_or(n);

@@ -131,7 +131,10 @@ impl Air {
         match weather {
             Weather::Clear => {}
             Weather::Overcast => {
-                self.cover(v(0.96, 1.0, 1.05), 0.62, 0.0);
+                // A low sun colours the clouds that hide it.
+                let low = self.sun / self.sun.max_element().max(1e-3);
+                let tint = v(0.96, 1.0, 1.05) * Vec3::ONE.lerp(low / low.dot(v(0.25, 0.5, 0.25)), 0.22);
+                self.cover(if night { v(0.96, 1.0, 1.05) } else { tint }, 0.70, 0.0);
                 self.haze_per_m = 0.003;
             }
             Weather::Rain => {

@@ -231,6 +231,11 @@ impl Thing {
         })
     }
 
+    /// Square of the radius of a circle on the ground that holds it, m^2.
+    pub fn circle_m2(&self) -> f32 {
+        self.circle_m2
+    }
+
     /// Radius on the ground and height that hold it, m.
     pub fn reach(&self) -> Vec3 {
         let r = self.size.truncate().length() / 2.0;

@@ -4,6 +4,7 @@
 
 use glam::DVec2;
 
+use crate::scene::look::{LookData, Section};
 use crate::scene::sensor_data::RenderId;
 use crate::scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
 
@@ -172,6 +173,44 @@ impl Paint {
             if cell & bit != 0 && !corners().as_flattened().contains(&true) {
                 self.orphans[i] |= bit;
             }
+        }
+    }
+
+    /// For the graphics card.
+    pub fn pack(&self, out: &mut LookData) {
+        let bits = |v: f64| (v as f32).to_bits();
+        let mut starts = vec![0];
+        let mut segments = Vec::new();
+        for bin in &self.bins {
+            for s in bin {
+                let [ax, ay, bx, by] = [s.a.x, s.a.y, s.b.x, s.b.y].map(bits);
+                segments.extend([ax, ay, bx, by, s.kind as u32, bits(s.along_m)]);
+            }
+            starts.push((segments.len() / 6) as u32);
+        }
+        starts.resize(BINS * BINS + 1, (segments.len() / 6) as u32);
+        out.push(Section::BinStarts, starts);
+        out.push(Section::Segments, segments);
+        let (mut crossings, mut outlines) = (Vec::new(), Vec::new());
+        for c in &self.crossings {
+            crossings.extend([(outlines.len() / 2) as u32, c.outline.len() as u32]);
+            crossings.extend(
+                [c.low, c.high, c.along]
+                    .iter()
+                    .flat_map(|p| [bits(p.x), bits(p.y)]),
+            );
+            outlines.extend(c.outline.iter().flat_map(|p| [bits(p.x), bits(p.y)]));
+        }
+        out.push(Section::Crossings, crossings);
+        out.push(Section::Outlines, outlines);
+        out.at[Section::CrossingCount as usize] = self.crossings.len() as u32;
+        for (section, of) in [
+            (Section::Allowed, &self.allowed),
+            (Section::Orphans, &self.orphans),
+        ] {
+            let mut cells = of.clone();
+            cells.resize(GridSpec::COLUMNS, 0);
+            out.push(section, cells);
         }
     }
 

@@ -1,0 +1,200 @@
+//! A graphics card for sensor views: camera maps by splats and camera pictures, drawn where a real card is at hand. The
+//! thread that senses has a device of its own, so the window never waits for it. What the card cannot draw, the
+//! processor draws.
+
+use std::sync::Mutex;
+
+use crate::generation::sensors::appearance::{
+    CameraImage, Look, Quality, RayMarched, SynthesisError, SynthesisInput, ViewSynthesizer,
+};
+use crate::generation::sensors::cloud::GaussianCloud;
+use crate::generation::sensors::splat::SplatOptions;
+use crate::scene::{Camera, CameraMaps};
+use crate::viewport::{LookRenderer, SplatRenderer, headless_device};
+
+/// Set to 1, software drivers are used too, for tests; set to 0, no card is.
+const SWITCH: &str = "SCENELOOM_GPU_VIEWS";
+
+/// Renderers on one device; a part that failed is not asked again.
+pub struct Graphics {
+    adapter: String,
+    splats: Option<SplatRenderer>,
+    looks: Option<LookRenderer>,
+}
+
+/// Whether an adapter is to be used, from the switch and what it is.
+fn wanted(switch: Option<&str>, software: bool) -> bool {
+    match switch {
+        Some("0") => false,
+        Some("1") => true,
+        _ => !software,
+    }
+}
+
+impl Graphics {
+    /// The best adapter, unless it is the processor in disguise. `None` without one.
+    pub fn find() -> Option<Self> {
+        Self::find_with(std::env::var(SWITCH).ok().as_deref())
+    }
+
+    /// The best adapter if the switch says so, software or not.
+    pub fn forced() -> Option<Self> {
+        let switch = std::env::var(SWITCH).ok().filter(|s| s == "1")?;
+        Self::find_with(Some(&switch))
+    }
+
+    fn find_with(switch: Option<&str>) -> Option<Self> {
+        if !wanted(switch, false) {
+            return None;
+        }
+        // Any reason not to have a device leads to the processor, and `sceneloom doctor` tells it.
+        let (info, device, queue) = headless_device().ok()?;
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        if !wanted(switch, software) {
+            return None;
+        }
+        Some(Self {
+            adapter: info.name,
+            splats: SplatRenderer::new(&device, &queue).ok(),
+            looks: LookRenderer::new(&device, &queue).ok(),
+        })
+    }
+
+    /// Name of the adapter.
+    pub fn adapter(&self) -> &str {
+        &self.adapter
+    }
+
+    /// Takes a cloud up; false if the processor has to draw it.
+    pub fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool {
+        let set = self.splats.as_mut().map(|s| s.set_cloud(cloud.gaussians()));
+        self.splats = self.splats.take().filter(|_| matches!(set, Some(Ok(()))));
+        self.splats.is_some()
+    }
+
+    /// Maps of the cloud that was set last; `None` if the processor has to draw them.
+    pub fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
+        let options = SplatOptions::default();
+        let drawn = self
+            .splats
+            .as_mut()?
+            .render_raw(std::slice::from_ref(camera), [width, height], &options);
+        let Ok(mut maps) = drawn else {
+            self.splats = None;
+            return None;
+        };
+        let maps = maps.pop()?;
+        Some(maps.into_camera_maps(&camera.name, &options))
+    }
+
+    /// Takes a look up; false if the processor has to draw it.
+    pub fn set_look(&mut self, look: &Look) -> bool {
+        let set = self.looks.as_mut().map(|l| l.set_look(&look.data()));
+        self.looks = self.looks.take().filter(|_| matches!(set, Some(Ok(()))));
+        self.looks.is_some()
+    }
+
+    /// A picture of the look that was set last, which is `look`; `None` if the processor has to draw it.
+    pub fn picture(
+        &mut self,
+        look: &Look,
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        quality: Quality,
+    ) -> Option<CameraImage> {
+        let edges = quality == Quality::Full;
+        match self.looks.as_mut()?.light(camera, [width, height], edges) {
+            Ok(light) => Some(look.picture(camera, width, height, &light)),
+            Err(_) => {
+                self.looks = None;
+                None
+            }
+        }
+    }
+}
+
+/// The renderer of pictures on a card; it takes what the card cannot draw to the processor.
+pub struct OnCard(Mutex<Graphics>);
+
+impl OnCard {
+    /// On this card.
+    pub fn new(graphics: Graphics) -> Self {
+        Self(Mutex::new(graphics))
+    }
+}
+
+impl ViewSynthesizer for OnCard {
+    fn name(&self) -> &str {
+        "ray marched on the graphics card"
+    }
+
+    fn synthesize(&self, input: &SynthesisInput<'_>) -> Result<Vec<CameraImage>, SynthesisError> {
+        let [w, h] = input.size;
+        let look = Look::new(input.frame, input.rig, &input.conditions);
+        let mut card = self.0.lock().unwrap_or_else(|e| e.into_inner());
+        let drawn = card.set_look(&look).then(|| {
+            let cameras = input.rig.cameras.iter();
+            let picture = |camera| card.picture(&look, camera, [w, h], input.quality);
+            cameras.map(picture).collect::<Option<Vec<CameraImage>>>()
+        });
+        match drawn.flatten() {
+            Some(images) => Ok(images),
+            None => RayMarched.synthesize(input),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::camera_views::{CameraPicture, Prepared};
+    use crate::app::state::{CameraMode, CameraSource};
+    use crate::generation::world::World;
+    use crate::scene::{Frame, Scene, draft};
+
+    /// What the window shows by way of a card, software here, is what it shows without: labels of splats to 0.1 %,
+    /// pictures to 2/255 on average.
+    #[test]
+    fn views_by_card_are_those_by_processor() {
+        let mut card = Graphics::find_with(Some("1")).expect("an adapter, software or not");
+        assert!(!card.adapter().is_empty());
+        let world = World::random(3);
+        let occupancy = draft::draft(&world.layout, world.boxes.values());
+        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+        let scene = Scene::single("test", frame, Default::default(), 3);
+        for (mode, source) in [
+            (CameraMode::Semantic, CameraSource::Splats),
+            (CameraMode::Semantic, CameraSource::Voxels),
+            (CameraMode::Picture, CameraSource::default()),
+        ] {
+            let prepared = Prepared::new(&scene, mode, source);
+            let on_card = prepared.upload(&mut card);
+            assert_eq!(
+                on_card,
+                source != CameraSource::Voxels || mode == CameraMode::Picture
+            );
+            let size = [96, 54];
+            let there = prepared.view(&scene, 1, size, true, on_card.then_some(&mut card));
+            let here = prepared.view(&scene, 1, size, true, None);
+            match (&*there.picture, &*here.picture) {
+                (CameraPicture::Maps(a), CameraPicture::Maps(b)) => {
+                    let gaps = a.semantic.iter().zip(&b.semantic).filter(|(a, b)| a != b);
+                    assert!(gaps.count() * 1000 <= a.semantic.len());
+                }
+                (CameraPicture::Picture(a), CameraPicture::Picture(b)) => {
+                    let gaps = a.rgba.iter().zip(&b.rgba).map(|(a, b)| f64::from(a.abs_diff(*b)));
+                    assert!(gaps.sum::<f64>() / a.rgba.len() as f64 <= 2.0);
+                }
+                _ => panic!("of two kinds"),
+            }
+        }
+        assert!(card.splats.is_some() && card.looks.is_some(), "nothing failed");
+    }
+
+    #[test]
+    fn the_switch_decides_over_software() {
+        assert!(wanted(None, false) && !wanted(None, true));
+        assert!(wanted(Some("1"), true) && wanted(Some("1"), false));
+        assert!(!wanted(Some("0"), false) && !wanted(Some(""), true));
+    }
+}

@@ -1,0 +1,138 @@
+//! A look as plain numbers, for the renderer of the graphics card: see `scene::look`.
+
+use super::Look;
+use super::look::Beam;
+use super::things::{Material, Part, Thing, rgb};
+use crate::scene::Class;
+use crate::scene::look::{LookData, PART_WORDS, Section, THING_WORDS};
+use glam::Vec3;
+
+impl Look {
+    /// Everything that the picture of a camera depends on.
+    pub fn data(&self) -> LookData {
+        let air = &self.air;
+        let with = |v: Vec3, w: f32| v.extend(w).to_array();
+        let (turn, shift) = self.anchoring();
+        let mut out = LookData {
+            air: [
+                with(air.to_sun, air.clouds),
+                with(air.sun, air.haze_per_m),
+                with(air.zenith, air.wet),
+                with(air.horizon, air.snow),
+                with(air.ambient, air.dust),
+                with(air.bounce, air.lamps),
+                with(air.haze, air.exposure),
+                with(self.to_sun(), self.highest_m()),
+            ],
+            turn: turn.to_array(),
+            shift_m: shift.to_array(),
+            seed: self.seed,
+            ..LookData::default()
+        };
+        self.field.pack(&mut out);
+        self.ground.pack(&mut out);
+        self.pack_things(&mut out);
+        self.paint.pack(&mut out);
+        let lamps = self.lamps.iter().flat_map(|l| {
+            let kind = match l.beam {
+                Beam::Street => 0,
+                Beam::Head => 1,
+                Beam::Glow => 2,
+            };
+            let [at, axis, color] = [l.at, l.axis, l.color].map(|v| v.to_array().map(f32::to_bits));
+            let range = l.range_m.to_bits();
+            [
+                at[0], at[1], at[2], range, axis[0], axis[1], axis[2], kind, color[0], color[1], color[2], 0,
+            ]
+        });
+        out.push(Section::Lamps, lamps);
+        out.at[Section::LampCount as usize] = self.lamps.len() as u32;
+        let calm = (0..=Class::FREE).flat_map(|label| {
+            let class = Class::from_id(label).unwrap_or(Class::Others);
+            super::material::calm(class).to_array().map(f32::to_bits)
+        });
+        out.push(Section::Calm, calm);
+        out
+    }
+
+    fn pack_things(&self, out: &mut LookData) {
+        let (mut things, mut parts, mut planes) = (Vec::new(), Vec::new(), Vec::new());
+        for t in &self.things {
+            let first = (parts.len() / PART_WORDS) as u32;
+            for (part, material) in &t.parts {
+                pack_part(part, *material, &mut parts, &mut planes);
+            }
+            pack_thing(t, first, &mut things);
+        }
+        out.push(Section::Things, things);
+        out.push(Section::Parts, parts);
+        out.push(Section::Planes, planes);
+        let lists: Vec<&[u16]> = self.lists().collect();
+        out.push(Section::ListStarts, starts(lists.iter().map(|l| l.len())));
+        out.push(Section::Lists, lists.concat().into_iter().map(u32::from));
+    }
+}
+
+/// Where lists of these lengths begin, and the end of the last.
+pub fn starts(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
+    let mut out = vec![0];
+    let mut end = 0;
+    for n in lengths {
+        end += n as u32;
+        out.push(end);
+    }
+    out
+}
+
+fn pack_thing(t: &Thing, first: u32, out: &mut Vec<u32>) {
+    let end = out.len() + THING_WORDS;
+    out.extend([
+        u32::from(t.class.id()),
+        t.id,
+        u32::from(t.lamps),
+        first,
+        t.parts.len() as u32,
+    ]);
+    let numbers = [
+        t.foot.to_array().as_slice(),
+        &t.heading.to_array(),
+        &t.size.to_array(),
+        &t.paint.to_array(),
+        &[t.circle_m2()],
+    ]
+    .concat();
+    out.extend(numbers.into_iter().map(f32::to_bits));
+    out.resize(end, 0);
+}
+
+fn pack_part(part: &Part, material: Material, out: &mut Vec<u32>, planes: &mut Vec<u32>) {
+    let end = out.len() + PART_WORDS;
+    let (code, color) = match material {
+        Material::Body => (0, Vec3::ZERO),
+        Material::Cabin => (1, Vec3::ZERO),
+        Material::Coach => (2, Vec3::ZERO),
+        Material::Cargo => (3, Vec3::ZERO),
+        Material::Wheel => (4, Vec3::ZERO),
+        Material::Dark => (5, Vec3::ZERO),
+        Material::Plain(c) => (6, c),
+        Material::Cloth(c) => (7, c),
+        Material::Skin => (8, rgb(224, 172, 136)),
+        Material::Bands(c) => (9, c),
+    };
+    let mut put = |kind: u32, numbers: &[u32]| {
+        out.extend([kind, code]);
+        out.extend(color.to_array().map(f32::to_bits));
+        out.extend(numbers);
+        out.resize(end, 0);
+    };
+    let bits = |v: &[f32]| -> Vec<u32> { v.iter().map(|v| v.to_bits()).collect() };
+    match part {
+        Part::Convex(all) => {
+            put(0, &[(planes.len() / 4) as u32, all.len() as u32]);
+            planes.extend(all.iter().flat_map(|p| p.to_array().map(f32::to_bits)));
+        }
+        Part::Wheel(c, radius, half) => put(1, &bits(&[c.x, c.y, c.z, *radius, *half])),
+        Part::Round(c, r) => put(2, &bits(&[c.x, c.y, c.z, r.x, r.y, r.z])),
+        Part::Cone(f, height, bottom, top) => put(3, &bits(&[f.x, f.y, f.z, *height, *bottom, *top])),
+    }
+}

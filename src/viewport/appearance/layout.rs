@@ -1,0 +1,124 @@
+//! What the shader of camera pictures reads besides the words of a look, field by field as in `shaders/appearance.wgsl`,
+//! and the constants that stand in front of it.
+
+use std::fmt::Write as _;
+use std::sync::OnceLock;
+
+use crate::scene::look::{
+    BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HIGHEST_M, KERB_EDGE_M, KERB_M, KERB_SEEN_M,
+    LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LEAVES, LookData, MIRROR_M, NX, NY, NZ, PART_WORDS, SECTIONS, SHADOW_M,
+    SURFACE, THING_WORDS, TRUNK,
+};
+use crate::scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
+
+/// The uniform, see `View` in the shader.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct GpuView {
+    at: [u32; SECTIONS],
+    air: [[f32; 4]; 8],
+    turn: [f32; 4],
+    shift: [f32; 4],
+    columns: [[f32; 4]; 3],
+    place: [f32; 4],
+    lens: [f32; 4],
+    size: [u32; 4],
+}
+
+/// Bytes of the uniform.
+pub const APPEARANCE_UNIFORM_BYTES: usize = size_of::<GpuView>();
+
+impl GpuView {
+    /// `None` for a camera without a place or direction: it sees nothing.
+    pub fn new(look: &LookData, camera: &Camera, [width, height]: [u32; 2]) -> Option<GpuView> {
+        let camera = camera.resized(width.max(1), height.max(1));
+        let pose = camera.ego_from_camera();
+        let rotation = glam::DMat3::from_quat(pose.rotation);
+        let column = |i: usize| rotation.col(i).as_vec3().extend(0.0).to_array();
+        let pixel = (1.0 / camera.focal_px[0].max(1e-3)) as f32;
+        let [[fx, fy], [cx, cy]] = [camera.focal_px, camera.center_px];
+        let [x, y, z] = look.shift_m;
+        let view = GpuView {
+            at: look.at,
+            air: look.air,
+            turn: look.turn,
+            shift: [x, y, z, 0.0],
+            columns: [column(0), column(1), column(2)],
+            place: pose.translation_m.as_vec3().extend(pixel).to_array(),
+            lens: [fx, fy, cx, cy].map(|v| v as f32),
+            size: [width, height, look.seed, 0],
+        };
+        let numbers = [&view.columns.as_flattened()[..], &view.place, &view.lens].concat();
+        (numbers.iter().all(|v| v.is_finite()) && fx != 0.0 && fy != 0.0).then_some(view)
+    }
+
+    /// The same, drawing from this row on.
+    pub fn from_row(mut self, row: u32) -> GpuView {
+        self.size[3] = row;
+        self
+    }
+}
+
+/// The shader, with the constants of Rust in front.
+pub fn appearance_source() -> &'static str {
+    static SOURCE: OnceLock<String> = OnceLock::new();
+    SOURCE.get_or_init(|| {
+        let mut out = String::new();
+        let counts = [
+            ("NX", NX),
+            ("NY", NY),
+            ("NZ", NZ),
+            ("CX", NX - 1),
+            ("CY", NY - 1),
+            ("GRID", GridSpec::NX),
+            ("BLOCK", BLOCK),
+            ("BLOCKS", BLOCKS),
+            ("THING_WORDS", THING_WORDS),
+            ("PART_WORDS", PART_WORDS),
+            ("TRUNK", usize::from(TRUNK)),
+            ("VEGETATION", usize::from(Class::Vegetation.id())),
+            ("MANMADE", usize::from(Class::Manmade.id())),
+            ("CAR", usize::from(Class::Car.id())),
+            ("BICYCLE", usize::from(Class::Bicycle.id())),
+            ("TRAFFIC_CONE", usize::from(Class::TrafficCone.id())),
+            ("BIT_PED_CROSSING", BevLayer::PedCrossing.bit() as usize),
+            ("BIT_LANE_DIVIDER", BevLayer::LaneDivider.bit() as usize),
+            ("BIT_ROAD_DIVIDER", BevLayer::RoadDivider.bit() as usize),
+            ("BIT_STOP_LINE", BevLayer::StopLine.bit() as usize),
+            ("LINE_LANE_CENTER", PolylineKind::LaneCenter as usize),
+            ("LINE_LANE_DIVIDER", PolylineKind::LaneDivider as usize),
+            ("LINE_ROAD_DIVIDER", PolylineKind::RoadDivider as usize),
+            ("LINE_STOP_LINE", PolylineKind::StopLine as usize),
+            ("KIND_NONE", 0),
+            ("KIND_GROUND", 1),
+            ("KIND_VOXEL", 2),
+            ("KIND_THING", 3),
+        ];
+        let numbers = [
+            ("BLOCK_M", BLOCK_M),
+            ("BLOCKS_FROM_M", BLOCKS_FROM_M),
+            ("SURFACE", SURFACE),
+            ("LEAVES", LEAVES),
+            ("KERB_M", KERB_M),
+            ("KERB_EDGE_M", KERB_EDGE_M),
+            ("KERB_SEEN_M", KERB_SEEN_M),
+            ("HIGHEST_M", HIGHEST_M),
+            ("SHADOW_M", SHADOW_M),
+            ("LAMP_SHADOW_LIGHT", LAMP_SHADOW_LIGHT),
+            ("LAMP_CLEAR_M", LAMP_CLEAR_M),
+            ("MIRROR_M", MIRROR_M),
+            ("FAR_M", FAR_M),
+            ("CONTRAST", CONTRAST),
+            // Farther than anything; WGSL has no infinity.
+            ("INFINITE", 1e30),
+        ];
+        // Writing to a string cannot fail.
+        for (name, value) in counts {
+            let _ = writeln!(out, "const {name}: u32 = {value}u;");
+        }
+        for (name, value) in numbers {
+            let _ = writeln!(out, "const {name}: f32 = {value:?};");
+        }
+        out + include_str!("../../../shaders/appearance.wgsl")
+    })
+}
