@@ -147,7 +147,7 @@ pub fn commands(text: &str) -> Vec<Command> {
         // "stop the bus", "park the van"
         let stop = begins(&all, i)
             && matches!(all[i].text.as_str(), "stop" | "halt" | "park" | "start")
-            && matches!(all.get(i + 1).map(|t| t.text.as_str()), Some("the" | "all" | "every"));
+            && matches!(all.get(i + 1).map(|t| t.text.as_str()), Some("the" | "all" | "every" | "raining" | "snowing"));
         if stop {
             starts.push((i, 1, Some(Verb::Make)));
             open = true;
@@ -268,7 +268,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (verb == Verb::Keep && to.words == "to" || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
+                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to" || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
                     Tag::Number(v) if v.is_finite() && v >= 0.0 => Some(v as u32),

@@ -25,7 +25,7 @@ pub enum Verb {
 
 /// Imperatives.
 pub const VERBS: &[(Verb, &str)] = &[
-    (Verb::Remove, "remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract"),
+    (Verb::Remove, "take|remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract"),
     (Verb::Add, "add|insert|put|place|spawn|drop|introduce|bring in|populate|throw in|put in|plant|install|position|stick|set up|park a|park two|give us|duplicate|let there be"),
     (Verb::Move, "move|shift|push|pull|slide|drag|nudge|relocate|displace|bring|transfer|translate|reposition|send|advance"),
     (Verb::Turn, "turn|rotate|spin|swivel|face|flip|reorient|orient"),
