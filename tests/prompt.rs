@@ -13,7 +13,8 @@ fn sceneloom(args: &[&str]) -> Output {
 
 fn report(output: &Output) -> serde_json::Value {
     let text = String::from_utf8_lossy(&output.stdout);
-    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}{}", String::from_utf8_lossy(&output.stderr)))
+    serde_json::from_str(&text)
+        .unwrap_or_else(|e| panic!("{e}: {text}{}", String::from_utf8_lossy(&output.stderr)))
 }
 
 #[test]
@@ -23,7 +24,12 @@ fn scenes_and_edits_from_words() {
     let (a, b, c) = (path("a.loom"), path("b.loom"), path("c.loom"));
     let text = "an intersection at night in the rain, five cones block my lane, three parked cars, a glorp";
     let made = sceneloom(&["prompt", text, "--seed", "3", "--json", "-o", &a]);
-    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    assert_eq!(
+        made.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
     let made = report(&made);
     for key in ["description", "graph", "phrases", "not_understood"] {
         assert!(!made[key].is_null(), "{key}: {made}");
@@ -33,9 +39,20 @@ fn scenes_and_edits_from_words() {
     assert_eq!(made["not_understood"][0]["text"], "glorp");
     assert!(made["occupied_voxels"].as_u64() > Some(30_000));
     sceneloom(&["prompt", text, "--seed", "3", "--json", "-o", &b]);
-    assert_eq!(std::fs::read(&a).expect("written"), std::fs::read(&b).expect("written"));
+    assert_eq!(
+        std::fs::read(&a).expect("written"),
+        std::fs::read(&b).expect("written")
+    );
 
-    let asked = sceneloom(&["prompt", "remove the parked car", "--base", &a, "--json", "-o", &c]);
+    let asked = sceneloom(&[
+        "prompt",
+        "remove the parked car",
+        "--base",
+        &a,
+        "--json",
+        "-o",
+        &c,
+    ]);
     assert_eq!(asked.status.code(), Some(1));
     assert!(!std::path::Path::new(&c).exists());
     let asked = report(&asked);
@@ -43,7 +60,12 @@ fn scenes_and_edits_from_words() {
     assert_eq!(candidates.len(), 3);
     let one = format!("remove #{}", candidates[0]["id"]);
     let edited = sceneloom(&["prompt", &one, "--base", &a, "--json", "-o", &c]);
-    assert_eq!(edited.status.code(), Some(0), "{}", String::from_utf8_lossy(&edited.stderr));
+    assert_eq!(
+        edited.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&edited.stderr)
+    );
     assert_eq!(report(&edited)["boxes"], 7);
 }
 
@@ -54,9 +76,30 @@ fn what_cannot_be_done_is_said_in_one_line() {
     for (args, code, needle) in [
         (vec!["prompt", "", "-o", &out], 2, "empty"),
         (vec!["prompt", "夜晚", "-o", &out], 2, "English"),
-        (vec!["prompt", "a car", "--endpoint", "https://x", "--model", "m", "-o", &out], 2, "TLS"),
-        (vec!["prompt", "40 buses in my lane", "-o", &out], 1, "of 40 placed"),
-        (vec!["prompt", "a car", "--base", "/nowhere.loom", "-o", &out], 2, "nowhere"),
+        (
+            vec![
+                "prompt",
+                "a car",
+                "--endpoint",
+                "https://x",
+                "--model",
+                "m",
+                "-o",
+                &out,
+            ],
+            2,
+            "TLS",
+        ),
+        (
+            vec!["prompt", "40 buses in my lane", "-o", &out],
+            1,
+            "of 40 placed",
+        ),
+        (
+            vec!["prompt", "a car", "--base", "/nowhere.loom", "-o", &out],
+            2,
+            "nowhere",
+        ),
     ] {
         let output = sceneloom(&args);
         let error = String::from_utf8_lossy(&output.stderr);

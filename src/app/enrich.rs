@@ -7,7 +7,9 @@ use anyhow::{Context, bail};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::generation::text::description::{Count, Density, Description, Environment, ObjectSpec, TimeOfDay, Weather};
+use crate::generation::text::description::{
+    Count, Density, Description, Environment, ObjectSpec, TimeOfDay, Weather,
+};
 use crate::generation::text::tokens::Span;
 use crate::scene::Class;
 
@@ -64,9 +66,17 @@ fn request(prompt: &str, model: &str) -> Value {
 /// Asks the model and fills what the description leaves open; what the prompt said stays. Answers what was filled in, in
 /// words. Errors in one line: another scheme than http, no connection, time-out, a status other than 2xx, an answer that
 /// is no JSON of the expected keys and values.
-pub fn enrich(description: &mut Description, prompt: &str, endpoint: &str, model: &str, timeout: Duration) -> anyhow::Result<Vec<String>> {
+pub fn enrich(
+    description: &mut Description,
+    prompt: &str,
+    endpoint: &str,
+    model: &str,
+    timeout: Duration,
+) -> anyhow::Result<Vec<String>> {
     if !endpoint.starts_with("http://") {
-        bail!("--endpoint is {endpoint:?}, expected http://...: this program is built without TLS; run the model locally or behind a local proxy");
+        bail!(
+            "--endpoint is {endpoint:?}, expected http://...: this program is built without TLS; run the model locally or behind a local proxy"
+        );
     }
     let base = endpoint.trim_end_matches('/');
     let url = if base.ends_with("/chat/completions") {
@@ -97,16 +107,29 @@ pub fn enrich(description: &mut Description, prompt: &str, endpoint: &str, model
         let head: String = body.chars().take(120).collect();
         bail!("{url} answered {status}: {}", head.replace('\n', " "));
     }
-    let answer: Value = serde_json::from_str(&body).with_context(|| format!("{url}: the answer is no JSON"))?;
+    let answer: Value =
+        serde_json::from_str(&body).with_context(|| format!("{url}: the answer is no JSON"))?;
     let content = answer
         .pointer("/choices/0/message/content")
         .and_then(Value::as_str)
         .with_context(|| format!("{url}: choices[0].message.content is missing"))?;
-    let content = content.trim().trim_start_matches("```json").trim_matches('`').trim();
-    let filled: Filled =
-        serde_json::from_str(content).with_context(|| format!("{url}: the model's answer does not fit the schema"))?;
-    if let Some(o) = filled.objects.iter().find(|o| !o.class.is_object() || !(1..=20).contains(&o.count)) {
-        bail!("{url}: the model asked for {} x {}, expected 1 to 20 of an object class", o.count, o.class.name());
+    let content = content
+        .trim()
+        .trim_start_matches("```json")
+        .trim_matches('`')
+        .trim();
+    let filled: Filled = serde_json::from_str(content)
+        .with_context(|| format!("{url}: the model's answer does not fit the schema"))?;
+    if let Some(o) = filled
+        .objects
+        .iter()
+        .find(|o| !o.class.is_object() || !(1..=20).contains(&o.count))
+    {
+        bail!(
+            "{url}: the model asked for {} x {}, expected 1 to 20 of an object class",
+            o.count,
+            o.class.name()
+        );
     }
     Ok(fill(description, filled))
 }
@@ -136,7 +159,8 @@ fn fill(d: &mut Description, filled: Filled) -> Vec<String> {
     }
     // Objects only of classes that the prompt neither named nor denied.
     for o in filled.objects {
-        let named = d.foreground.iter().any(|f| f.class == o.class) || d.absent.iter().any(|a| a.classes.contains(&o.class));
+        let named = d.foreground.iter().any(|f| f.class == o.class)
+            || d.absent.iter().any(|a| a.classes.contains(&o.class));
         if named {
             continue;
         }
@@ -178,7 +202,10 @@ mod tests {
             let _ = stream.read(&mut request);
             match body {
                 Some(body) => {
-                    let head = format!("HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n", body.len());
+                    let head = format!(
+                        "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",
+                        body.len()
+                    );
                     let _ = stream.write_all(head.as_bytes());
                     let _ = stream.write_all(body.as_bytes());
                 }
@@ -201,7 +228,12 @@ mod tests {
     #[test]
     fn fills_what_is_open_and_keeps_what_was_said() {
         let long = Duration::from_secs(10);
-        let url = server("200 OK", says(r#"{"time_of_day": "day", "weather": "rain", "objects": [{"class": "bus", "count": 9}, {"class": "car", "count": 2}]}"#));
+        let url = server(
+            "200 OK",
+            says(
+                r#"{"time_of_day": "day", "weather": "rain", "objects": [{"class": "bus", "count": 9}, {"class": "car", "count": 2}]}"#,
+            ),
+        );
         let (d, notes) = ask("a bus at night", &url, long);
         assert_eq!(notes.expect("a good answer").len(), 2);
         assert_eq!(d.time_of_day, Some(TimeOfDay::Night));
@@ -217,7 +249,13 @@ mod tests {
         let cases = [
             (server("200 OK", says(r#"{"mood": "gloomy"}"#)), "schema"),
             (server("200 OK", says(r#"{"weather": "plasma"}"#)), "schema"),
-            (server("200 OK", says(r#"{"objects": [{"class": "car", "count": 4000}]}"#)), "1 to 20"),
+            (
+                server(
+                    "200 OK",
+                    says(r#"{"objects": [{"class": "car", "count": 4000}]}"#),
+                ),
+                "1 to 20",
+            ),
             (server("200 OK", Some("not json".into())), "no JSON"),
             (server("200 OK", Some("{}".into())), "choices"),
             (server("500 Internal Server Error", Some("broken".into())), "500"),

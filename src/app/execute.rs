@@ -310,7 +310,13 @@ impl SceneloomApp {
                 let make = move || {
                     let reading = super::text::read(&prompt)?;
                     let mut made = super::text::make(&reading.description, seed);
-                    made.scene.name = reading.description.summary.chars().take(48).collect::<String>().into();
+                    made.scene.name = reading
+                        .description
+                        .summary
+                        .chars()
+                        .take(48)
+                        .collect::<String>()
+                        .into();
                     Ok(made.scene)
                 };
                 self.load("Scene from words".into(), None, false, ctx, make);

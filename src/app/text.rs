@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use anyhow::bail;
 
-
 use crate::editor::Edit;
 use crate::generation::text::description::{Description, Reading};
 use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
@@ -31,12 +30,23 @@ pub struct Made {
 /// Reads a prompt; an error in one line if there is nothing in it that could become a scene.
 pub fn read(prompt: &str) -> anyhow::Result<Reading> {
     if prompt.trim().is_empty() {
-        bail!("the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\"");
+        bail!(
+            "the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\""
+        );
     }
     let reading = text::read(prompt);
     if reading.description.is_empty() {
-        let some: Vec<&str> = reading.not_understood.iter().take(4).map(|u| u.text.as_str()).collect();
-        let what = if some.is_empty() { String::new() } else { format!(" (not understood: {})", some.join(", ")) };
+        let some: Vec<&str> = reading
+            .not_understood
+            .iter()
+            .take(4)
+            .map(|u| u.text.as_str())
+            .collect();
+        let what = if some.is_empty() {
+            String::new()
+        } else {
+            format!(" (not understood: {})", some.join(", "))
+        };
         bail!("nothing in the prompt names a part of a driving scene{what}; prompts are read in English");
     }
     Ok(reading)
@@ -90,14 +100,20 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
     match edit {
         TextEdit::Remove { id } => vec![Edit::RemoveBox { id: *id }],
         TextEdit::Add { object } => vec![add(object)],
-        TextEdit::Move { id, center_m, yaw_rad } => vec![Edit::MoveBox {
+        TextEdit::Move {
+            id,
+            center_m,
+            yaw_rad,
+        } => vec![Edit::MoveBox {
             id: *id,
             center_m: Some(*center_m),
             yaw_deg: Some(yaw_rad.to_degrees()),
             size_m: None,
         }],
         TextEdit::Replace { id, object } => vec![Edit::RemoveBox { id: *id }, add(object)],
-        TextEdit::Style { prompt } => vec![Edit::SetPrompt { prompt: prompt.clone() }],
+        TextEdit::Style { prompt } => vec![Edit::SetPrompt {
+            prompt: prompt.clone(),
+        }],
     }
 }
 
@@ -121,9 +137,16 @@ pub fn shortfalls(description: &Description, made: &Made) -> Vec<String> {
         }
     }
     for (i, o) in description.foreground.iter().enumerate() {
-        let far = o.relations.iter().filter_map(|r| r.distance_m).find(|d| *d > 40.0);
+        let far = o
+            .relations
+            .iter()
+            .filter_map(|r| r.distance_m)
+            .find(|d| *d > 40.0);
         if let Some(d) = far {
-            out.push(format!("{}: {d:.0} m lies outside the scene, which reaches 40 m from the ego vehicle", o.noun));
+            out.push(format!(
+                "{}: {d:.0} m lies outside the scene, which reaches 40 m from the ego vehicle",
+                o.noun
+            ));
         }
         let nodes = &made.graphed.nodes[i];
         let mut names: Vec<&str> = made
@@ -136,10 +159,13 @@ pub fn shortfalls(description: &Description, made: &Made) -> Vec<String> {
             .collect();
         names.dedup();
         if !names.is_empty() {
-            out.push(format!("{}: could not be met: {}", o.noun, names.join(", ").replace('_', " ")));
+            out.push(format!(
+                "{}: could not be met: {}",
+                o.noun,
+                names.join(", ").replace('_', " ")
+            ));
         }
     }
     out.extend(made.road.missing.iter().cloned());
     out
 }
-

@@ -13,8 +13,8 @@ mod import;
 mod new;
 mod output;
 mod progress;
-mod region_arg;
 mod prompt;
+mod region_arg;
 mod render;
 mod shot;
 

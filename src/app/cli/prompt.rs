@@ -73,7 +73,12 @@ impl Prompt {
             "file": self.output,
         });
         output::report(&self.common, &report, || {
-            let mut lines = vec![format!("{}: {} boxes; {}", self.output.display(), frame.boxes.len(), reading.description.summary)];
+            let mut lines = vec![format!(
+                "{}: {} boxes; {}",
+                self.output.display(),
+                frame.boxes.len(),
+                reading.description.summary
+            )];
             lines.extend(reading.not_understood.iter().map(|u| match &u.why {
                 Some(why) => format!("not understood: {:?} ({why})", u.text),
                 None => format!("not understood: {:?}", u.text),
@@ -90,16 +95,23 @@ impl Prompt {
 
     fn edit(self, base: &Path) -> Outcome {
         if self.text.trim().is_empty() {
-            return Err(anyhow::anyhow!("the prompt is empty: say what should change, such as \"remove the parked car\"").into());
+            return Err(anyhow::anyhow!(
+                "the prompt is empty: say what should change, such as \"remove the parked car\""
+            )
+            .into());
         }
         if self.endpoint.is_some() {
-            return Err(anyhow::anyhow!("--endpoint fills in new scenes; edits by text do not use it").into());
+            return Err(
+                anyhow::anyhow!("--endpoint fills in new scenes; edits by text do not use it").into(),
+            );
         }
         let scene = open::scene(base)?;
         let reading = read_edit(&self.text, &text::open_scene(&scene), self.seed);
         let edits: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
         let mut document = Document::new(scene);
-        document.apply_all("Edit by text", &edits).context("edit by text")?;
+        document
+            .apply_all("Edit by text", &edits)
+            .context("edit by text")?;
         let asked: Vec<String> = reading.questions.iter().map(|q| q.text.clone()).collect();
         let report = json!({
             "edits": edits,
@@ -118,20 +130,41 @@ impl Prompt {
             project::save(&self.output, document.scene())?;
         }
         output::report(&self.common, &report, || {
-            let mut lines: Vec<String> = reading.phrases.iter().map(|p| format!("{:?}: {}", p.text, p.meaning)).collect();
+            let mut lines: Vec<String> = reading
+                .phrases
+                .iter()
+                .map(|p| format!("{:?}: {}", p.text, p.meaning))
+                .collect();
             for q in &reading.questions {
                 lines.push(q.text.clone());
-                lines.extend(q.candidates.iter().map(|c| format!("  #{} {}: {}", c.id.0, c.class.replace('_', " "), c.place)));
+                lines.extend(
+                    q.candidates
+                        .iter()
+                        .map(|c| format!("  #{} {}: {}", c.id.0, c.class.replace('_', " "), c.place)),
+                );
             }
-            lines.extend(reading.not_understood.iter().map(|u| format!("not understood: {:?}", u.text)));
+            lines.extend(
+                reading
+                    .not_understood
+                    .iter()
+                    .map(|u| format!("not understood: {:?}", u.text)),
+            );
             lines.extend(reading.notes.iter().map(|n| format!("note: {n}")));
             lines.join("\n")
         });
         if !asked.is_empty() {
-            return Err(Stop::Short(format!("{} Name one, such as \"#{}\"", asked.join(" "), first_id(&reading))));
+            return Err(Stop::Short(format!(
+                "{} Name one, such as \"#{}\"",
+                asked.join(" "),
+                first_id(&reading)
+            )));
         }
         if edits.is_empty() {
-            let why = reading.notes.first().cloned().unwrap_or_else(|| "nothing in the text changes the scene".into());
+            let why = reading
+                .notes
+                .first()
+                .cloned()
+                .unwrap_or_else(|| "nothing in the text changes the scene".into());
             return Err(Stop::Short(format!("nothing was changed: {why}")));
         }
         Ok(())
@@ -139,5 +172,9 @@ impl Prompt {
 }
 
 fn first_id(reading: &crate::generation::text::edit::EditReading) -> u32 {
-    reading.questions.first().and_then(|q| q.candidates.first()).map_or(1, |c| c.id.0)
+    reading
+        .questions
+        .first()
+        .and_then(|q| q.candidates.first())
+        .map_or(1, |c| c.id.0)
 }

@@ -98,13 +98,18 @@ impl PromptPane {
             let hint = "Ctrl+Enter: road, objects and style are made from the words";
             make |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let dice = ui.button("Re-roll").on_hover_text("Another scene of the same words");
+                let dice = ui
+                    .button("Re-roll")
+                    .on_hover_text("Another scene of the same words");
                 if some && dice.clicked() {
                     self.seed = self.seed.wrapping_add(1) % 100_000;
                     make = true;
                 }
-                let seed = egui::DragValue::new(&mut self.seed).range(0..=99_999).prefix("seed ");
-                ui.add(seed).on_hover_text("The same words and seed give the same scene");
+                let seed = egui::DragValue::new(&mut self.seed)
+                    .range(0..=99_999)
+                    .prefix("seed ");
+                ui.add(seed)
+                    .on_hover_text("The same words and seed give the same scene");
             });
         });
         if change {
@@ -169,7 +174,9 @@ impl PromptPane {
             let reading = text::read(&self.prompt).map_err(|error| format!("{error:#}"));
             self.read = Some((self.prompt.clone(), reading));
         }
-        let Some((_, Ok(reading))) = &self.read else { return };
+        let Some((_, Ok(reading))) = &self.read else {
+            return;
+        };
         let mut gone = None;
         ui.add_space(4.0);
         ui.horizontal_wrapped(|ui| {
@@ -200,7 +207,12 @@ impl PromptPane {
             section(ui, &question.text);
             for candidate in &question.candidates {
                 let id = candidate.id;
-                let text = format!("{} #{}   {}", candidate.class.replace('_', " "), id.0, candidate.place);
+                let text = format!(
+                    "{} #{}   {}",
+                    candidate.class.replace('_', " "),
+                    id.0,
+                    candidate.place
+                );
                 let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
                 let response = ui.add(button);
                 if response.hovered() && scene.frame().boxes.contains_key(&id) {
@@ -232,7 +244,9 @@ impl PromptPane {
 
 fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
     let text = egui::RichText::new(format!("{}  ×", phrase.text)).color(theme::text_strong());
-    let button = egui::Button::new(text).corner_radius(10).fill(theme::field_active());
+    let button = egui::Button::new(text)
+        .corner_radius(10)
+        .fill(theme::field_active());
     let response = ui.add(button);
     let label = format!("Take out {}", phrase.text);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
@@ -264,7 +278,11 @@ fn without(prompt: &str, phrase: &Phrase) -> String {
     } else {
         after
     };
-    let joint = if before.is_empty() || after.is_empty() || after.starts_with(',') { "" } else { " " };
+    let joint = if before.is_empty() || after.is_empty() || after.starts_with(',') {
+        ""
+    } else {
+        " "
+    };
     format!("{before}{joint}{after}").trim_end_matches(',').to_owned()
 }
 
@@ -281,7 +299,11 @@ mod tests {
             ("rain", "two cars, at night"),
             ("two cars", "at night, in the rain"),
         ] {
-            let phrase = reading.phrases.iter().find(|p| p.text.contains(take)).expect(take);
+            let phrase = reading
+                .phrases
+                .iter()
+                .find(|p| p.text.contains(take))
+                .expect(take);
             let rest = without(prompt, phrase);
             let reading = text::read(&rest).expect("still a scene");
             assert!(!reading.phrases.iter().any(|p| p.text.contains(take)), "{rest}");

@@ -235,8 +235,13 @@ impl Description {
         self.foreground.remove(index);
         let gone = |a: &Anchor| *a == Anchor::Object(index);
         for o in &mut self.foreground {
-            o.relations.retain(|r| !gone(&r.anchor) && !r.and.as_ref().is_some_and(gone));
-            for a in o.relations.iter_mut().flat_map(|r| [Some(&mut r.anchor), r.and.as_mut()]) {
+            o.relations
+                .retain(|r| !gone(&r.anchor) && !r.and.as_ref().is_some_and(gone));
+            for a in o
+                .relations
+                .iter_mut()
+                .flat_map(|r| [Some(&mut r.anchor), r.and.as_mut()])
+            {
                 if let Some(Anchor::Object(i)) = a
                     && *i > index
                 {
@@ -250,11 +255,20 @@ impl Description {
     pub fn summarise(&mut self) {
         let name = |a: &Anchor| match a {
             Anchor::Ego => "ego".to_string(),
-            Anchor::Object(i) => self.foreground.get(*i).map_or("object".into(), |o| format!("{} ({i})", o.noun)),
+            Anchor::Object(i) => self
+                .foreground
+                .get(*i)
+                .map_or("object".into(), |o| format!("{} ({i})", o.noun)),
             Anchor::Lane(role) => serde_json::to_value(role)
                 .ok()
                 .and_then(|v| v.as_str().map(|s| s.replace('_', " ")))
-                .map_or("lane".into(), |s| if s.contains("side") || s == "road" || s == "carpark" { s } else { format!("{s} lane") }),
+                .map_or("lane".into(), |s| {
+                    if s.contains("side") || s == "road" || s == "carpark" {
+                        s
+                    } else {
+                        format!("{s} lane")
+                    }
+                }),
             Anchor::Crossing => "crossing".into(),
             Anchor::Junction => "junction".into(),
         };
@@ -262,9 +276,16 @@ impl Description {
         for (i, o) in self.foreground.iter().enumerate() {
             for r in &o.relations {
                 let far = r.distance_m.map_or(String::new(), |d| format!(", {d:.1} m"));
-                let and = r.and.as_ref().map_or(String::new(), |a| format!(" and {}", name(a)));
+                let and = r
+                    .and
+                    .as_ref()
+                    .map_or(String::new(), |a| format!(" and {}", name(a)));
                 let relation = r.relation.name().replace('_', " ");
-                lines.push(format!("{} ({i}) {relation} {}{and}{far}", o.noun, name(&r.anchor)));
+                lines.push(format!(
+                    "{} ({i}) {relation} {}{and}{far}",
+                    o.noun,
+                    name(&r.anchor)
+                ));
             }
         }
         let mut parts: Vec<String> = Vec::new();

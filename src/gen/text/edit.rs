@@ -116,8 +116,16 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         let before = editor.out.edits.len();
         let asked = editor.out.questions.len();
         let meaning = editor.carry_out(&command);
-        editor.out.not_understood.extend(command.reading.not_understood.iter().cloned());
-        let spelling = command.reading.notes.iter().filter(|n| n.contains("was read as")).cloned();
+        editor
+            .out
+            .not_understood
+            .extend(command.reading.not_understood.iter().cloned());
+        let spelling = command
+            .reading
+            .notes
+            .iter()
+            .filter(|n| n.contains("was read as"))
+            .cloned();
         editor.out.notes.extend(spelling);
         let n = editor.out.edits.len() - before;
         let meaning = match meaning {
@@ -144,7 +152,11 @@ impl Editor<'_> {
             TextEdit::Add { object } | TextEdit::Replace { object, .. } => {
                 self.boxes.insert(object.id, *object);
             }
-            TextEdit::Move { id, center_m, yaw_rad } => {
+            TextEdit::Move {
+                id,
+                center_m,
+                yaw_rad,
+            } => {
                 if let Some(b) = self.boxes.get_mut(id) {
                     let turn = yaw_rad - b.yaw_rad;
                     b.center_m = *center_m;
@@ -253,8 +265,16 @@ impl Editor<'_> {
         // "turn off the rain", "remove the fog", "stop the snow"
         let stops = matches!(c.verb, Verb::Remove | Verb::Clear) && d.foreground.is_empty();
         let old = super::parse::read(&self.style).description;
-        let weather = if stops && d.weather.is_some() { Some(Weather::Clear) } else { d.weather };
-        let time = if stops && d.time_of_day == Some(TimeOfDay::Night) { Some(TimeOfDay::Day) } else { d.time_of_day };
+        let weather = if stops && d.weather.is_some() {
+            Some(Weather::Clear)
+        } else {
+            d.weather
+        };
+        let time = if stops && d.time_of_day == Some(TimeOfDay::Night) {
+            Some(TimeOfDay::Day)
+        } else {
+            d.time_of_day
+        };
         let new = Description {
             time_of_day: time.or(old.time_of_day),
             weather: weather.or(old.weather),
@@ -301,7 +321,12 @@ impl Editor<'_> {
     }
 
     fn next_id(&self) -> BoxId {
-        BoxId(self.boxes.keys().next_back().map_or(1, |id| id.0.saturating_add(1)))
+        BoxId(
+            self.boxes
+                .keys()
+                .next_back()
+                .map_or(1, |id| id.0.saturating_add(1)),
+        )
     }
 
     /// Adds what a description names; what it refers to by "the" may be a box of the scene.
@@ -374,10 +399,17 @@ impl Editor<'_> {
         let added = placement.boxes.len() - locked.len().min(placement.boxes.len());
         if !placement.left_out.is_empty() {
             let wanted = added + placement.left_out.len();
-            self.note(format!("{added} of {wanted} were placed: {}", placement.left_out[0].1));
+            self.note(format!(
+                "{added} of {wanted} were placed: {}",
+                placement.left_out[0].1
+            ));
         }
         if !placement.unmet.is_empty() {
-            let names: Vec<&str> = placement.unmet.iter().map(|i| graphed.graph.edges[*i].relation.name()).collect();
+            let names: Vec<&str> = placement
+                .unmet
+                .iter()
+                .map(|i| graphed.graph.edges[*i].relation.name())
+                .collect();
             self.note(format!("not everything said could be met: {}", names.join(", ")));
         }
         added > 0
@@ -403,12 +435,22 @@ impl Editor<'_> {
             let wanted = m.spec.count.n as usize;
             if m.uncounted && m.plural {
                 // "only cars", "keep the cars": everything else of its kind goes.
-                let others: Vec<BoxId> = self.boxes.values().filter(|b| !fitting.contains(&b.id)).map(|b| b.id).collect();
-                others.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
+                let others: Vec<BoxId> = self
+                    .boxes
+                    .values()
+                    .filter(|b| !fitting.contains(&b.id))
+                    .map(|b| b.id)
+                    .collect();
+                others
+                    .iter()
+                    .for_each(|id| self.push(TextEdit::Remove { id: *id }));
                 continue;
             }
             if fitting.len() > wanted {
-                let mut by_range: Vec<(f64, BoxId)> = fitting.iter().map(|id| (self.boxes[id].center_m.truncate().length(), *id)).collect();
+                let mut by_range: Vec<(f64, BoxId)> = fitting
+                    .iter()
+                    .map(|id| (self.boxes[id].center_m.truncate().length(), *id))
+                    .collect();
                 by_range.sort_by(|a, b| b.0.total_cmp(&a.0));
                 for (_, id) in by_range.iter().take(fitting.len() - wanted) {
                     self.push(TextEdit::Remove { id: *id });
@@ -434,7 +476,9 @@ impl Editor<'_> {
         let moved = match &c.destination {
             Some(Destination::By { direction, metres }) => {
                 let metres = metres.unwrap_or_else(|| {
-                    self.out.notes.push("no distance was said: moved by one lane, 3.5 m".into());
+                    self.out
+                        .notes
+                        .push("no distance was said: moved by one lane, 3.5 m".into());
                     3.5
                 });
                 b.center_m + (*direction * metres).extend(0.0)
@@ -442,7 +486,11 @@ impl Editor<'_> {
             Some(Destination::Toward { away, metres }) => {
                 let p = b.center_m.truncate();
                 let metres = metres.unwrap_or(3.5);
-                let step = if *away { metres } else { -metres.min((p.length() - 4.0).max(0.0)) };
+                let step = if *away {
+                    metres
+                } else {
+                    -metres.min((p.length() - 4.0).max(0.0))
+                };
                 b.center_m + (p.normalize_or(DVec2::X) * step).extend(0.0)
             }
             Some(Destination::Place(spec)) => {
@@ -458,13 +506,24 @@ impl Editor<'_> {
             }
         };
         if moved.truncate().abs().max_element() > 40.0 {
-            self.note(format!("box {} would leave the scene, which reaches 40 m from the ego vehicle: not moved", id.0));
+            self.note(format!(
+                "box {} would leave the scene, which reaches 40 m from the ego vehicle: not moved",
+                id.0
+            ));
             return;
         }
         let new = SceneBox { center_m: moved, ..b };
-        let hit = self.boxes.values().find(|o| o.id != id && super::holds::overlap_m(&new, o, 0.0) > 0.0);
+        let hit = self
+            .boxes
+            .values()
+            .find(|o| o.id != id && super::holds::overlap_m(&new, o, 0.0) > 0.0);
         if let Some(o) = hit {
-            self.note(format!("box {} now overlaps box {} ({})", id.0, o.id.0, o.class.label()));
+            self.note(format!(
+                "box {} now overlaps box {} ({})",
+                id.0,
+                o.id.0,
+                o.class.label()
+            ));
         } else if super::holds::overlap_m(&new, &ego(), 0.0) > 0.0 {
             self.note(format!("box {} now overlaps the ego vehicle", id.0));
         }
@@ -511,7 +570,10 @@ impl Editor<'_> {
             Some(super::edit_grammar::Turn::By(rad)) => b.yaw_rad + rad,
             Some(super::edit_grammar::Turn::ToEgo) => (-b.center_m.truncate()).to_angle(),
             Some(super::edit_grammar::Turn::FromEgo) => b.center_m.truncate().to_angle(),
-            Some(super::edit_grammar::Turn::WithLane) => self.map.nearest(b.center_m.truncate()).map_or(0.0, |l| l.dir.to_angle()),
+            Some(super::edit_grammar::Turn::WithLane) => self
+                .map
+                .nearest(b.center_m.truncate())
+                .map_or(0.0, |l| l.dir.to_angle()),
             None => {
                 self.note(format!("{:?}: how far to turn was not understood", c.text));
                 return;
@@ -536,11 +598,19 @@ impl Editor<'_> {
         let mut new = SceneBox {
             class: by.spec.class,
             size_m,
-            center_m: b.center_m.truncate().extend(b.center_m.z - b.size_m.z / 2.0 + size_m.z / 2.0),
+            center_m: b
+                .center_m
+                .truncate()
+                .extend(b.center_m.z - b.size_m.z / 2.0 + size_m.z / 2.0),
             ..b
         };
         // A longer one may need a step along its course.
-        let hits = |n: &SceneBox| self.boxes.values().any(|o| o.id != id && super::holds::overlap_m(n, o, 0.2) > 0.0) || super::holds::overlap_m(n, &ego(), 0.2) > 0.0;
+        let hits = |n: &SceneBox| {
+            self.boxes
+                .values()
+                .any(|o| o.id != id && super::holds::overlap_m(n, o, 0.2) > 0.0)
+                || super::holds::overlap_m(n, &ego(), 0.2) > 0.0
+        };
         let steps = (0..40).map(|k| f64::from((k + 1) / 2) * if k % 2 == 0 { 0.5 } else { -0.5 });
         let start = new;
         for step in steps {
@@ -550,14 +620,24 @@ impl Editor<'_> {
             };
             if !hits(&tried) && tried.center_m.truncate().abs().max_element() < 38.0 {
                 if step != 0.0 {
-                    self.out.notes.push(format!("box {} stands {:.1} m further along, clear of others", id.0, step.abs()));
+                    self.out.notes.push(format!(
+                        "box {} stands {:.1} m further along, clear of others",
+                        id.0,
+                        step.abs()
+                    ));
                 }
                 new = tried;
                 break;
             }
         }
-        if let Some(o) = self.boxes.values().find(|o| o.id != id && super::holds::overlap_m(&new, o, 0.0) > 0.0) {
-            self.out.notes.push(format!("the larger box {} now overlaps box {}", id.0, o.id.0));
+        if let Some(o) = self
+            .boxes
+            .values()
+            .find(|o| o.id != id && super::holds::overlap_m(&new, o, 0.0) > 0.0)
+        {
+            self.out
+                .notes
+                .push(format!("the larger box {} now overlaps box {}", id.0, o.id.0));
         }
         self.push(TextEdit::Replace { id, object: new });
     }
@@ -630,7 +710,10 @@ pub fn is_style_only(reading: &Reading) -> bool {
 
 /// Relations that a destination may state.
 pub(super) fn places_it(kind: RelationKind) -> bool {
-    !matches!(kind, RelationKind::SameDirection | RelationKind::OppositeDirection)
+    !matches!(
+        kind,
+        RelationKind::SameDirection | RelationKind::OppositeDirection
+    )
 }
 
 /// Roles that "clear" may empty.

@@ -99,20 +99,42 @@ impl Command {
 fn verb_at(tokens: &[Token], i: usize) -> Option<(Verb, usize)> {
     let run = |n: usize| -> Option<String> {
         let words: Option<Vec<&str>> = (i..i + n)
-            .map(|k| tokens.get(k).filter(|t| t.kind == TokenKind::Word).map(|t| t.text.as_str()))
+            .map(|k| {
+                tokens
+                    .get(k)
+                    .filter(|t| t.kind == TokenKind::Word)
+                    .map(|t| t.text.as_str())
+            })
             .collect();
         words.map(|w| w.join(" "))
     };
     let found = (1..=4).rev().find_map(|n| {
         let words = run(n)?;
-        let verb = VERBS.iter().find(|(_, list)| list.split('|').any(|w| w == words))?;
+        let verb = VERBS
+            .iter()
+            .find(|(_, list)| list.split('|').any(|w| w == words))?;
         Some((verb.0, n))
     })?;
     let next = tokens.get(i + found.1).map(|t| t.text.as_str());
     let word = tokens[i].text.as_str();
     let sure = match word {
         // "clear night", "light rain", "set of cones" are no commands
-        "clear" | "leave" | "face" | "lose" => matches!(next, Some("the" | "my" | "all" | "out" | "every" | "everything" | "our" | "only" | "just" | "two" | "one")),
+        "clear" | "leave" | "face" | "lose" => matches!(
+            next,
+            Some(
+                "the"
+                    | "my"
+                    | "all"
+                    | "out"
+                    | "every"
+                    | "everything"
+                    | "our"
+                    | "only"
+                    | "just"
+                    | "two"
+                    | "one"
+            )
+        ),
         "set" => !matches!(next, Some("of")),
         "color" | "colour" | "drop" | "pull" | "park" => next.is_some(),
         _ => true,
@@ -121,7 +143,21 @@ fn verb_at(tokens: &[Token], i: usize) -> Option<(Verb, usize)> {
 }
 
 fn begins(tokens: &[Token], i: usize) -> bool {
-    let polite = ["and", "then", "please", "also", "now", "lets", "you", "just", "to", "finally", "next", "afterwards", "but"];
+    let polite = [
+        "and",
+        "then",
+        "please",
+        "also",
+        "now",
+        "lets",
+        "you",
+        "just",
+        "to",
+        "finally",
+        "next",
+        "afterwards",
+        "but",
+    ];
     match i.checked_sub(1).map(|k| &tokens[k]) {
         None => true,
         Some(t) => match t.kind {
@@ -147,7 +183,10 @@ pub fn commands(text: &str) -> Vec<Command> {
         // "stop the bus", "park the van"
         let stop = begins(&all, i)
             && matches!(all[i].text.as_str(), "stop" | "halt" | "park" | "start")
-            && matches!(all.get(i + 1).map(|t| t.text.as_str()), Some("the" | "all" | "every" | "raining" | "snowing"));
+            && matches!(
+                all.get(i + 1).map(|t| t.text.as_str()),
+                Some("the" | "all" | "every" | "raining" | "snowing")
+            );
         if stop {
             starts.push((i, 1, Some(Verb::Make)));
             open = true;
@@ -162,7 +201,10 @@ pub fn commands(text: &str) -> Vec<Command> {
             }
             None => {
                 if !open && all[i].kind != TokenKind::Comma {
-                    let polite = ["please", "now", "then", "also", "and", "could", "can", "you", "lets", "i", "want", "to"];
+                    let polite = [
+                        "please", "now", "then", "also", "and", "could", "can", "you", "lets", "i", "want",
+                        "to",
+                    ];
                     if !polite.contains(&all[i].text.as_str()) {
                         starts.push((i, 0, None));
                         open = true;
@@ -175,9 +217,13 @@ pub fn commands(text: &str) -> Vec<Command> {
     let mut out = Vec::new();
     for (k, (from, n, verb)) in starts.iter().enumerate() {
         let end = starts.get(k + 1).map_or(all.len(), |s| s.0);
-        let stop = (*from..end).find(|j| all[*j].kind == TokenKind::Stop).unwrap_or(end);
+        let stop = (*from..end)
+            .find(|j| all[*j].kind == TokenKind::Stop)
+            .unwrap_or(end);
         let mut to = stop.max(*from + 1);
-        while to > from + 1 && (all[to - 1].kind == TokenKind::Comma || matches!(all[to - 1].text.as_str(), "and" | "then")) {
+        while to > from + 1
+            && (all[to - 1].kind == TokenKind::Comma || matches!(all[to - 1].text.as_str(), "and" | "then"))
+        {
             to -= 1;
         }
         out.push(command(text, &all[*from..to], *n, *verb));
@@ -203,14 +249,24 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let list = words(&items);
     let has = |w: &str| list.contains(&w);
     let definite_next = matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this"));
-    let only = list.iter().take(3).any(|w| matches!(*w, "only" | "just" | "exactly" | "just one" | "only one" | "exactly one"))
-        || tokens.windows(2).any(|w| w[0].text == "should" && w[1].text == "be");
+    let only = list.iter().take(3).any(|w| {
+        matches!(
+            *w,
+            "only" | "just" | "exactly" | "just one" | "only one" | "exactly one"
+        )
+    }) || tokens
+        .windows(2)
+        .any(|w| w[0].text == "should" && w[1].text == "be");
     let mut verb = match verb {
         None if only => Verb::Keep,
         None => Verb::Add,
         Some(Verb::Add) if only => Verb::Keep,
         // "put the bus behind the truck" moves it
-        Some(Verb::Add) if definite_next && matches!(first, "put" | "place" | "position" | "stick" | "set") => Verb::Move,
+        Some(Verb::Add)
+            if definite_next && matches!(first, "put" | "place" | "position" | "stick" | "set") =>
+        {
+            Verb::Move
+        }
         Some(v) => v,
     };
     let mut c = Command {
@@ -237,19 +293,29 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             _ => None,
         }),
     };
-    let noun_at = items.iter().position(|i| matches!(i.tag, Tag::Is(Sense::Noun(..) | Sense::Works))).or_else(|| items.iter().position(|i| i.words == "#").map(|k| k + 1));
+    let noun_at = items
+        .iter()
+        .position(|i| matches!(i.tag, Tag::Is(Sense::Noun(..) | Sense::Works)))
+        .or_else(|| items.iter().position(|i| i.words == "#").map(|k| k + 1));
     let after_noun = noun_at.map_or(0, |n| n + 1);
     // What the target is turned into.
     if matches!(verb, Verb::Replace | Verb::Turn | Verb::Make) {
         let cut = items.iter().enumerate().skip(after_noun).find_map(|(k, i)| {
             let word = matches!(i.words.as_str(), "with" | "by" | "for" | "into" | "to")
                 || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
-            let noun_follows = items[k + 1..].iter().take(5).any(|x| matches!(x.tag, Tag::Is(Sense::Noun(..))));
+            let noun_follows = items[k + 1..]
+                .iter()
+                .take(5)
+                .any(|x| matches!(x.tag, Tag::Is(Sense::Noun(..))));
             let turning = verb == Verb::Turn && i.words != "into";
             (word && noun_follows && !turning).then_some(k)
         });
         if let Some(k) = cut {
-            verb = if verb == Verb::Make { Verb::Make } else { Verb::Replace };
+            verb = if verb == Verb::Make {
+                Verb::Make
+            } else {
+                Verb::Replace
+            };
             let (r, m) = parse(text, &items[k + 1..]);
             c.by = m.first().cloned();
             c.reading.not_understood.extend(r.not_understood);
@@ -268,7 +334,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to" || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
+                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to"
+                    || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
                     Tag::Number(v) if v.is_finite() && v >= 0.0 => Some(v as u32),
@@ -285,18 +352,25 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // "turn the rain off", "switch to night": about the style alone.
     let style = c.reading.description.time_of_day.is_some() || c.reading.description.weather.is_some();
     if c.targets.is_empty() && style && matches!(verb, Verb::Turn | Verb::Move | Verb::Replace | Verb::Keep) {
-        c.verb = if has("off") || list.last() == Some(&"off") { Verb::Remove } else { Verb::Make };
+        c.verb = if has("off") || list.last() == Some(&"off") {
+            Verb::Remove
+        } else {
+            Verb::Make
+        };
     }
     if c.targets.is_empty() && style && first == "stop" {
         c.verb = Verb::Remove;
     }
     if verb == Verb::Make && c.state.is_none() {
-        c.state = items.iter().skip(after_noun).find_map(|i| match (i.words.as_str(), i.tag) {
-            ("stop" | "wait" | "stand still" | "halt", _) => Some(ObjectState::Waiting),
-            ("move" | "drive" | "walk" | "go" | "start", _) => Some(ObjectState::Moving),
-            (_, Tag::Is(Sense::State(s, _))) => Some(s),
-            _ => None,
-        });
+        c.state = items
+            .iter()
+            .skip(after_noun)
+            .find_map(|i| match (i.words.as_str(), i.tag) {
+                ("stop" | "wait" | "stand still" | "halt", _) => Some(ObjectState::Waiting),
+                ("move" | "drive" | "walk" | "go" | "start", _) => Some(ObjectState::Moving),
+                (_, Tag::Is(Sense::State(s, _))) => Some(s),
+                _ => None,
+            });
         if let (Some(_), Some(m)) = (c.state, c.targets.first_mut()) {
             m.spec.state = None; // what it shall do is not what it does
         }
@@ -305,13 +379,18 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
 }
 
 fn note_definite(c: &mut Command, mentions: &[Mention]) {
-    c.definite.extend(mentions.iter().filter(|m| m.definite).map(|m| m.spec.span));
+    c.definite
+        .extend(mentions.iter().filter(|m| m.definite).map(|m| m.spec.span));
 }
 
 fn target_part(text: &str, items: &[Item], c: &mut Command) {
     let (reading, mentions) = parse(text, items);
     note_definite(c, &mentions);
-    c.targets = mentions.iter().filter(|m| !m.is_anchor && !m.gone && m.host.is_none()).cloned().collect();
+    c.targets = mentions
+        .iter()
+        .filter(|m| !m.is_anchor && !m.gone && m.host.is_none())
+        .cloned()
+        .collect();
     c.mentions = mentions;
     let unread = std::mem::take(&mut c.reading.not_understood);
     c.reading = reading;
@@ -320,10 +399,26 @@ fn target_part(text: &str, items: &[Item], c: &mut Command) {
 
 fn direction(words: &str) -> Option<DVec2> {
     Some(match words {
-        "left" | "to the left" | "to my left" | "leftwards" | "leftward" | "to our left" | "to the left side" | "to the left hand side" => DVec2::Y,
-        "right" | "to the right" | "to my right" | "rightwards" | "rightward" | "to our right" | "to the right side" | "to the right hand side" => DVec2::NEG_Y,
-        "forward" | "forwards" | "ahead" | "further ahead" | "farther ahead" | "up" | "to the front" | "further forward" | "up ahead" | "further on" | "further along" => DVec2::X,
-        "back" | "backwards" | "backward" | "down" | "to the rear" | "further back" | "to the back" | "rearwards" | "further behind" => DVec2::NEG_X,
+        "left"
+        | "to the left"
+        | "to my left"
+        | "leftwards"
+        | "leftward"
+        | "to our left"
+        | "to the left side"
+        | "to the left hand side" => DVec2::Y,
+        "right"
+        | "to the right"
+        | "to my right"
+        | "rightwards"
+        | "rightward"
+        | "to our right"
+        | "to the right side"
+        | "to the right hand side" => DVec2::NEG_Y,
+        "forward" | "forwards" | "ahead" | "further ahead" | "farther ahead" | "up" | "to the front"
+        | "further forward" | "up ahead" | "further on" | "further along" => DVec2::X,
+        "back" | "backwards" | "backward" | "down" | "to the rear" | "further back" | "to the back"
+        | "rearwards" | "further behind" => DVec2::NEG_X,
         _ => return None,
     })
 }
@@ -364,12 +459,29 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             continue;
         }
         if let Some(d) = direction(w) {
-            let ends = items[i + 1..].iter().all(|x| matches!(x.tag, Tag::Is(Sense::Filler | Sense::Unit(_) | Sense::Count(_) | Sense::Article(_) | Sense::At | Sense::Fraction(_)) | Tag::Number(_) | Tag::Comma));
+            let ends = items[i + 1..].iter().all(|x| {
+                matches!(
+                    x.tag,
+                    Tag::Is(
+                        Sense::Filler
+                            | Sense::Unit(_)
+                            | Sense::Count(_)
+                            | Sense::Article(_)
+                            | Sense::At
+                            | Sense::Fraction(_)
+                    ) | Tag::Number(_)
+                        | Tag::Comma
+                )
+            });
             if ends {
                 dir = Some(d);
                 cut = cut.min(i);
             }
-        } else if matches!(w, "closer" | "nearer" | "closer to" | "nearer to" | "towards" | "toward") || (w == "close to" && i > after_noun) {
+        } else if matches!(
+            w,
+            "closer" | "nearer" | "closer to" | "nearer to" | "towards" | "toward"
+        ) || (w == "close to" && i > after_noun)
+        {
             toward = Some(false);
             cut = cut.min(i);
         } else if matches!(w, "away from" | "away" | "farther away" | "further away") {
@@ -384,7 +496,14 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
     }
     if cut == items.len() && place_from.is_none() {
         // "move the bus behind the truck": what is said of it is where it goes.
-        let from = (after_noun..items.len()).find(|k| matches!(items[*k].tag, Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide | Sense::Across)));
+        let from = (after_noun..items.len()).find(|k| {
+            matches!(
+                items[*k].tag,
+                Tag::Is(
+                    Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide | Sense::Across
+                )
+            )
+        });
         if let Some(k) = from {
             cut = k;
             place_from = Some(k);
@@ -399,7 +518,13 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
     };
 }
 
-fn destination(text: &str, items: &[Item], after_noun: usize, from: usize, c: &mut Command) -> Option<Destination> {
+fn destination(
+    text: &str,
+    items: &[Item],
+    after_noun: usize,
+    from: usize,
+    c: &mut Command,
+) -> Option<Destination> {
     let noun = items.get(after_noun.checked_sub(1)?)?.clone();
     let noun = Item {
         tag: match noun.tag {
@@ -411,9 +536,15 @@ fn destination(text: &str, items: &[Item], after_noun: usize, from: usize, c: &m
     let mut rest: Vec<Item> = items[from..].to_vec();
     if matches!(rest.first().map(|i| i.words.as_str()), Some("to" | "over to")) {
         rest.remove(0);
-        let place_first = rest.iter().find(|i| !matches!(i.tag, Tag::Is(Sense::Article(_) | Sense::Filler)));
+        let place_first = rest
+            .iter()
+            .find(|i| !matches!(i.tag, Tag::Is(Sense::Article(_) | Sense::Filler)));
         if place_first.is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Place(..) | Sense::Noun(..)))) {
-            let anchor = if place_first.is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Noun(..)))) { "next to" } else { "on" };
+            let anchor = if place_first.is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Noun(..)))) {
+                "next to"
+            } else {
+                "on"
+            };
             rest.insert(
                 0,
                 Item {
@@ -441,7 +572,21 @@ fn destination(text: &str, items: &[Item], after_noun: usize, from: usize, c: &m
 fn is_turn_word(w: &str) -> bool {
     matches!(
         w,
-        "around" | "round" | "clockwise" | "counterclockwise" | "anticlockwise" | "degrees" | "degree" | "deg" | "°" | "face" | "facing" | "looking at" | "about" | "backwards" | "counter"
+        "around"
+            | "round"
+            | "clockwise"
+            | "counterclockwise"
+            | "anticlockwise"
+            | "degrees"
+            | "degree"
+            | "deg"
+            | "°"
+            | "face"
+            | "facing"
+            | "looking at"
+            | "about"
+            | "backwards"
+            | "counter"
     )
 }
 
@@ -458,16 +603,32 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             _ => None,
         }
     });
-    let right = rest.iter().any(|w| matches!(*w, "right" | "to the right" | "rightwards")) || (at("clockwise").is_some() && at("counter").is_none() && at("anti").is_none());
-    let left = rest.iter().any(|w| matches!(*w, "left" | "to the left" | "leftwards" | "counterclockwise" | "anticlockwise"));
-    let ego = items.iter().skip(after_noun).any(|i| matches!(i.tag, Tag::Is(Sense::Ego)));
+    let right = rest
+        .iter()
+        .any(|w| matches!(*w, "right" | "to the right" | "rightwards"))
+        || (at("clockwise").is_some() && at("counter").is_none() && at("anti").is_none());
+    let left = rest.iter().any(|w| {
+        matches!(
+            *w,
+            "left" | "to the left" | "leftwards" | "counterclockwise" | "anticlockwise"
+        )
+    });
+    let ego = items
+        .iter()
+        .skip(after_noun)
+        .any(|i| matches!(i.tag, Tag::Is(Sense::Ego)));
     let away = rest.iter().any(|w| w.contains("away"));
     c.turn = match (degrees, left, right) {
         (Some(d), _, true) => Some(Turn::By(-d.to_radians())),
         (Some(d), ..) if d.is_finite() => Some(Turn::By(d.to_radians())),
         _ if ego && away => Some(Turn::FromEgo),
         _ if ego => Some(Turn::ToEgo),
-        _ if rest.iter().any(|w| matches!(*w, "around" | "round" | "about" | "backwards")) => Some(Turn::By(PI)),
+        _ if rest
+            .iter()
+            .any(|w| matches!(*w, "around" | "round" | "about" | "backwards")) =>
+        {
+            Some(Turn::By(PI))
+        }
         (_, true, _) => Some(Turn::By(FRAC_PI_2)),
         (_, _, true) => Some(Turn::By(-FRAC_PI_2)),
         _ if rest.iter().any(|w| matches!(*w, "straight" | "along")) => Some(Turn::WithLane),
@@ -479,7 +640,25 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         .skip(after_noun)
         .find(|(_, i)| {
             let w = i.words.as_str();
-            is_turn_word(w) || matches!(w, "by" | "to" | "left" | "right" | "to the left" | "to the right" | "so" | "towards" | "toward" | "away from" | "away" | "straight" | "along" | "facing away from" | "looking towards" | "pointing at")
+            is_turn_word(w)
+                || matches!(
+                    w,
+                    "by" | "to"
+                        | "left"
+                        | "right"
+                        | "to the left"
+                        | "to the right"
+                        | "so"
+                        | "towards"
+                        | "toward"
+                        | "away from"
+                        | "away"
+                        | "straight"
+                        | "along"
+                        | "facing away from"
+                        | "looking towards"
+                        | "pointing at"
+                )
                 || matches!(i.tag, Tag::Number(_))
         })
         .map_or(items.len(), |(k, _)| k);

@@ -48,7 +48,14 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
             span,
         });
     };
-    push(if left { RelationKind::LeftOf } else { RelationKind::RightOf }, Anchor::Ego);
+    push(
+        if left {
+            RelationKind::LeftOf
+        } else {
+            RelationKind::RightOf
+        },
+        Anchor::Ego,
+    );
     let strip = match (class == Class::Pedestrian, left) {
         (true, true) => LaneRole::LeftSidewalk,
         (true, false) => LaneRole::RightSidewalk,
@@ -66,7 +73,11 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     split_sides(mentions);
     // Works next to cones that were counted keep to the count.
-    let counted: Vec<Class> = mentions.iter().filter(|m| !m.uncounted && !m.gone).map(|m| m.spec.class).collect();
+    let counted: Vec<Class> = mentions
+        .iter()
+        .filter(|m| !m.uncounted && !m.gone)
+        .map(|m| m.spec.class)
+        .collect();
     let works: Vec<Span> = mentions
         .windows(3)
         .filter(|w| w.iter().all(|m| m.spec.span == w[0].spec.span) && w[0].spec.class == Class::TrafficCone)
@@ -89,7 +100,9 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     let stand_in = |i: usize| -> Option<usize> {
         index.get(i).copied().flatten().or_else(|| {
             let noun = &mentions.get(i)?.spec.noun;
-            (0..mentions.len()).find(|&j| mentions[j].spec.noun == *noun && index[j].is_some()).and_then(|j| index[j])
+            (0..mentions.len())
+                .find(|&j| mentions[j].spec.noun == *noun && index[j].is_some())
+                .and_then(|j| index[j])
         })
     };
     let renumber = |a: Anchor| match a {
@@ -119,15 +132,23 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
             })
             .collect();
         if spec.count.n > MOST_OF_ONE {
-            reading
-                .notes
-                .push(format!("{} {} were asked for: at most {MOST_OF_ONE} are tried", spec.count.n, spec.noun));
+            reading.notes.push(format!(
+                "{} {} were asked for: at most {MOST_OF_ONE} are tried",
+                spec.count.n, spec.noun
+            ));
         }
-        if m.classes.len() > 1 && m.classes[0] == Class::Car && spec.count.n > 1 && m.spec.noun != "vehicle" && !m.spec.noun.starts_with("traffic") {
+        if m.classes.len() > 1
+            && m.classes[0] == Class::Car
+            && spec.count.n > 1
+            && m.spec.noun != "vehicle"
+            && !m.spec.noun.starts_with("traffic")
+        {
             reading.notes.push(format!("{} are placed as cars", spec.noun));
         }
         if let Some(color) = &spec.color {
-            reading.notes.push(format!("boxes have no colour: {color} is kept in words only"));
+            reading
+                .notes
+                .push(format!("boxes have no colour: {color} is kept in words only"));
         }
         foreground.push(spec);
     }

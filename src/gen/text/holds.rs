@@ -33,7 +33,11 @@ pub fn ego() -> SceneBox {
 }
 
 fn at(b: &SceneBox) -> DVec2 {
-    if b.id == BoxId(u32::MAX) { DVec2::ZERO } else { b.center_m.truncate() }
+    if b.id == BoxId(u32::MAX) {
+        DVec2::ZERO
+    } else {
+        b.center_m.truncate()
+    }
 }
 
 /// The direction that front, behind, left and right of a box count from.
@@ -75,7 +79,10 @@ fn outline_m(outline: &[DVec2], p: DVec2) -> f64 {
 pub fn gap_m(a: &SceneBox, b: &SceneBox) -> f64 {
     let corner = |from: &SceneBox, to: &SceneBox| {
         let outline = to.footprint();
-        from.footprint().map(|c| outline_m(&outline, c)).into_iter().fold(f64::INFINITY, f64::min)
+        from.footprint()
+            .map(|c| outline_m(&outline, c))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
     };
     corner(a, b).min(corner(b, a)).max(0.0)
 }
@@ -141,8 +148,12 @@ pub fn holds(
                 R::InFrontOf => fwd > half.x && lat.abs() <= (0.6 * fwd).max(2.0),
                 R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
                 // Of the ego vehicle it means the whole side of the street.
-                R::LeftOf => lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0)),
-                R::RightOf => -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0)),
+                R::LeftOf => {
+                    lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0))
+                }
+                R::RightOf => {
+                    -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0))
+                }
                 R::Near if distance_m.is_some() => true,
                 R::Near => gap_m(from, b) <= 5.5,
                 R::NextTo => gap_m(from, b) <= 3.2,
@@ -153,11 +164,19 @@ pub fn holds(
                     let t = (p - a).dot(line) / length.max(1e-9);
                     (0.12..=0.88).contains(&t) && line.perp_dot(p - a).abs() <= (0.3 * length).max(1.8)
                 }),
-                R::Across => p.distance(at(b)) > 4.0 && map.course(p).zip(map.course(at(b))).is_some_and(|(x, y)| (x.1 - y.1).abs() > 4.0 && (x.0 - y.0).abs() < 14.0),
+                R::Across => {
+                    p.distance(at(b)) > 4.0
+                        && map
+                            .course(p)
+                            .zip(map.course(at(b)))
+                            .is_some_and(|(x, y)| (x.1 - y.1).abs() > 4.0 && (x.0 - y.0).abs() < 14.0)
+                }
                 R::Blocking => standing && fwd > half.x && lat.abs() < 1.0 + from.size_m.y / 2.0,
                 R::Facing => toward > 0.75,
                 R::FacingAway => toward < -0.75,
-                R::Following => fwd < -half.x && lat.abs() < 2.0 && -fwd < 36.0 && heading.dot(b.heading()) > 0.88,
+                R::Following => {
+                    fwd < -half.x && lat.abs() < 2.0 && -fwd < 36.0 && heading.dot(b.heading()) > 0.88
+                }
                 R::SameDirection => heading.dot(b.heading()) > 0.88,
                 R::OppositeDirection => heading.dot(b.heading()) < -0.88,
                 R::Crossing => fwd > half.x && crosswise(),
@@ -180,7 +199,9 @@ pub fn holds(
             let off = nearest.map_or(f64::INFINITY, |l| l.p.distance(p));
             let reach = |l: &super::lanes::LanePoint| {
                 let offsets = from.footprint().map(|c| l.dir.perp_dot(c - l.p));
-                let (low, high) = offsets.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+                let (low, high) = offsets
+                    .iter()
+                    .fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
                 low <= 0.9 && high >= -0.9 && l.dir.dot(p - l.p).abs() < 1.0 + from.size_m.x / 2.0
             };
             let held = match relation {
@@ -209,7 +230,10 @@ pub fn holds(
                 return false;
             };
             let center = outline.iter().sum::<DVec2>() / outline.len() as f64;
-            (area(map, relation, from, outline_m(outline, p), center), outline_m(outline, p).max(0.0))
+            (
+                area(map, relation, from, outline_m(outline, p), center),
+                outline_m(outline, p).max(0.0),
+            )
         }
         Target::Junction => {
             let Some(center) = map.junction else {
@@ -226,7 +250,10 @@ fn area(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, off: f64, ce
     use RelationKind as R;
     let p = from.center_m.truncate();
     let standing = from.velocity_mps.length() < 0.5;
-    let ahead = map.course(center).zip(map.course(p)).map_or(0.0, |(c, q)| q.0 - c.0);
+    let ahead = map
+        .course(center)
+        .zip(map.course(p))
+        .map_or(0.0, |(c, q)| q.0 - c.0);
     match relation {
         R::On => off <= -0.2,
         R::ParkedOn => off <= 0.0 && standing,

@@ -118,7 +118,11 @@ impl<'a> LaneMap<'a> {
                 _ => LaneRole::Road,
             }
         } else if cosine < -0.82 {
-            if across.abs() < 22.0 { LaneRole::Oncoming } else { LaneRole::Road }
+            if across.abs() < 22.0 {
+                LaneRole::Oncoming
+            } else {
+                LaneRole::Road
+            }
         } else {
             LaneRole::Cross
         }
@@ -161,7 +165,10 @@ impl<'a> LaneMap<'a> {
             .filter(|c| path.iter().any(|p| p.distance(c.p) < 4.0))
             .map(|c| c.p)
             .collect();
-        let first = met.iter().copied().min_by(|a, b| a.length().total_cmp(&b.length()))?;
+        let first = met
+            .iter()
+            .copied()
+            .min_by(|a, b| a.length().total_cmp(&b.length()))?;
         let near: Vec<DVec2> = met.into_iter().filter(|p| p.distance(first) < 14.0).collect();
         Some(near.iter().sum::<DVec2>() / near.len() as f64)
     }
@@ -179,13 +186,21 @@ impl<'a> LaneMap<'a> {
 
 /// Chains the lanes that the ego vehicle's lane belongs to.
 fn ego_path(lanes: &[Vec<(DVec2, DVec2)>]) -> Vec<(DVec2, DVec2)> {
-    let straight = || (-40..=40).map(|x| (DVec2::new(f64::from(x), 0.0), DVec2::X)).collect();
+    let straight = || {
+        (-40..=40)
+            .map(|x| (DVec2::new(f64::from(x), 0.0), DVec2::X))
+            .collect()
+    };
     let cost = |lane: &Vec<(DVec2, DVec2)>| {
         lane.iter()
             .map(|(p, d)| p.length() + if d.x > 0.7 { 0.0 } else { 50.0 })
             .fold(f64::INFINITY, f64::min)
     };
-    let Some(own) = lanes.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).filter(|l| cost(l) < 4.0) else {
+    let Some(own) = lanes
+        .iter()
+        .min_by(|a, b| cost(a).total_cmp(&cost(b)))
+        .filter(|l| cost(l) < 4.0)
+    else {
         return straight();
     };
     let mut path = own.clone();
@@ -215,6 +230,10 @@ fn ego_path(lanes: &[Vec<(DVec2, DVec2)>]) -> Vec<(DVec2, DVec2)> {
     }
     // Straight on to the border, so that "ahead" is always somewhere.
     let (end, dir) = path[path.len() - 1];
-    path.extend((1..=80).map(|i| (end + dir * f64::from(i), dir)).take_while(|(p, _)| p.abs().max_element() < 41.0));
+    path.extend(
+        (1..=80)
+            .map(|i| (end + dir * f64::from(i), dir))
+            .take_while(|(p, _)| p.abs().max_element() < 41.0),
+    );
     path
 }

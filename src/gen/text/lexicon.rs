@@ -142,23 +142,36 @@ fn build() -> Table {
     ] {
         put(word, sense);
     }
-    for word in words("nobody|no one|nobody around|no one around|noone|no people around|nobody else|no one else|not a soul|no person|nobody at all") {
+    for word in words(
+        "nobody|no one|nobody around|no one around|noone|no people around|nobody else|no one else|not a soul|no person|nobody at all",
+    ) {
         put(word, Sense::Nobody);
     }
-    for word in words("narrow|narrow road|narrow street|tight street|alley|alleyway|narrow lane|narrow lanes") {
+    for word in words("narrow|narrow road|narrow street|tight street|alley|alleyway|narrow lane|narrow lanes")
+    {
         put(word, Sense::Width(true));
     }
-    for word in words("wide road|wide street|broad street|broad road|wide lanes|wide avenue|spacious road|wide boulevard") {
+    for word in words(
+        "wide road|wide street|broad street|broad road|wide lanes|wide avenue|spacious road|wide boulevard",
+    ) {
         put(word, Sense::Width(false));
     }
     for word in words(places::EGO) {
         put(word, Sense::Ego);
     }
-    for (role_sides, list) in places::SIDED.iter().map(|(any, left, right, list)| ((*any, *left, *right), *list)) {
+    for (role_sides, list) in places::SIDED
+        .iter()
+        .map(|(any, left, right, list)| ((*any, *left, *right), *list))
+    {
         let (any, left, right) = role_sides;
         let mut list: Vec<&str> = words(list).collect();
         if any == LaneRole::Roadside {
-            list.extend(["side of the road", "side of the street", "side of my road", "side of our road"]);
+            list.extend([
+                "side of the road",
+                "side of the street",
+                "side of my road",
+                "side of our road",
+            ]);
         }
         for noun in list {
             put(noun, Sense::Place(Anchor::Lane(any), None));
@@ -210,9 +223,31 @@ fn build() -> Table {
         }
     }
     for (symbol, word) in [
-        ("🚗", "car"), ("🚙", "suv"), ("🚕", "taxi"), ("🚘", "car"), ("🏎", "car"), ("🚓", "car"), ("🚐", "van"), ("🚑", "ambulance"), ("🚚", "truck"), ("🚛", "truck"),
-        ("🚒", "truck"), ("🚌", "bus"), ("🚍", "bus"), ("🚎", "bus"), ("🏍", "motorcycle"), ("🛵", "moped"), ("🚲", "bicycle"), ("🚴", "cyclist"), ("🚶", "pedestrian"),
-        ("🏃", "jogger"), ("🚧", "barrier"), ("🚜", "tractor"), ("👮", "policeman"), ("👷", "worker"), ("🧍", "pedestrian"),
+        ("🚗", "car"),
+        ("🚙", "suv"),
+        ("🚕", "taxi"),
+        ("🚘", "car"),
+        ("🏎", "car"),
+        ("🚓", "car"),
+        ("🚐", "van"),
+        ("🚑", "ambulance"),
+        ("🚚", "truck"),
+        ("🚛", "truck"),
+        ("🚒", "truck"),
+        ("🚌", "bus"),
+        ("🚍", "bus"),
+        ("🚎", "bus"),
+        ("🏍", "motorcycle"),
+        ("🛵", "moped"),
+        ("🚲", "bicycle"),
+        ("🚴", "cyclist"),
+        ("🚶", "pedestrian"),
+        ("🏃", "jogger"),
+        ("🚧", "barrier"),
+        ("🚜", "tractor"),
+        ("👮", "policeman"),
+        ("👷", "worker"),
+        ("🧍", "pedestrian"),
     ] {
         if let Some(Sense::Noun(noun, _)) = NOUNS
             .iter()
@@ -223,9 +258,18 @@ fn build() -> Table {
         }
     }
     for (symbol, sense) in [
-        ("🌧", Sense::Weather(Weather::Rain)), ("⛈", Sense::Weather(Weather::Rain)), ("☔", Sense::Weather(Weather::Rain)), ("❄", Sense::Weather(Weather::Snow)),
-        ("🌨", Sense::Weather(Weather::Snow)), ("☃", Sense::Weather(Weather::Snow)), ("🌫", Sense::Weather(Weather::Fog)), ("☁", Sense::Weather(Weather::Overcast)),
-        ("☀", Sense::Weather(Weather::Clear)), ("🌙", Sense::Time(TimeOfDay::Night)), ("🌃", Sense::Time(TimeOfDay::Night)), ("🌅", Sense::Time(TimeOfDay::Dawn)),
+        ("🌧", Sense::Weather(Weather::Rain)),
+        ("⛈", Sense::Weather(Weather::Rain)),
+        ("☔", Sense::Weather(Weather::Rain)),
+        ("❄", Sense::Weather(Weather::Snow)),
+        ("🌨", Sense::Weather(Weather::Snow)),
+        ("☃", Sense::Weather(Weather::Snow)),
+        ("🌫", Sense::Weather(Weather::Fog)),
+        ("☁", Sense::Weather(Weather::Overcast)),
+        ("☀", Sense::Weather(Weather::Clear)),
+        ("🌙", Sense::Time(TimeOfDay::Night)),
+        ("🌃", Sense::Time(TimeOfDay::Night)),
+        ("🌅", Sense::Time(TimeOfDay::Dawn)),
         ("🌇", Sense::Time(TimeOfDay::Dusk)),
     ] {
         put(symbol, sense);
@@ -242,7 +286,9 @@ fn build() -> Table {
     for (relation, list) in places::RELATIONS {
         words(list).for_each(|w| {
             // "behind" may stand alone.
-            let alone = places::EGO_RELATIONS.iter().any(|(_, l)| words(l).any(|x| x == w));
+            let alone = places::EGO_RELATIONS
+                .iter()
+                .any(|(_, l)| words(l).any(|x| x == w));
             if !alone {
                 put(w, Sense::Rel(*relation));
             }
@@ -254,7 +300,15 @@ fn build() -> Table {
     words(places::FAR_SIDE).for_each(|w| put(w, Sense::FarSide));
     for w in words(places::BOTH_SIDES) {
         put(w, Sense::BothSides(w.contains("each")));
-        for tail in ["of the road", "of the street", "of my lane", "of me", "of the lane", "of us", "of the carriageway"] {
+        for tail in [
+            "of the road",
+            "of the street",
+            "of my lane",
+            "of me",
+            "of the lane",
+            "of us",
+            "of the carriageway",
+        ] {
             let side = w.contains("side");
             if side {
                 put(&format!("{w} {tail}"), Sense::BothSides(w.contains("each")));
@@ -295,7 +349,9 @@ fn build() -> Table {
     words(style::ATTRIBUTES).for_each(|w| put(w, Sense::Attribute(w)));
     words(places::NOT).for_each(|w| put(w, Sense::Not));
     for w in words(places::PARTS) {
-        let all = ["rest", "remaining", "others", "the other two", "the other three"].iter().any(|p| w.contains(p));
+        let all = ["rest", "remaining", "others", "the other two", "the other three"]
+            .iter()
+            .any(|p| w.contains(p));
         put(w, Sense::Part(all));
     }
     words(places::PRONOUNS).for_each(|w| put(w, Sense::Pronoun));
@@ -318,14 +374,20 @@ fn build() -> Table {
         let mut forms = entry.split('/');
         let one = forms.next().unwrap_or(entry);
         put(one, Sense::Background);
-        put(&forms.next().map_or_else(|| plural(one), str::to_string), Sense::Background);
+        put(
+            &forms.next().map_or_else(|| plural(one), str::to_string),
+            Sense::Background,
+        );
     }
     for (why, list) in objects::CANNOT {
         for entry in words(list) {
             let mut forms = entry.split('/');
             let one = forms.next().unwrap_or(entry);
             put(one, Sense::Cannot(why));
-            put(&forms.next().map_or_else(|| plural(one), str::to_string), Sense::Cannot(why));
+            put(
+                &forms.next().map_or_else(|| plural(one), str::to_string),
+                Sense::Cannot(why),
+            );
         }
     }
     words(places::FILLERS).for_each(|w| put(w, Sense::Filler));
@@ -342,7 +404,10 @@ static SINGLES: LazyLock<Vec<(&'static str, Vec<char>)>> = LazyLock::new(|| {
     let mut singles: Vec<_> = TABLE
         .iter()
         .filter(|(w, s)| {
-            let telling = !matches!(s, Sense::Filler | Sense::Cannot(_) | Sense::Verb(_) | Sense::Attribute(_));
+            let telling = !matches!(
+                s,
+                Sense::Filler | Sense::Cannot(_) | Sense::Verb(_) | Sense::Attribute(_)
+            );
             telling && !w.contains(' ') && w.chars().count() >= 5
         })
         .map(|(w, _)| (w.as_str(), w.chars().collect::<Vec<_>>()))
@@ -413,6 +478,9 @@ mod tests {
         assert_eq!(nearest("motorcylce"), Some("motorcycle"));
         assert_eq!(nearest("zzzzzz"), None);
         assert!(TABLE.len() > 2500, "{} entries", TABLE.len());
-        assert!(TABLE.keys().all(|k| k.split(' ').count() <= LONGEST), "a run of words is too long");
+        assert!(
+            TABLE.keys().all(|k| k.split(' ').count() <= LONGEST),
+            "a run of words is too long"
+        );
     }
 }

@@ -68,14 +68,24 @@ impl Pre {
     }
     /// True if anything but an article was said.
     pub fn says_something(&self) -> bool {
-        self.count.is_some() || self.state.is_some() || self.size.is_some() || self.color.is_some() || !self.attributes.is_empty()
+        self.count.is_some()
+            || self.state.is_some()
+            || self.size.is_some()
+            || self.color.is_some()
+            || !self.attributes.is_empty()
     }
 }
 
 impl Mention {
     /// A noun and what stood before it.
     pub fn new(noun: &'static Noun, word: &str, plural: bool, pre: Pre, span: Span) -> Self {
-        let counted = pre.count.map(|c| if noun.several > 1 && c.n == 1 { Count::about(2, noun.several, 30) } else { c });
+        let counted = pre.count.map(|c| {
+            if noun.several > 1 && c.n == 1 {
+                Count::about(2, noun.several, 30)
+            } else {
+                c
+            }
+        });
         let several = Count::about(2, noun.several, noun.several * 3);
         let count = match (counted, pre.article) {
             (Some(count), _) => count,
@@ -173,7 +183,15 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
     let on = |anchor: Anchor| {
         let strip = matches!(
             anchor,
-            Lane(L::Roadside | L::LeftRoadside | L::RightRoadside | L::Carpark | L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)
+            Lane(
+                L::Roadside
+                    | L::LeftRoadside
+                    | L::RightRoadside
+                    | L::Carpark
+                    | L::Sidewalk
+                    | L::LeftSidewalk
+                    | L::RightSidewalk
+            )
         );
         (if parked && strip { R::ParkedOn } else { R::On }, anchor)
     };
@@ -191,9 +209,15 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     }
                     (R::InFrontOf | R::Behind, Lane(L::Road)) => out.push((kind, Ego)),
                     (R::Near | R::NextTo, Lane(L::Road)) => {
-                        out.push(on(Lane(if walks(spec.class) { L::Sidewalk } else { L::Roadside })));
+                        out.push(on(Lane(if walks(spec.class) {
+                            L::Sidewalk
+                        } else {
+                            L::Roadside
+                        })));
                     }
-                    (R::Near | R::NextTo, Lane(strip)) if !matches!(strip, L::Ego | L::Left | L::Right | L::Oncoming) => {
+                    (R::Near | R::NextTo, Lane(strip))
+                        if !matches!(strip, L::Ego | L::Left | L::Right | L::Oncoming) =>
+                    {
                         out.push(on(Lane(strip)));
                     }
                     (R::NextTo, Crossing | Junction) => out.push((R::Near, anchor)),
@@ -209,7 +233,9 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                         out.extend([(R::Crossing, Lane(L::Road)), (R::Near, Junction)]);
                     }
                     (R::Crossing, Junction) => out.push((R::On, Junction)),
-                    (R::Crossing, Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)) => out.push((R::On, anchor)),
+                    (R::Crossing, Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)) => {
+                        out.push((R::On, anchor))
+                    }
                     (R::Crossing, Ego | Object(_)) => out.push((R::Crossing, Lane(L::Road))),
                     _ => out.push((kind, anchor)),
                 }
@@ -232,7 +258,9 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
             Ego => out.push((R::Near, Ego)),
             Object(_) => out.push((R::NextTo, anchor)),
             Crossing if crosses => out.push((R::On, Crossing)),
-            Crossing | Junction if spec.state == Some(ObjectState::Waiting) => out.push((R::WaitingAt, anchor)),
+            Crossing | Junction if spec.state == Some(ObjectState::Waiting) => {
+                out.push((R::WaitingAt, anchor))
+            }
             Crossing | Junction => out.push((R::Near, anchor)),
             Lane(L::Road) if parked => out.push((R::ParkedOn, Lane(L::Roadside))),
             Lane(L::Road) if walks(spec.class) && !crosses => out.push((R::On, Lane(L::Sidewalk))),
@@ -269,7 +297,9 @@ fn far_side(class: Class, parked: bool, out: &mut Vec<(RelationKind, Anchor)>) {
     out.push(match (walks(class), parked) {
         (true, _) => (R::On, Anchor::Lane(LaneRole::LeftSidewalk)),
         (false, true) => (R::ParkedOn, Anchor::Lane(LaneRole::LeftRoadside)),
-        (false, false) if class.is_vehicle() || class == Class::Motorcycle => (R::On, Anchor::Lane(LaneRole::Oncoming)),
+        (false, false) if class.is_vehicle() || class == Class::Motorcycle => {
+            (R::On, Anchor::Lane(LaneRole::Oncoming))
+        }
         (false, false) => (R::On, Anchor::Lane(LaneRole::LeftRoadside)),
     });
 }

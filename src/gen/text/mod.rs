@@ -3,10 +3,10 @@
 pub mod description;
 pub mod edit;
 mod edit_grammar;
+mod finish;
 pub mod holds;
 pub mod lanes;
 pub mod lexicon;
-mod finish;
 mod mention;
 pub mod parse;
 pub mod place;

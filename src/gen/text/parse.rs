@@ -5,7 +5,8 @@
 //! a comma, `and` or a finite verb to the subject; at the start of a clause to the nouns that follow.
 
 use super::description::{
-    Absent, Anchor, Became, Count, Density, Description, Phrase, Reading, Road, Stated, TimeOfDay, Unread, Weather,
+    Absent, Anchor, Became, Count, Density, Description, Phrase, Reading, Road, Stated, TimeOfDay, Unread,
+    Weather,
 };
 use super::lexicon::Sense;
 use super::mention::{Frag, Mention, Pre, Prep, apply};
@@ -41,11 +42,11 @@ pub(super) struct Parser<'a> {
     before: Vec<usize>, // subject of the clause before
     fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
-    chain: bool, // only nouns so far in this clause
+    chain: bool,      // only nouns so far in this clause
     list: Vec<usize>, // those nouns
-    linked: bool, // "and" or a comma right before
-    anded: bool, // "and" right before
-    fresh: bool, // nothing but small words since the clause began or a comma
+    linked: bool,     // "and" or a comma right before
+    anded: bool,      // "and" right before
+    fresh: bool,      // nothing but small words since the clause began or a comma
     pending: Option<Pending>,
     pre: Pre,
     not_goes_on: bool,
@@ -143,7 +144,21 @@ impl<'a> Parser<'a> {
                 ) => {}
                 Tag::Is(Sense::Weather(_) | Sense::Time(_)) if is_color(&item.words) => {}
                 Tag::Is(Sense::EgoRel(_)) if is_prenominal(&item.words) => {}
-                Tag::Is(Sense::Filler) if matches!(item.words.as_str(), "of" | "about" | "exactly" | "only" | "just" | "other" | "there is" | "there are" | "is" | "are" | "my" | "another") => {}
+                Tag::Is(Sense::Filler)
+                    if matches!(
+                        item.words.as_str(),
+                        "of" | "about"
+                            | "exactly"
+                            | "only"
+                            | "just"
+                            | "other"
+                            | "there is"
+                            | "there are"
+                            | "is"
+                            | "are"
+                            | "my"
+                            | "another"
+                    ) => {}
                 Tag::Number(_) if !matches!(self.sense(j + 1), Some(Sense::Unit(_))) => {}
                 Tag::Unknown => {}
                 _ => return false,
@@ -155,10 +170,16 @@ impl<'a> Parser<'a> {
     /// True if something that a relation can end in begins at item `i`.
     fn anchor_ahead(&self, i: usize) -> bool {
         let mut j = i;
-        while matches!(self.sense(j), Some(Sense::Article(_) | Sense::Filler | Sense::Size(_) | Sense::Attribute(_))) {
+        while matches!(
+            self.sense(j),
+            Some(Sense::Article(_) | Sense::Filler | Sense::Size(_) | Sense::Attribute(_))
+        ) {
             j += 1;
         }
-        matches!(self.sense(j), Some(Sense::Ego | Sense::Pronoun | Sense::Place(..) | Sense::Part(_))) || self.noun_ahead(j)
+        matches!(
+            self.sense(j),
+            Some(Sense::Ego | Sense::Pronoun | Sense::Place(..) | Sense::Part(_))
+        ) || self.noun_ahead(j)
     }
 
     pub(super) fn run(&mut self) {
@@ -219,7 +240,8 @@ impl<'a> Parser<'a> {
                     return false;
                 }
                 if self.edits
-                    && let (Some(&i), Some(Sense::Noun(..))) = (self.history_last(), self.sense(self.at.wrapping_sub(1)))
+                    && let (Some(&i), Some(Sense::Noun(..))) =
+                        (self.history_last(), self.sense(self.at.wrapping_sub(1)))
                 {
                     // "car 7"
                     self.mentions[i].id = Some(v as u32);
@@ -229,7 +251,11 @@ impl<'a> Parser<'a> {
                 if self.try_distance(v, span) {
                     return false;
                 }
-                let back = if self.item(self.at.wrapping_sub(1)).is_some_and(|i| i.words == ":") { 2 } else { 1 };
+                let back = if self.item(self.at.wrapping_sub(1)).is_some_and(|i| i.words == ":") {
+                    2
+                } else {
+                    1
+                };
                 if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(_, true)))
                     && !self.noun_ahead(self.at + 1)
                     && (1.0..1000.0).contains(&v)
@@ -243,7 +269,11 @@ impl<'a> Parser<'a> {
                     m.spec.span = m.spec.span.to(span);
                     return false;
                 }
-                let n = if v.is_finite() && v >= 0.0 { v.round().min(1e6) as u32 } else { 1_000_000 };
+                let n = if v.is_finite() && v >= 0.0 {
+                    v.round().min(1e6) as u32
+                } else {
+                    1_000_000
+                };
                 self.count(Count::exactly(n), span);
             }
             Tag::Is(sense) => return self.sense_step(sense, item),
@@ -261,7 +291,8 @@ impl<'a> Parser<'a> {
                         self.with = true;
                         self.topic = None;
                     }
-                    "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is" | "which are" | "thats" | "whos" => {
+                    "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
+                    | "which are" | "thats" | "whos" => {
                         self.relative = true;
                     }
                     "each" | "every" => self.pre.each = true,
@@ -310,7 +341,11 @@ impl<'a> Parser<'a> {
                 }
                 self.flush();
                 if sense == Sense::And {
-                    self.not_goes_on &= self.items.get(self.at + 1).is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Noun(..)))) || self.list_goes_on();
+                    self.not_goes_on &= self
+                        .items
+                        .get(self.at + 1)
+                        .is_some_and(|i| matches!(i.tag, Tag::Is(Sense::Noun(..))))
+                        || self.list_goes_on();
                 }
                 self.linked = true;
                 self.anded = true;
@@ -328,7 +363,10 @@ impl<'a> Parser<'a> {
                 return true;
             }
             // "deserted except for a bicycle"
-            Sense::Not if item.words.starts_with("except") && (self.d().density == Some(Density::Empty) || !self.d().absent.is_empty()) => {
+            Sense::Not
+                if item.words.starts_with("except")
+                    && (self.d().density == Some(Density::Empty) || !self.d().absent.is_empty()) =>
+            {
                 self.denied = false;
                 self.not_goes_on = false;
                 return true;
@@ -341,7 +379,9 @@ impl<'a> Parser<'a> {
             Sense::Nobody => {
                 self.absent(vec![Class::Pedestrian], None, span);
             }
-            Sense::Count(count) if !count.is_exact() && matches!(self.sense(self.at + 1), Some(Sense::Unit(_))) => {
+            Sense::Count(count)
+                if !count.is_exact() && matches!(self.sense(self.at + 1), Some(Sense::Unit(_))) =>
+            {
                 self.at += 1;
                 let span = span.to(self.items[self.at].span);
                 self.unread(span, Some("how many?".into()));
@@ -351,7 +391,9 @@ impl<'a> Parser<'a> {
                 if unit && self.try_distance(f64::from(count.n), span) {
                     return false;
                 }
-                if let (Some(Sense::Fraction(share)), Some(Sense::Unit(m))) = (self.sense(self.at + 1), self.sense(self.at + 2)) {
+                if let (Some(Sense::Fraction(share)), Some(Sense::Unit(m))) =
+                    (self.sense(self.at + 1), self.sense(self.at + 2))
+                {
                     self.at += 2;
                     let span = span.to(self.items[self.at].span);
                     self.distance_said((f64::from(count.n) + share) * m, span);
@@ -364,7 +406,10 @@ impl<'a> Parser<'a> {
                 if prenominal {
                     self.pre.size = Some(size);
                     self.pre.cover(span);
-                } else if !matches!(self.sense(self.at + 1), Some(Sense::Place(..) | Sense::RoadKind(..))) {
+                } else if !matches!(
+                    self.sense(self.at + 1),
+                    Some(Sense::Place(..) | Sense::RoadKind(..))
+                ) {
                     let targets = self.subjects(true);
                     for t in targets {
                         self.mentions[t].spec.size = Some(size);
@@ -393,7 +438,10 @@ impl<'a> Parser<'a> {
             }
             Sense::Works => self.works(span),
             Sense::Rel(kind) => {
-                if kind == RelationKind::Near && matches!(item.words.as_str(), "around" | "about") && !self.anchor_ahead(self.at + 1) {
+                if kind == RelationKind::Near
+                    && matches!(item.words.as_str(), "around" | "about")
+                    && !self.anchor_ahead(self.at + 1)
+                {
                     return true;
                 }
                 self.begin(Prep::Rels(vec![kind]), span);
@@ -407,7 +455,10 @@ impl<'a> Parser<'a> {
                 // "on the left a bus, in front a cone and behind a person"
                 let listed = self.fresh
                     && self.fronted.last().is_some_and(|f| f.anchor == Anchor::Ego)
-                    && matches!(self.sense(self.at + 1), Some(Sense::Article(false) | Sense::Count(_)))
+                    && matches!(
+                        self.sense(self.at + 1),
+                        Some(Sense::Article(false) | Sense::Count(_))
+                    )
                     && self.noun_ahead(self.at + 1);
                 if listed {
                     self.begin(Prep::Rels(kinds.to_vec()), span);
@@ -420,7 +471,12 @@ impl<'a> Parser<'a> {
                         .last
                         .first()
                         .and_then(|&i| self.mentions[i].host)
-                        .filter(|_| matches!(item.words.as_str(), "behind" | "in front" | "close behind" | "right behind" | "ahead"));
+                        .filter(|_| {
+                            matches!(
+                                item.words.as_str(),
+                                "behind" | "in front" | "close behind" | "right behind" | "ahead"
+                            )
+                        });
                     self.anchor(host.map_or(Anchor::Ego, Anchor::Object), span);
                 }
             }
@@ -468,7 +524,11 @@ impl<'a> Parser<'a> {
             Sense::Width(narrow) => {
                 let road = &mut self.d().road;
                 (road.narrow, road.wide) = (narrow, !narrow);
-                self.phrase(span, Became::Road, if narrow { "narrow road" } else { "wide road" });
+                self.phrase(
+                    span,
+                    Became::Road,
+                    if narrow { "narrow road" } else { "wide road" },
+                );
                 self.drop_pending();
             }
             Sense::Ego => {
@@ -503,7 +563,8 @@ impl<'a> Parser<'a> {
                 self.time(time, span);
             }
             Sense::Weather(weather) => {
-                let described = is_color(&item.words) && (prenominal || self.after_is() && !self.head.is_empty());
+                let described =
+                    is_color(&item.words) && (prenominal || self.after_is() && !self.head.is_empty());
                 if described {
                     let word = places_color(&item.words);
                     self.color(word, prenominal, span);
@@ -514,7 +575,11 @@ impl<'a> Parser<'a> {
             Sense::Environment(environment) => {
                 if !self.pre.not {
                     self.d().environment.get_or_insert(environment);
-                    self.phrase(span, Became::Environment, &format!("surroundings: {}", environment.name()));
+                    self.phrase(
+                        span,
+                        Became::Environment,
+                        &format!("surroundings: {}", environment.name()),
+                    );
                 }
                 self.drop_pending();
                 self.pre = Pre::default();
@@ -528,7 +593,12 @@ impl<'a> Parser<'a> {
                 self.pre.not = false;
                 self.d().density = Some(density);
                 self.phrase(span, Became::Density, &format!("traffic: {}", density.name()));
-                if self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) && !self.anchor_ahead(self.at + 1) {
+                if self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At))
+                    && !self.anchor_ahead(self.at + 1)
+                {
                     self.drop_pending();
                 }
                 return true;
@@ -537,7 +607,10 @@ impl<'a> Parser<'a> {
                 let lead = self.pending.take();
                 if let Some(p) = lead.filter(|p| matches!(p.prep, Prep::Rels(_))) {
                     let span = p.span.to(span);
-                    self.unread(span, Some("surroundings are drawn freely: nothing can be placed by them".into()));
+                    self.unread(
+                        span,
+                        Some("surroundings are drawn freely: nothing can be placed by them".into()),
+                    );
                 } else if self.pre.not {
                     self.unread(span, Some("surroundings are drawn freely".into()));
                 } else {
@@ -569,7 +642,9 @@ impl<'a> Parser<'a> {
         while let Some(item) = self.item(j) {
             match item.tag {
                 Tag::Is(Sense::Or) => return true,
-                Tag::Is(Sense::Noun(_, true)) | Tag::Comma | Tag::Is(Sense::State(_, false) | Sense::Color(_)) => j += 1,
+                Tag::Is(Sense::Noun(_, true))
+                | Tag::Comma
+                | Tag::Is(Sense::State(_, false) | Sense::Color(_)) => j += 1,
                 _ => return false,
             }
         }
@@ -577,7 +652,9 @@ impl<'a> Parser<'a> {
     }
 
     fn takes_object(&self, item: &Item) -> bool {
-        places::RELATIONS.iter().any(|(_, l)| l.split('|').any(|w| w.trim() == item.words))
+        places::RELATIONS
+            .iter()
+            .any(|(_, l)| l.split('|').any(|w| w.trim() == item.words))
     }
 
     fn noun_directly(&self, i: usize) -> bool {
@@ -593,7 +670,9 @@ impl<'a> Parser<'a> {
     }
 
     fn noun_next(&self) -> bool {
-        self.item(self.at + 1).is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..)))) && !self.edits
+        self.item(self.at + 1)
+            .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+            && !self.edits
     }
 
     fn history_last(&self) -> Option<&usize> {
@@ -612,7 +691,10 @@ impl<'a> Parser<'a> {
             self.at += 1;
             let mut whole = span.to(self.items[self.at].span);
             if let Some(next) = self.item(self.at + 1)
-                && matches!(next.tag, Tag::Is(Sense::Place(Anchor::Lane(LaneRole::Road), _) | Sense::RoadKind(..)))
+                && matches!(
+                    next.tag,
+                    Tag::Is(Sense::Place(Anchor::Lane(LaneRole::Road), _) | Sense::RoadKind(..))
+                )
             {
                 if let Tag::Is(Sense::RoadKind(road, environment)) = next.tag {
                     self.road_kind(road, environment, next.span);
@@ -630,7 +712,11 @@ impl<'a> Parser<'a> {
             self.part(false, count, span);
             return;
         }
-        if next_is_part && self.edits && matches!(self.items[self.at].words.as_str(), "one") && self.pending.is_none() {
+        if next_is_part
+            && self.edits
+            && matches!(self.items[self.at].words.as_str(), "one")
+            && self.pending.is_none()
+        {
             // "the one behind me"
             if let Some(noun) = NOUNS.last() {
                 self.noun(noun, "object", false, span);
@@ -639,8 +725,21 @@ impl<'a> Parser<'a> {
         }
         if next_is_part {
             // a number of nothing: "a lot of traffic" and the like come as one run
-            if !matches!(self.sense(self.at + 1), Some(Sense::Filler | Sense::Environment(_) | Sense::Place(..) | Sense::Background | Sense::Cannot(_) | Sense::RoadKind(..) | Sense::Pick(_) | Sense::Density(_) | Sense::Size(_) | Sense::Part(_)))
-                && !self.edits
+            if !matches!(
+                self.sense(self.at + 1),
+                Some(
+                    Sense::Filler
+                        | Sense::Environment(_)
+                        | Sense::Place(..)
+                        | Sense::Background
+                        | Sense::Cannot(_)
+                        | Sense::RoadKind(..)
+                        | Sense::Pick(_)
+                        | Sense::Density(_)
+                        | Sense::Size(_)
+                        | Sense::Part(_)
+                )
+            ) && !self.edits
             {
                 self.unread(span, Some("a number of what?".into()));
             }
@@ -660,8 +759,13 @@ impl<'a> Parser<'a> {
     }
 
     fn distance_said(&mut self, metres: f64, span: Span) {
-        let back = (1..=2).filter_map(|k| self.sense(self.at.wrapping_sub(1 + k))).collect::<Vec<_>>();
-        let metres = match back.iter().find_map(|s| if let Sense::Bound(b) = s { Some(*b) } else { None }) {
+        let back = (1..=2)
+            .filter_map(|k| self.sense(self.at.wrapping_sub(1 + k)))
+            .collect::<Vec<_>>();
+        let metres = match back
+            .iter()
+            .find_map(|s| if let Sense::Bound(b) = s { Some(*b) } else { None })
+        {
             Some(true) => metres * 0.6,
             Some(false) => metres * 1.3,
             None => metres,
@@ -702,7 +806,11 @@ impl<'a> Parser<'a> {
         let mut used = false;
         for t in targets.iter().copied() {
             let list = &mut self.mentions[t].spec.relations;
-            if let Some(r) = list.iter_mut().rev().find(|r| r.distance_m.is_none() && is_directed(r.relation)) {
+            if let Some(r) = list
+                .iter_mut()
+                .rev()
+                .find(|r| r.distance_m.is_none() && is_directed(r.relation))
+            {
                 r.distance_m = Some(metres);
                 used = true;
             } else if list.is_empty() {
@@ -789,7 +897,11 @@ impl<'a> Parser<'a> {
             self.chain = true;
             return;
         }
-        let targets = if p.fresh { self.head.clone() } else { self.targets() };
+        let targets = if p.fresh {
+            self.head.clone()
+        } else {
+            self.targets()
+        };
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()
@@ -833,7 +945,11 @@ impl<'a> Parser<'a> {
         match default {
             Some(anchor) => {
                 self.pending = Some(Pending { first: None, ..p });
-                if self.pending.as_ref().is_some_and(|p| p.prep == Prep::Rels(vec![RelationKind::Between])) {
+                if self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| p.prep == Prep::Rels(vec![RelationKind::Between]))
+                {
                     self.pending = None;
                     self.unread(span, Some("between what?".into()));
                 } else {
@@ -846,7 +962,11 @@ impl<'a> Parser<'a> {
     }
 
     fn drop_pending(&mut self) {
-        if self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) {
+        if self
+            .pending
+            .as_ref()
+            .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At))
+        {
             self.pending = None;
         }
     }
@@ -856,7 +976,10 @@ impl<'a> Parser<'a> {
         let attributes = std::mem::take(&mut self.pre);
         self.pre = attributes;
         self.pre.cover(span);
-        self.pre.attributes.push(format!("\u{1}{}", kinds.iter().map(|k| k.name()).collect::<Vec<_>>().join(",")));
+        self.pre.attributes.push(format!(
+            "\u{1}{}",
+            kinds.iter().map(|k| k.name()).collect::<Vec<_>>().join(",")
+        ));
     }
 
     /// Who a relation or a participle right here speaks of.
@@ -885,7 +1008,11 @@ impl<'a> Parser<'a> {
             && self.anchor_ahead(self.at + 1)
         {
             // Past another, on its left.
-            let targets = if finite { self.subjects(true) } else { self.targets() };
+            let targets = if finite {
+                self.subjects(true)
+            } else {
+                self.targets()
+            };
             for t in targets.iter().copied() {
                 self.mentions[t].spec.state = Some(state);
             }
@@ -894,11 +1021,19 @@ impl<'a> Parser<'a> {
             return;
         }
         let state = if std::mem::take(&mut self.pre.not) {
-            if state == ObjectState::Moving { ObjectState::Waiting } else { ObjectState::Moving }
+            if state == ObjectState::Moving {
+                ObjectState::Waiting
+            } else {
+                ObjectState::Moving
+            }
         } else {
             state
         };
-        if prenominal && !finite && self.pending.is_none() && !(self.head_waits_for_verb() && self.pre.span.is_none()) {
+        if prenominal
+            && !finite
+            && self.pending.is_none()
+            && !(self.head_waits_for_verb() && self.pre.span.is_none())
+        {
             self.pre.state = Some(state);
             self.pre.cover(span);
             return;
@@ -909,7 +1044,11 @@ impl<'a> Parser<'a> {
             return;
         }
         self.flush();
-        let targets = if finite || self.after_is() { self.subjects(true) } else { self.targets() };
+        let targets = if finite || self.after_is() {
+            self.subjects(true)
+        } else {
+            self.targets()
+        };
         if targets.is_empty() {
             self.fronted_state = Some(state);
             return;
@@ -937,7 +1076,11 @@ impl<'a> Parser<'a> {
             self.pre.cover(span);
             return;
         }
-        let targets = if self.after_is() { self.subjects(true) } else { self.targets() };
+        let targets = if self.after_is() {
+            self.subjects(true)
+        } else {
+            self.targets()
+        };
         if targets.is_empty() {
             self.pre.color = Some(color.to_string());
             self.pre.cover(span);
@@ -958,7 +1101,11 @@ impl<'a> Parser<'a> {
     fn absent(&mut self, classes: Vec<Class>, state: Option<ObjectState>, span: Span) {
         let index = self.reading.description.absent.len();
         let names: Vec<String> = classes.iter().take(3).map(|c| c.label()).collect();
-        self.phrase(span, Became::Absent(index), &format!("none: {}", names.join(", ")));
+        self.phrase(
+            span,
+            Became::Absent(index),
+            &format!("none: {}", names.join(", ")),
+        );
         self.d().absent.push(Absent { classes, state, span });
         self.pre = Pre::default();
         self.denied = true;
@@ -985,12 +1132,22 @@ impl<'a> Parser<'a> {
             return;
         }
         // Adjectives that say where.
-        let wheres: Vec<String> = pre.attributes.iter().filter_map(|a| a.strip_prefix('\u{1}').map(str::to_string)).collect();
+        let wheres: Vec<String> = pre
+            .attributes
+            .iter()
+            .filter_map(|a| a.strip_prefix('\u{1}').map(str::to_string))
+            .collect();
         pre.attributes.retain(|a| !a.starts_with('\u{1}'));
-        if word == "traffic" && matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Mark)) && self.noun_ahead(self.at + 2) {
+        if word == "traffic"
+            && matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Mark))
+            && self.noun_ahead(self.at + 2)
+        {
             // "oncoming traffic: two coaches" names them itself.
             for kinds in &wheres {
-                let kinds = RelationKind::ALL.into_iter().filter(|k| kinds.split(',').any(|n| n == k.name())).collect();
+                let kinds = RelationKind::ALL
+                    .into_iter()
+                    .filter(|k| kinds.split(',').any(|n| n == k.name()))
+                    .collect();
                 self.fronted.push(Frag {
                     prep: Prep::Rels(kinds),
                     anchor: Anchor::Ego,
@@ -1027,7 +1184,9 @@ impl<'a> Parser<'a> {
             self.mentions.push(mention.clone());
             self.mentions.len() - 1
         });
-        let old = index + 1 != self.mentions.len() || !std::ptr::eq(self.mentions[index].classes, mention.classes) || self.mentions[index].spec.span != mention.spec.span;
+        let old = index + 1 != self.mentions.len()
+            || !std::ptr::eq(self.mentions[index].classes, mention.classes)
+            || self.mentions[index].spec.span != mention.spec.span;
         if old && mention.spec.color.is_some() {
             self.mentions[index].spec.color = mention.spec.color.clone();
         }
@@ -1036,7 +1195,10 @@ impl<'a> Parser<'a> {
                 self.mentions[index].is_anchor = true;
             }
             let before = self.head.clone();
-            let between = self.pending.as_ref().is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
+            let between = self
+                .pending
+                .as_ref()
+                .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
             self.anchor(Anchor::Object(index), span);
             if !between && !before.is_empty() && !self.head.is_empty() {
                 self.last = vec![index];
@@ -1075,7 +1237,11 @@ impl<'a> Parser<'a> {
         if self.linked && self.chain && !self.list.is_empty() {
             // "a car, a bus and a truck ahead" speaks of three, "three cars, a bus ahead" of the bus.
             self.list.push(index);
-            self.head = if self.anded { self.list.clone() } else { vec![index] };
+            self.head = if self.anded {
+                self.list.clone()
+            } else {
+                vec![index]
+            };
         } else {
             if !self.head.is_empty() {
                 self.fronted_if_done();
@@ -1121,7 +1287,8 @@ impl<'a> Parser<'a> {
             return None;
         }
         let fits = |m: &Mention| {
-            let nouns = m.classes[0] == new.classes[0] || (new.classes.len() > 1 && new.classes.contains(&m.spec.class));
+            let nouns = m.classes[0] == new.classes[0]
+                || (new.classes.len() > 1 && new.classes.contains(&m.spec.class));
             let colors = match (&m.spec.color, &new.spec.color) {
                 (Some(a), Some(b)) => a == b,
                 (None, Some(_)) => self.after_is(),
@@ -1139,13 +1306,29 @@ impl<'a> Parser<'a> {
         let next = self.item(self.at + 1)?;
         let told = matches!(
             next.tag,
-            Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::State(..) | Sense::Color(_) | Sense::FarSide | Sense::Fixed(..) | Sense::Pronoun | Sense::Not)
+            Tag::Is(
+                Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::In
+                    | Sense::At
+                    | Sense::State(..)
+                    | Sense::Color(_)
+                    | Sense::FarSide
+                    | Sense::Fixed(..)
+                    | Sense::Pronoun
+                    | Sense::Not
+            )
         ) || matches!(next.words.as_str(), "of them" | "of" | "is" | "are" | "to")
-            || matches!((next.tag, is_color(&next.words)), (Tag::Is(Sense::Weather(_)), true));
+            || matches!(
+                (next.tag, is_color(&next.words)),
+                (Tag::Is(Sense::Weather(_)), true)
+            );
         if !told {
             return None;
         }
-        (0..self.mentions.len()).rev().find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.mentions[i].is_anchor)
+        (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.mentions[i].is_anchor)
     }
 
     /// "one on the left and the other on the right"
@@ -1153,11 +1336,16 @@ impl<'a> Parser<'a> {
         if self.noun_ahead(self.at + 1) && !all {
             return; // "the other car", "another bus"
         }
-        let parent = (0..self.mentions.len())
-            .rev()
-            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1));
+        let parent = (0..self.mentions.len()).rev().find(|&i| {
+            !self.mentions[i].gone
+                && !self.mentions[i].is_anchor
+                && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+        });
         let Some(parent) = parent else {
-            if self.pending.is_none() && !self.last.is_empty() && self.item(self.at).is_some_and(|i| i.words.starts_with("another")) {
+            if self.pending.is_none()
+                && !self.last.is_empty()
+                && self.item(self.at).is_some_and(|i| i.words.starts_with("another"))
+            {
                 // "a car on the left and another on the right"
                 let mut twin = self.mentions[self.last[0]].clone();
                 twin.spec.relations.clear();
@@ -1177,7 +1365,11 @@ impl<'a> Parser<'a> {
         let left = self.mentions[parent].spec.count;
         let n = if all { left.n } else { count.n.min(left.n) };
         let mut part = self.mentions[parent].clone();
-        part.spec.count = if left.is_exact() || !all { Count::exactly(n) } else { left };
+        part.spec.count = if left.is_exact() || !all {
+            Count::exactly(n)
+        } else {
+            left
+        };
         part.plural = n > 1;
         part.spec.span = span;
         self.mentions.push(part);
@@ -1198,7 +1390,11 @@ impl<'a> Parser<'a> {
 
     fn works(&mut self, span: Span) {
         if std::mem::take(&mut self.pre.not) {
-            self.absent(vec![Class::TrafficCone, Class::Barrier, Class::ConstructionVehicle], None, span);
+            self.absent(
+                vec![Class::TrafficCone, Class::Barrier, Class::ConstructionVehicle],
+                None,
+                span,
+            );
             return;
         }
         self.pre = Pre::default();
@@ -1208,7 +1404,11 @@ impl<'a> Parser<'a> {
         for (class, n) in WORKS {
             if let Some(noun) = NOUNS.iter().find(|x| x.classes == [*class]) {
                 let mut m = Mention::new(noun, class.label().as_str(), *n > 1, Pre::default(), span);
-                m.spec.count = if *n == 1 { Count::about(1, 1, 2) } else { Count::about(2, *n, 3 * n) };
+                m.spec.count = if *n == 1 {
+                    Count::about(1, 1, 2)
+                } else {
+                    Count::about(2, *n, 3 * n)
+                };
                 m.spec.state = Some(ObjectState::Parked);
                 self.mentions.push(m);
             }
@@ -1250,7 +1450,8 @@ impl<'a> Parser<'a> {
                 _ => {
                     let host = targets.first().and_then(|t| self.mentions[*t].host);
                     let subject = self.head.iter().chain(&self.before).copied().find(|i| !skip(i));
-                    host.or(subject).or_else(|| (0..self.mentions.len()).rev().find(|i| !skip(i)))
+                    host.or(subject)
+                        .or_else(|| (0..self.mentions.len()).rev().find(|i| !skip(i)))
                 }
             };
             let fresh = self.pending.as_ref().is_some_and(|p| p.fresh);
@@ -1262,7 +1463,9 @@ impl<'a> Parser<'a> {
             match antecedent {
                 Some(i) => self.anchor(Anchor::Object(i), item.span),
                 None if item.words == "that" => return true,
-                None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => self.anchor(Anchor::Ego, item.span),
+                None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
+                    self.anchor(Anchor::Ego, item.span)
+                }
                 None => {
                     let span = self.pending.take().map_or(item.span, |p| p.span.to(item.span));
                     self.unread(span, Some("what it points to was not named".into()));
@@ -1270,7 +1473,12 @@ impl<'a> Parser<'a> {
             }
             return false;
         }
-        if self.head.is_empty() && matches!(item.words.as_str(), "it" | "they" | "he" | "she" | "these" | "those") {
+        if self.head.is_empty()
+            && matches!(
+                item.words.as_str(),
+                "it" | "they" | "he" | "she" | "these" | "those"
+            )
+        {
             self.head = self.before.clone();
             self.last = self.before.clone();
             self.chain = false;
@@ -1301,22 +1509,36 @@ impl<'a> Parser<'a> {
         // What must be there for the place to be.
         match anchor {
             Anchor::Crossing => self.d().road.crossing = true,
-            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk) => self.d().road.sidewalk = true,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk) => {
+                self.d().road.sidewalk = true
+            }
             _ => {}
         }
         if let Some(kind) = road {
-            let lamp = item.words.contains("light") || item.words.contains("sign") || item.words.contains("line") || item.words.contains("signal");
+            let lamp = item.words.contains("light")
+                || item.words.contains("sign")
+                || item.words.contains("line")
+                || item.words.contains("signal");
             let wish = &mut self.reading.description.road.kind;
             // "traffic light" does not turn a t-junction into crossroads.
-            if wish.is_none() || (!lamp && *wish != Some(Road::Roundabout) && *wish != Some(Road::TJunction)) {
+            if wish.is_none() || (!lamp && *wish != Some(Road::Roundabout) && *wish != Some(Road::TJunction))
+            {
                 *wish = Some(kind);
             }
         }
         if self.pending.is_some() {
             let fronts = self.head.is_empty();
-            let next_noun = self.noun_ahead(self.at + 1) || matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Comma | Tag::Mark));
-            let vague = matches!(anchor, Anchor::Lane(LaneRole::Road)) || (road.is_some() && !definite && !matches!(anchor, Anchor::Lane(LaneRole::Carpark)));
-            let plain = self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
+            let next_noun = self.noun_ahead(self.at + 1)
+                || matches!(
+                    self.item(self.at + 1).map(|i| i.tag),
+                    Some(Tag::Comma | Tag::Mark)
+                );
+            let vague = matches!(anchor, Anchor::Lane(LaneRole::Road))
+                || (road.is_some() && !definite && !matches!(anchor, Anchor::Lane(LaneRole::Carpark)));
+            let plain = self
+                .pending
+                .as_ref()
+                .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
             if fronts && plain && (vague || !next_noun) {
                 // "On a busy street, ..." sets the stage and says nothing of one object.
                 self.pending = None;
@@ -1345,7 +1567,10 @@ impl<'a> Parser<'a> {
         }
         let wish = &mut self.reading.description.road.kind;
         // A junction on a highway is a junction.
-        let keeps = matches!(wish, Some(Road::Intersection | Road::TJunction | Road::Roundabout | Road::Parking)) && matches!(road, Road::Straight | Road::Suburb);
+        let keeps = matches!(
+            wish,
+            Some(Road::Intersection | Road::TJunction | Road::Roundabout | Road::Parking)
+        ) && matches!(road, Road::Straight | Road::Suburb);
         if !keeps {
             *wish = Some(road);
         }
@@ -1371,7 +1596,12 @@ impl<'a> Parser<'a> {
         match old {
             Some(old) if old != time => {
                 // "late afternoon sun at night": the first one stays.
-                let note = format!("{} and {} were said: it is {}", old.name(), time.name(), old.name());
+                let note = format!(
+                    "{} and {} were said: it is {}",
+                    old.name(),
+                    time.name(),
+                    old.name()
+                );
                 if !(old == TimeOfDay::Day || time == TimeOfDay::Day) {
                     self.reading.notes.push(note);
                 } else if old == TimeOfDay::Day {
@@ -1388,7 +1618,11 @@ impl<'a> Parser<'a> {
         self.drop_pending();
         self.pre = Pre::default();
         if not {
-            let dry = if weather == Weather::Clear { Weather::Overcast } else { Weather::Clear };
+            let dry = if weather == Weather::Clear {
+                Weather::Overcast
+            } else {
+                Weather::Clear
+            };
             if self.reading.description.weather.is_none() {
                 self.d().weather = Some(dry);
             }
@@ -1468,7 +1702,10 @@ impl<'a> Parser<'a> {
         // Neighbours become one entry.
         if let Some(last) = self.reading.not_understood.last_mut()
             && last.why == why
-            && self.prompt.get(last.span.end..span.start).is_some_and(|gap| gap.trim().is_empty() && gap.len() < 3)
+            && self
+                .prompt
+                .get(last.span.end..span.start)
+                .is_some_and(|gap| gap.trim().is_empty() && gap.len() < 3)
         {
             last.span = last.span.to(span);
             last.text = last.span.of(self.prompt).to_string();
@@ -1488,11 +1725,24 @@ impl<'a> Parser<'a> {
 }
 
 fn is_directed(kind: RelationKind) -> bool {
-    !matches!(kind, RelationKind::On | RelationKind::ParkedOn | RelationKind::Crossing | RelationKind::WaitingAt)
+    !matches!(
+        kind,
+        RelationKind::On | RelationKind::ParkedOn | RelationKind::Crossing | RelationKind::WaitingAt
+    )
 }
 
 fn is_prenominal(words: &str) -> bool {
-    matches!(words, "oncoming" | "distant" | "nearby" | "approaching" | "opposing" | "incoming" | "on coming" | "upcoming")
+    matches!(
+        words,
+        "oncoming"
+            | "distant"
+            | "nearby"
+            | "approaching"
+            | "opposing"
+            | "incoming"
+            | "on coming"
+            | "upcoming"
+    )
 }
 
 fn is_color(words: &str) -> bool {

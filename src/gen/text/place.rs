@@ -9,7 +9,9 @@ use super::holds::{Target, ego, holds, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
 use super::spots::{Spot, spots};
 use crate::generation::world::draw::Draw;
-use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint};
+use crate::scene::graph::{
+    Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
+};
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 
@@ -80,7 +82,13 @@ impl Placer<'_> {
         let mut out = Placement::default();
         for node in &self.graph.nodes {
             if let Some(Locked::Box(b)) = node.locked {
-                self.placed.insert(node.id, SceneBox { id: BoxId(node.id), ..b });
+                self.placed.insert(
+                    node.id,
+                    SceneBox {
+                        id: BoxId(node.id),
+                        ..b
+                    },
+                );
             }
         }
         let mut edges_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -101,10 +109,14 @@ impl Placer<'_> {
             // What found no room for its twin finds none either.
             let kind = format!(
                 "{object:?} {:?}",
-                edges.iter().map(|e| (self.graph.edges[*e].relation, self.graph.edges[*e].to)).collect::<Vec<_>>()
+                edges
+                    .iter()
+                    .map(|e| (self.graph.edges[*e].relation, self.graph.edges[*e].to))
+                    .collect::<Vec<_>>()
             );
             if full.contains(&kind) {
-                out.left_out.push((id, "no room is left where it should stand".into()));
+                out.left_out
+                    .push((id, "no room is left where it should stand".into()));
                 continue;
             }
             match self.best(id, object, edges) {
@@ -113,7 +125,8 @@ impl Placer<'_> {
                 }
                 None => {
                     full.insert(kind);
-                    out.left_out.push((id, "no room is left where it should stand".into()));
+                    out.left_out
+                        .push((id, "no room is left where it should stand".into()));
                 }
             }
         }
@@ -140,7 +153,10 @@ impl Placer<'_> {
                 .get(&id)
                 .is_some_and(|e| e.iter().any(|i| self.graph.edges[*i].distance_m.is_some()));
             let length = o.class.typical_size_m().map_or(1.0, |s| s[0]);
-            waiting.push((id, bound * 3.0 + length / 4.0 + if distance { 6.0 } else { 0.0 } + self.draw.unit() * 2.0));
+            waiting.push((
+                id,
+                bound * 3.0 + length / 4.0 + if distance { 6.0 } else { 0.0 } + self.draw.unit() * 2.0,
+            ));
         }
         waiting.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut order: Vec<u32> = Vec::new();
@@ -188,7 +204,12 @@ impl Placer<'_> {
     }
 
     fn size(&mut self, id: u32, o: &ObjectNode) -> DVec3 {
-        let typical = self.sizes_m.get(&id).copied().or(o.class.typical_size_m()).unwrap_or([1.0; 3]);
+        let typical = self
+            .sizes_m
+            .get(&id)
+            .copied()
+            .or(o.class.typical_size_m())
+            .unwrap_or([1.0; 3]);
         let factor = match o.size {
             Some(SizeHint::Large) => 1.18,
             Some(SizeHint::Small) => 0.85,
@@ -207,7 +228,13 @@ impl Placer<'_> {
         }
         match o.class {
             Class::Pedestrian if moves => self.draw.range(0.9, 1.8),
-            Class::Pedestrian => if self.draw.chance(0.5) { self.draw.range(0.7, 1.6) } else { 0.0 },
+            Class::Pedestrian => {
+                if self.draw.chance(0.5) {
+                    self.draw.range(0.7, 1.6)
+                } else {
+                    0.0
+                }
+            }
             Class::Bicycle => self.draw.range(2.5, 6.0),
             Class::ConstructionVehicle | Class::Trailer if !moves => 0.0,
             _ if moves || self.draw.chance(0.8) => self.draw.range(3.0, 12.0),
@@ -268,10 +295,7 @@ impl Placer<'_> {
             }
             let speed = if spot.moves { 2.0 } else { 0.0 };
             b.velocity_mps = b.heading() * speed;
-            let broken = stated
-                .iter()
-                .filter(|(e, _)| !self.edge_holds(e, &b))
-                .count();
+            let broken = stated.iter().filter(|(e, _)| !self.edge_holds(e, &b)).count();
             if broken == 0 {
                 b.velocity_mps = DVec2::ZERO;
                 best = Some((cost, b));
@@ -301,12 +325,18 @@ impl Placer<'_> {
             .placed
             .values()
             .filter(|b| b.class == class && siblings.contains(&b.center_m.truncate()));
-        twins.into_iter().any(|b| stated.iter().all(|(e, _)| self.edge_holds(e, b)))
+        twins
+            .into_iter()
+            .any(|b| stated.iter().all(|(e, _)| self.edge_holds(e, b)))
     }
 
     /// Where boxes that the same was said of stand.
     fn siblings(&self, id: u32, o: &ObjectNode, edges: &[usize]) -> Vec<DVec2> {
-        let said = |i: &[usize]| i.iter().map(|k| (self.graph.edges[*k].relation, self.graph.edges[*k].to)).collect::<Vec<_>>();
+        let said = |i: &[usize]| {
+            i.iter()
+                .map(|k| (self.graph.edges[*k].relation, self.graph.edges[*k].to))
+                .collect::<Vec<_>>()
+        };
         let own = said(edges);
         self.placed
             .iter()
@@ -327,7 +357,10 @@ impl Placer<'_> {
     }
 
     fn fits(&self, b: &SceneBox, class: Class, spot: &Spot) -> bool {
-        let inside = b.footprint().iter().all(|c| c.abs().max_element() < REACH_M + 0.6);
+        let inside = b
+            .footprint()
+            .iter()
+            .all(|c| c.abs().max_element() < REACH_M + 0.6);
         if !inside {
             return false;
         }
@@ -355,7 +388,8 @@ impl Placer<'_> {
         };
         let reach = b.size_m.truncate().length() / 2.0;
         let clear = |o: &SceneBox| {
-            let far = (o.center_m - b.center_m).truncate().length() > reach + o.size_m.truncate().length() / 2.0 + 1.0;
+            let far = (o.center_m - b.center_m).truncate().length()
+                > reach + o.size_m.truncate().length() / 2.0 + 1.0;
             far || overlap_m(b, o, margin(o.class)) <= 0.0
         };
         let mut keep = ego();
@@ -367,10 +401,16 @@ impl Placer<'_> {
 
 /// True if the relation binds an object to a lane role that only holds for standing things.
 pub(super) fn stands(relation: RelationKind) -> bool {
-    matches!(relation, RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking)
+    matches!(
+        relation,
+        RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking
+    )
 }
 
 /// Roles beside the lanes.
 pub(super) fn is_roadside(role: LaneRole) -> bool {
-    matches!(role, LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside)
+    matches!(
+        role,
+        LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
+    )
 }

@@ -38,13 +38,21 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
     let needs_people_room = d.road.crossing || d.road.sidewalk;
     let kind = match kind {
         Road::Highway | Road::Curve | Road::Roundabout if d.road.crossing => {
-            if d.road.kind == Some(Road::Highway) { Road::Highway } else { kind }
+            if d.road.kind == Some(Road::Highway) {
+                Road::Highway
+            } else {
+                kind
+            }
         }
         Road::Suburb if needs.contains(&LaneRole::Left) || needs.contains(&LaneRole::Right) => Road::Straight,
         k => k,
     };
     let _ = needs_people_room;
-    let name = template::TEMPLATES.iter().copied().find(|t| *t == kind.name()).unwrap_or("straight");
+    let name = template::TEMPLATES
+        .iter()
+        .copied()
+        .find(|t| *t == kind.name())
+        .unwrap_or("straight");
     let parked = graph.objects().any(|(_, o)| o.state == Some(ObjectState::Parked))
         || graph.edges.iter().any(|e| e.relation == RelationKind::ParkedOn);
     let mut best: Option<(usize, Chosen)> = None;
@@ -80,11 +88,23 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
 }
 
 /// What a layout lacks, in words, and how many softer wishes it leaves open.
-fn judge(d: &Description, needs: &[LaneRole], junction: bool, parked: bool, nodes: usize, layout: &BevLayout) -> (Vec<String>, usize) {
+fn judge(
+    d: &Description,
+    needs: &[LaneRole],
+    junction: bool,
+    parked: bool,
+    nodes: usize,
+    layout: &BevLayout,
+) -> (Vec<String>, usize) {
     let map = LaneMap::new(layout);
     let mut missing = Vec::new();
     let mut wishes = 0;
-    let role = |r: LaneRole| map.points.iter().filter(|p| p.role == r && p.p.length() < 35.0).count();
+    let role = |r: LaneRole| {
+        map.points
+            .iter()
+            .filter(|p| p.role == r && p.p.length() < 35.0)
+            .count()
+    };
     let mut lack = |there: bool, what: &str| {
         if !there {
             missing.push(format!("no {what} on this kind of road"));
@@ -98,7 +118,9 @@ fn judge(d: &Description, needs: &[LaneRole], junction: bool, parked: bool, node
             LaneRole::Oncoming => lack(role(LaneRole::Oncoming) > 8, "oncoming lane"),
             LaneRole::Cross => lack(role(LaneRole::Cross) > 4, "cross street"),
             LaneRole::Carpark => lack(layout.count(BevLayer::CarparkArea) > 200, "car park"),
-            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk => lack(walkway > 500, "sidewalk"),
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk => {
+                lack(walkway > 500, "sidewalk")
+            }
             _ => {}
         }
     }
@@ -106,7 +128,9 @@ fn judge(d: &Description, needs: &[LaneRole], junction: bool, parked: bool, node
         lack(walkway > 500, "sidewalk");
     }
     if d.road.crossing {
-        let ahead = map.crossing().is_some_and(|c| c.iter().all(|p| p.x > 4.0 && p.abs().max_element() < 38.0));
+        let ahead = map
+            .crossing()
+            .is_some_and(|c| c.iter().all(|p| p.x > 4.0 && p.abs().max_element() < 38.0));
         lack(ahead, "crossing ahead");
     }
     if junction {
@@ -125,14 +149,20 @@ fn judge(d: &Description, needs: &[LaneRole], junction: bool, parked: bool, node
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
         wishes += usize::from((lanes as usize).div_ceil(2) != forward);
     }
-    let people = d.foreground.iter().any(|o| o.class == crate::scene::Class::Pedestrian);
+    let people = d
+        .foreground
+        .iter()
+        .any(|o| o.class == crate::scene::Class::Pedestrian);
     wishes += usize::from(people && walkway < 500);
     // Many objects need room.
     wishes += usize::from(nodes > 10 && role(LaneRole::Left) + role(LaneRole::Right) < 8);
     let strip = layout.count(BevLayer::CarparkArea);
     // Right of the ego vehicle there must be room for what drives or parks there.
     let right = d.foreground.iter().any(|o| {
-        o.class != crate::scene::Class::Pedestrian && o.relations.iter().any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
+        o.class != crate::scene::Class::Pedestrian
+            && o.relations
+                .iter()
+                .any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
     });
     wishes += usize::from(right && role(LaneRole::Right) < 8 && strip < 300);
     wishes += usize::from(parked && strip < 300);

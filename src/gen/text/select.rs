@@ -77,20 +77,37 @@ pub fn state_of(map: &LaneMap<'_>, b: &SceneBox, state: ObjectState) -> bool {
         ObjectState::Waiting => stands,
         // Parked: standing, and not in the middle of a lane.
         ObjectState::Parked => {
-            let off = map.nearest(p).map_or(f64::INFINITY, |l| l.dir.perp_dot(p - l.p).abs().max(l.p.distance(p) - 1.0));
+            let off = map.nearest(p).map_or(f64::INFINITY, |l| {
+                l.dir.perp_dot(p - l.p).abs().max(l.p.distance(p) - 1.0)
+            });
             stands && (off > 0.7 || map.has(BevLayer::CarparkArea.bit(), p))
         }
     }
 }
 
 /// Ids of the boxes that fit class, state and relations of a mention.
-pub fn fitting(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Vec<BoxId> {
+pub fn fitting(
+    map: &LaneMap<'_>,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    m: &Mention,
+    all: &[Mention],
+) -> Vec<BoxId> {
     fitting_deep(map, boxes, m, all, 0)
 }
 
-fn fitting_deep(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention], depth: u8) -> Vec<BoxId> {
+fn fitting_deep(
+    map: &LaneMap<'_>,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    m: &Mention,
+    all: &[Mention],
+    depth: u8,
+) -> Vec<BoxId> {
     if let Some(id) = m.id {
-        return boxes.contains_key(&BoxId(id)).then_some(BoxId(id)).into_iter().collect();
+        return boxes
+            .contains_key(&BoxId(id))
+            .then_some(BoxId(id))
+            .into_iter()
+            .collect();
     }
     let side = |kind: RelationKind, b: &SceneBox| match kind {
         // In words a car 30 m ahead in the left lane is on the left.
@@ -113,9 +130,13 @@ fn fitting_deep(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mentio
             Anchor::Crossing => vec![(Target::Crossing, None)],
             Anchor::Junction => vec![(Target::Junction, None)],
             Anchor::Object(i) if depth < 3 => {
-                let others = all.get(i).map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1));
+                let others = all
+                    .get(i)
+                    .map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1));
                 let second = match r.and {
-                    Some(Anchor::Object(k)) => all.get(k).map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1)),
+                    Some(Anchor::Object(k)) => all
+                        .get(k)
+                        .map_or_else(Vec::new, |o| fitting_deep(map, boxes, o, all, depth + 1)),
                     _ => Vec::new(),
                 };
                 let mut pairs = Vec::new();
@@ -134,9 +155,10 @@ fn fitting_deep(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mentio
             let to_ego = r.anchor == Anchor::Ego && r.distance_m.is_none();
             match side(r.relation, b).filter(|_| to_ego) {
                 Some(held) => held,
-                None => targets
-                    .iter()
-                    .any(|(t, and)| !matches!(t, Target::Thing(o) if o.id == b.id) && holds(map, r.relation, b, t, and.as_ref(), r.distance_m)),
+                None => targets.iter().any(|(t, and)| {
+                    !matches!(t, Target::Thing(o) if o.id == b.id)
+                        && holds(map, r.relation, b, t, and.as_ref(), r.distance_m)
+                }),
             }
         });
     }
@@ -200,7 +222,11 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         return Chosen::These(fit);
     }
     Chosen::Several {
-        what: if m.plural { what } else { super::lexicon::plural(&what) },
+        what: if m.plural {
+            what
+        } else {
+            super::lexicon::plural(&what)
+        },
         candidates: fit.iter().map(|id| where_is(map, &boxes[id])).collect(),
     }
 }

@@ -41,15 +41,31 @@ struct Gather<'a, 'b> {
 }
 
 /// Places for an object with what was said of it (targets that are placed already).
-pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, Option<Target>)], draw: &mut Draw) -> Vec<Spot> {
+pub fn spots(
+    map: &LaneMap<'_>,
+    o: &ObjectNode,
+    size_m: DVec3,
+    stated: &[(Edge, Option<Target>)],
+    draw: &mut Draw,
+) -> Vec<Spot> {
     let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
     let lane_role = stated.iter().find_map(|(e, t)| match t {
-        Some(Target::Lane(role)) if matches!(e.relation, RelationKind::On | RelationKind::ParkedOn | RelationKind::Crossing | RelationKind::Blocking | RelationKind::Across) => {
+        Some(Target::Lane(role))
+            if matches!(
+                e.relation,
+                RelationKind::On
+                    | RelationKind::ParkedOn
+                    | RelationKind::Crossing
+                    | RelationKind::Blocking
+                    | RelationKind::Across
+            ) =>
+        {
             Some((e.relation, *role))
         }
         _ => None,
     });
-    let still = o.state.is_some_and(|s| s != ObjectState::Moving) || stated.iter().any(|(e, _)| stands(e.relation));
+    let still =
+        o.state.is_some_and(|s| s != ObjectState::Moving) || stated.iter().any(|(e, _)| stands(e.relation));
     let moves = o.state == Some(ObjectState::Moving) || said(RelationKind::Crossing);
     let mut g = Gather {
         map,
@@ -65,7 +81,11 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
             on_road: false,
             anywhere: false,
         },
-        own_way: (said(RelationKind::InFrontOf) || said(RelationKind::Behind) || said(RelationKind::Blocking)) && !said(RelationKind::OppositeDirection) && !said(RelationKind::Facing),
+        own_way: (said(RelationKind::InFrontOf)
+            || said(RelationKind::Behind)
+            || said(RelationKind::Blocking))
+            && !said(RelationKind::OppositeDirection)
+            && !said(RelationKind::Facing),
     };
     let thing = stated.iter().find_map(|(e, t)| match t {
         Some(Target::Thing(b)) => Some((e, *b)),
@@ -73,14 +93,22 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
     });
     let near_thing = stated.iter().any(|(e, t)| {
         matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX)
-            && !matches!(e.relation, RelationKind::FarFrom | RelationKind::Facing | RelationKind::FacingAway)
+            && !matches!(
+                e.relation,
+                RelationKind::FarFrom | RelationKind::Facing | RelationKind::FacingAway
+            )
     });
     match o.class {
         Class::Pedestrian => {
-            let crossing = said(RelationKind::Crossing) || stated.iter().any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
+            let crossing = said(RelationKind::Crossing)
+                || stated
+                    .iter()
+                    .any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
             match lane_role {
                 _ if crossing => g.crossing_people(),
-                Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role)) if !is_walk(role) => {
+                Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role))
+                    if !is_walk(role) =>
+                {
                     g.base.on_road = true;
                     g.lanes(role, true);
                 }
@@ -103,7 +131,10 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
             g.base.still = true;
             g.base.moves = false;
             match lane_role {
-                Some((RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across, role)) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
+                Some((
+                    RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across,
+                    role,
+                )) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
                     g.across_lane(role, o.class);
                 }
                 Some((_, role)) if is_walk(role) => {
@@ -141,8 +172,13 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
             continue;
         };
         if o.class == Class::Pedestrian {
-            let at = if b.id.0 == u32::MAX { DVec2::ZERO } else { b.center_m.truncate() };
-            out.iter_mut().for_each(|s| s.yaw_rad = (at - s.p).to_angle() + toward);
+            let at = if b.id.0 == u32::MAX {
+                DVec2::ZERO
+            } else {
+                b.center_m.truncate()
+            };
+            out.iter_mut()
+                .for_each(|s| s.yaw_rad = (at - s.p).to_angle() + toward);
         }
     }
     out.retain(|s| s.p.abs().max_element() < REACH_M);
@@ -150,7 +186,10 @@ pub fn spots(map: &LaneMap<'_>, o: &ObjectNode, size_m: DVec3, stated: &[(Edge, 
 }
 
 fn is_walk(role: LaneRole) -> bool {
-    matches!(role, LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+    matches!(
+        role,
+        LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
+    )
 }
 
 impl Gather<'_, '_> {
@@ -162,10 +201,18 @@ impl Gather<'_, '_> {
         });
     }
 
-    fn vehicle(&mut self, o: &ObjectNode, lane_role: Option<(RelationKind, LaneRole)>, stated: &[(Edge, Option<Target>)], near_thing: bool) {
-        let parked = o.state == Some(ObjectState::Parked) || lane_role.is_some_and(|r| r.0 == RelationKind::ParkedOn);
+    fn vehicle(
+        &mut self,
+        o: &ObjectNode,
+        lane_role: Option<(RelationKind, LaneRole)>,
+        stated: &[(Edge, Option<Target>)],
+        near_thing: bool,
+    ) {
+        let parked =
+            o.state == Some(ObjectState::Parked) || lane_role.is_some_and(|r| r.0 == RelationKind::ParkedOn);
         let two_wheels = matches!(o.class, Class::Bicycle | Class::Motorcycle);
-        let across = lane_role.is_some_and(|(r, _)| matches!(r, RelationKind::Crossing | RelationKind::Across));
+        let across =
+            lane_role.is_some_and(|(r, _)| matches!(r, RelationKind::Crossing | RelationKind::Across));
         match lane_role {
             Some((_, LaneRole::Carpark)) => self.carpark(),
             Some((_, role)) if is_roadside(role) => self.edge(role),
@@ -191,7 +238,10 @@ impl Gather<'_, '_> {
                 self.edge(LaneRole::Roadside);
                 self.base.cost += 0.4;
                 self.carpark();
-                if stated.iter().any(|(e, _)| !matches!(e.relation, RelationKind::ParkedOn | RelationKind::On)) {
+                if stated
+                    .iter()
+                    .any(|(e, _)| !matches!(e.relation, RelationKind::ParkedOn | RelationKind::On))
+                {
                     self.base.cost += 1.6;
                     self.lanes(LaneRole::Road, false);
                     self.base.cost -= 1.6;
@@ -237,9 +287,18 @@ impl Gather<'_, '_> {
                 continue;
             }
             // Traffic keeps to its lane; the ego's is kept free where nothing else was said.
-            let extra = if roadwide && l.role == LaneRole::Ego && l.p.length() < 9.0 { 1.5 } else { 0.0 };
+            let extra = if roadwide && l.role == LaneRole::Ego && l.p.length() < 9.0 {
+                1.5
+            } else {
+                0.0
+            };
             let across = self.draw.range(-0.25, 0.25);
-            let yaw = l.dir.to_angle() + if people { self.draw.range(-PI, PI) } else { self.draw.range(-0.02, 0.02) };
+            let yaw = l.dir.to_angle()
+                + if people {
+                    self.draw.range(-PI, PI)
+                } else {
+                    self.draw.range(-0.02, 0.02)
+                };
             let old = self.base.cost;
             self.base.cost += extra;
             self.push(l.p + l.dir.perp() * across, yaw);
@@ -316,7 +375,11 @@ impl Gather<'_, '_> {
             if !(roadwide || l.role == role) || l.p.length() < 5.0 {
                 continue;
             }
-            let offsets: &[f64] = if class == Class::Barrier { &[0.0] } else { &[0.0, -0.65, 0.65, -1.25, 1.25] };
+            let offsets: &[f64] = if class == Class::Barrier {
+                &[0.0]
+            } else {
+                &[0.0, -0.65, 0.65, -1.25, 1.25]
+            };
             let behind = if l.p.x < 0.0 { 1.0 } else { 0.0 };
             for off in offsets {
                 let old = self.base.cost;
@@ -359,7 +422,13 @@ impl Gather<'_, '_> {
         self.cells(BevLayer::Walkway.bit(), 2, |_| 0.0);
         for i in from..self.out.len() {
             let lane = self.map.nearest(self.out[i].p).map_or(0.0, |l| l.dir.to_angle());
-            let turn = if self.base.still { -FRAC_PI_2 } else if self.draw.chance(0.5) { 0.0 } else { PI };
+            let turn = if self.base.still {
+                -FRAC_PI_2
+            } else if self.draw.chance(0.5) {
+                0.0
+            } else {
+                PI
+            };
             let jitter = self.draw.range(-0.2, 0.2);
             self.out[i].yaw_rad = lane + turn + jitter;
         }
@@ -405,8 +474,15 @@ impl Gather<'_, '_> {
         self.cells(lot, 2, |_| 0.0);
         for i in from..self.out.len() {
             let lane = self.map.nearest(self.out[i].p).map_or(0.0, |l| l.dir.to_angle());
-            let beside = self.map.nearest(self.out[i].p).is_some_and(|l| l.p.distance(self.out[i].p) < 6.5);
-            let turn = if beside { 0.0 } else { FRAC_PI_2 * (1.0 - 2.0 * self.draw.below(2) as f64) };
+            let beside = self
+                .map
+                .nearest(self.out[i].p)
+                .is_some_and(|l| l.p.distance(self.out[i].p) < 6.5);
+            let turn = if beside {
+                0.0
+            } else {
+                FRAC_PI_2 * (1.0 - 2.0 * self.draw.below(2) as f64)
+            };
             self.out[i].yaw_rad = lane + turn;
         }
     }
@@ -417,7 +493,11 @@ impl Gather<'_, '_> {
             let l = self.map.points[i];
             for side in [-1.0, 1.0] {
                 let mut off = 2.0;
-                while off < 14.0 && self.map.has(BevLayer::DrivableArea.bit(), l.p + l.dir.perp() * side * off) {
+                while off < 14.0
+                    && self
+                        .map
+                        .has(BevLayer::DrivableArea.bit(), l.p + l.dir.perp() * side * off)
+                {
                     off += 0.4;
                 }
                 if off < 14.0 {
@@ -437,11 +517,12 @@ impl Gather<'_, '_> {
             let axis = course(b);
             let half = b.size_m / 2.0;
             let own = self.size_m / 2.0;
-            let yaw = if b.class == Class::Pedestrian || matches!(b.class, Class::TrafficCone | Class::Barrier) {
-                self.map.nearest(center).map_or(0.0, |l| l.dir.to_angle())
-            } else {
-                axis.to_angle()
-            };
+            let yaw =
+                if b.class == Class::Pedestrian || matches!(b.class, Class::TrafficCone | Class::Barrier) {
+                    self.map.nearest(center).map_or(0.0, |l| l.dir.to_angle())
+                } else {
+                    axis.to_angle()
+                };
             for along in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] {
                 for extra in [0.6, 1.2, 2.0, 3.0, 4.5] {
                     let (fx, fy) = (half.x + own.x + extra, half.y + own.y + extra);

@@ -81,7 +81,9 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
                 && (i + 1..i + n).any(|from| {
                     (i + n - from + 1..=LONGEST)
                         .filter_map(|m| run(from, m))
-                        .any(|w| look_up(&w).is_some_and(is_place_like) && w.split(' ').next().is_some_and(is_side))
+                        .any(|w| {
+                            look_up(&w).is_some_and(is_place_like) && w.split(' ').next().is_some_and(is_side)
+                        })
                 });
             (!torn).then_some((n, words, sense))
         });
@@ -123,7 +125,9 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
         let follows_place = before.is_some_and(|b| {
             matches!(
                 b.tag,
-                Tag::Is(Sense::Article(_) | Sense::In | Sense::At | Sense::Rel(_) | Sense::Color(_) | Sense::Not)
+                Tag::Is(
+                    Sense::Article(_) | Sense::In | Sense::At | Sense::Rel(_) | Sense::Color(_) | Sense::Not
+                )
             ) || matches!(b.words.as_str(), "my" | "with" | "wide" | "our" | "of")
         });
         match (item.words.as_str(), item.tag) {
@@ -173,7 +177,9 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             }
             (_, Tag::Is(Sense::Count(units))) if units.is_exact() && (1..10).contains(&units.n) => {
                 let tens = out.last().and_then(|b| match b.tag {
-                    Tag::Is(Sense::Count(c)) if c.is_exact() && c.n >= 20 && c.n % 10 == 0 && c.n < 100 => Some(c.n),
+                    Tag::Is(Sense::Count(c)) if c.is_exact() && c.n >= 20 && c.n % 10 == 0 && c.n < 100 => {
+                        Some(c.n)
+                    }
                     _ => None,
                 });
                 match (tens, out.last_mut()) {
@@ -186,15 +192,22 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 }
             }
             // "18-wheeler"
-            (_, Tag::Number(_)) if next.is_some_and(|n| matches!(n.words.as_str(), "wheeler" | "wheelers" | "tonner" | "seater")) => {}
-            (_, Tag::Number(hour)) if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) => {
+            (_, Tag::Number(_))
+                if next.is_some_and(|n| {
+                    matches!(n.words.as_str(), "wheeler" | "wheelers" | "tonner" | "seater")
+                }) => {}
+            (_, Tag::Number(hour))
+                if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) =>
+            {
                 let pm = next.is_some_and(|n| n.words == "pm");
                 out.push(Item {
                     tag: Tag::Is(Sense::Time(time_of(hour, pm))),
                     ..item.clone()
                 });
             }
-            ("am" | "pm" | "oclock", _) if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Time(_)))) => {
+            ("am" | "pm" | "oclock", _)
+                if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Time(_)))) =>
+            {
                 if let Some(last) = out.last_mut() {
                     last.span = last.span.to(item.span);
                 }
@@ -232,13 +245,24 @@ fn leads_to_road(item: &Item) -> bool {
     matches!(
         item.tag,
         Tag::Is(Sense::Article(_) | Sense::Place(..) | Sense::In | Sense::At | Sense::Attribute(_))
-    ) || matches!(item.words.as_str(), "my" | "our" | "from" | "in front of" | "behind" | "ahead of" | "in front")
+    ) || matches!(
+        item.words.as_str(),
+        "my" | "our" | "from" | "in front of" | "behind" | "ahead of" | "in front"
+    )
 }
 
 fn continues_noun(item: &Item) -> bool {
     matches!(
         item.tag,
-        Tag::Is(Sense::Noun(..) | Sense::Color(_) | Sense::Size(_) | Sense::State(_, false) | Sense::Attribute(_) | Sense::EgoRel(_) | Sense::Pick(_))
+        Tag::Is(
+            Sense::Noun(..)
+                | Sense::Color(_)
+                | Sense::Size(_)
+                | Sense::State(_, false)
+                | Sense::Attribute(_)
+                | Sense::EgoRel(_)
+                | Sense::Pick(_)
+        )
     ) || item.words == "of"
 }
 
@@ -255,10 +279,22 @@ mod tests {
     fn longest_runs_but_no_torn_places() {
         assert_eq!(words("on the left"), ["on the left"]);
         assert_eq!(words("on the left lane"), ["on", "the", "left lane"]);
-        assert_eq!(words("on the left side of the road"), ["on", "the", "left side of the road"]);
-        assert_eq!(words("on the left side of the bus"), ["on the left side of", "the", "bus"]);
+        assert_eq!(
+            words("on the left side of the road"),
+            ["on", "the", "left side of the road"]
+        );
+        assert_eq!(
+            words("on the left side of the bus"),
+            ["on the left side of", "the", "bus"]
+        );
         assert_eq!(words("twenty five cars"), ["twenty five", "cars"]);
-        assert_eq!(words("a pedestrian crossing the road"), ["a", "pedestrian", "crossing", "the", "road"]);
-        assert_eq!(words("at the pedestrian crossing"), ["at", "the", "pedestrian crossing"]);
+        assert_eq!(
+            words("a pedestrian crossing the road"),
+            ["a", "pedestrian", "crossing", "the", "road"]
+        );
+        assert_eq!(
+            words("at the pedestrian crossing"),
+            ["at", "the", "pedestrian crossing"]
+        );
     }
 }

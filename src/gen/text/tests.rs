@@ -13,26 +13,39 @@ use crate::scene::{BevLayout, BoxId, Class, SceneBox};
 
 fn counts(prompt: &str) -> Vec<(Class, u32)> {
     let r = read(prompt);
-    r.description.foreground.iter().map(|o| (o.class, o.count.n)).collect()
+    r.description
+        .foreground
+        .iter()
+        .map(|o| (o.class, o.count.n))
+        .collect()
 }
 
 fn relations(prompt: &str) -> Vec<(usize, RelationKind, Anchor)> {
     let d = read(prompt).description;
     let all = d.foreground.iter().enumerate();
-    all.flat_map(|(i, o)| o.relations.iter().map(move |r| (i, r.relation, r.anchor))).collect()
+    all.flat_map(|(i, o)| o.relations.iter().map(move |r| (i, r.relation, r.anchor)))
+        .collect()
 }
 
 #[test]
 fn counts_classes_and_spelling() {
-    use Class::{Barrier, Bicycle, Bus, Car, ConstructionVehicle, Motorcycle, Pedestrian, TrafficCone, Truck};
+    use Class::{
+        Barrier, Bicycle, Bus, Car, ConstructionVehicle, Motorcycle, Pedestrian, TrafficCone, Truck,
+    };
     for (prompt, expected) in [
         ("three cars and a lorry", vec![(Car, 3), (Truck, 1)]),
         ("a couple of cabs, a coach", vec![(Car, 2), (Bus, 1)]),
-        ("half a dozen cones; twelve people", vec![(TrafficCone, 6), (Pedestrian, 12)]),
+        (
+            "half a dozen cones; twelve people",
+            vec![(TrafficCone, 6), (Pedestrian, 12)],
+        ),
         ("twenty-two cyclists", vec![(Bicycle, 22)]),
         ("cones x5", vec![(TrafficCone, 5)]),
         ("2x motorbike", vec![(Motorcycle, 2)]),
-        ("an excavatr and two jersey barriers", vec![(ConstructionVehicle, 1), (Barrier, 2)]),
+        (
+            "an excavatr and two jersey barriers",
+            vec![(ConstructionVehicle, 1), (Barrier, 2)],
+        ),
         ("🚗🚗 🚌", vec![(Car, 1), (Car, 1), (Bus, 1)]),
         ("no cars", vec![]),
     ] {
@@ -51,15 +64,33 @@ fn relations_belong_to_the_right_things() {
     for (prompt, expected) in [
         ("a bus in front of me", vec![(0, R::InFrontOf, Ego)]),
         ("Behind me, a van.", vec![(0, R::Behind, Ego)]),
-        ("five cones block my lane, a bus waits at the crossing", vec![(0, R::Blocking, Lane(LaneRole::Ego)), (1, R::WaitingAt, Crossing)]),
-        ("my lane is blocked by three cones", vec![(0, R::Blocking, Lane(LaneRole::Ego))]),
+        (
+            "five cones block my lane, a bus waits at the crossing",
+            vec![(0, R::Blocking, Lane(LaneRole::Ego)), (1, R::WaitingAt, Crossing)],
+        ),
+        (
+            "my lane is blocked by three cones",
+            vec![(0, R::Blocking, Lane(LaneRole::Ego))],
+        ),
         ("a bus followed by two cars", vec![(1, R::Following, Object(0))]),
-        ("There is a bus ahead and behind it a taxi", vec![(0, R::InFrontOf, Ego), (1, R::Behind, Object(0))]),
-        ("a man crossing the road", vec![(0, R::Crossing, Lane(LaneRole::Road))]),
-        ("on the left a van, on the right a bus", vec![(0, R::LeftOf, Ego), (1, R::RightOf, Ego)]),
+        (
+            "There is a bus ahead and behind it a taxi",
+            vec![(0, R::InFrontOf, Ego), (1, R::Behind, Object(0))],
+        ),
+        (
+            "a man crossing the road",
+            vec![(0, R::Crossing, Lane(LaneRole::Road))],
+        ),
+        (
+            "on the left a van, on the right a bus",
+            vec![(0, R::LeftOf, Ego), (1, R::RightOf, Ego)],
+        ),
         ("a bus in the left lane", vec![(0, R::On, Lane(LaneRole::Left))]),
         ("an oncoming lorry", vec![(0, R::OppositeDirection, Ego)]),
-        ("kids on the left pavement", vec![(0, R::On, Lane(LaneRole::LeftSidewalk))]),
+        (
+            "kids on the left pavement",
+            vec![(0, R::On, Lane(LaneRole::LeftSidewalk))],
+        ),
     ] {
         assert_eq!(relations(prompt), expected, "{prompt}");
     }
@@ -73,11 +104,23 @@ fn relations_belong_to_the_right_things() {
 #[test]
 fn style_and_road() {
     let d = read("busy intersection at night in the rain").description;
-    assert_eq!((d.time_of_day, d.weather), (Some(TimeOfDay::Night), Some(Weather::Rain)));
-    assert_eq!((d.road.kind, d.density), (Some(Road::Intersection), Some(Density::Busy)));
+    assert_eq!(
+        (d.time_of_day, d.weather),
+        (Some(TimeOfDay::Night), Some(Weather::Rain))
+    );
+    assert_eq!(
+        (d.road.kind, d.density),
+        (Some(Road::Intersection), Some(Density::Busy))
+    );
     assert_eq!(d.style(), "night, rain");
-    assert_eq!(read("not raining, a bus").description.weather, Some(Weather::Clear));
-    assert_eq!(read("at 3 am a taxi").description.time_of_day, Some(TimeOfDay::Night));
+    assert_eq!(
+        read("not raining, a bus").description.weather,
+        Some(Weather::Clear)
+    );
+    assert_eq!(
+        read("at 3 am a taxi").description.time_of_day,
+        Some(TimeOfDay::Night)
+    );
     assert_eq!(read("a T-junction").description.road.kind, Some(Road::TJunction));
 }
 
@@ -126,24 +169,58 @@ fn make(prompt: &str, seed: u64) -> Made {
 #[test]
 fn extremes_are_answered() {
     // Empty, emoji, other languages: nothing, said so.
-    for prompt in ["", "   ", "\u{0}\u{7f}", "😀😀", "夜晚的十字路口", "مرحبا", "zxcvb qwerty"] {
+    for prompt in [
+        "",
+        "   ",
+        "\u{0}\u{7f}",
+        "😀😀",
+        "夜晚的十字路口",
+        "مرحبا",
+        "zxcvb qwerty",
+    ] {
         let r = read(prompt);
         assert!(r.description.is_empty(), "{prompt:?}: {:?}", r.description);
         make(prompt, 1);
     }
     // Long ones end.
-    for part in ["a car behind ", "no ", "between and ", "car ", "1 ", "the left of ", "🚗", "one of them ", "with it ", "xkcd ", ", "] {
+    for part in [
+        "a car behind ",
+        "no ",
+        "between and ",
+        "car ",
+        "1 ",
+        "the left of ",
+        "🚗",
+        "one of them ",
+        "with it ",
+        "xkcd ",
+        ", ",
+    ] {
         let prompt = part.repeat(10_000 / part.len() + 1);
         let r = read(&prompt);
-        assert!(r.description.foreground.len() <= super::parse::MOST_MENTIONS, "{part}");
+        assert!(
+            r.description.foreground.len() <= super::parse::MOST_MENTIONS,
+            "{part}"
+        );
     }
     let beyond = "a car ".repeat(5_000);
     assert!(read(&beyond).not_understood.iter().any(|u| u.why.is_some()));
     // Contradictions are named.
     let r = read("no cars and three cars");
-    assert!(r.notes.iter().any(|n| n.contains("contradiction")), "{:?}", r.notes);
+    assert!(
+        r.notes.iter().any(|n| n.contains("contradiction")),
+        "{:?}",
+        r.notes
+    );
     // Numbers beyond reason.
-    for prompt in ["99999999999999999999 cars", "a car -5 m ahead", "a car 1e9 m ahead", "0 cars", "a bus 0 m ahead", "a million cars"] {
+    for prompt in [
+        "99999999999999999999 cars",
+        "a car -5 m ahead",
+        "a car 1e9 m ahead",
+        "0 cars",
+        "a bus 0 m ahead",
+        "a million cars",
+    ] {
         make(prompt, 2);
     }
 }
@@ -176,10 +253,22 @@ fn edit(base: &Made, text: &str) -> super::edit::EditReading {
 
 #[test]
 fn edits_hit_what_they_name() {
-    let base = make("a bus 15 m ahead, three parked cars, two pedestrians on the sidewalk", 1);
-    let of = |class: Class| -> Vec<BoxId> { base.boxes.values().filter(|b| b.class == class).map(|b| b.id).collect() };
+    let base = make(
+        "a bus 15 m ahead, three parked cars, two pedestrians on the sidewalk",
+        1,
+    );
+    let of = |class: Class| -> Vec<BoxId> {
+        base.boxes
+            .values()
+            .filter(|b| b.class == class)
+            .map(|b| b.id)
+            .collect()
+    };
     let bus = of(Class::Bus)[0];
-    assert_eq!(edit(&base, "remove the bus").edits, [TextEdit::Remove { id: bus }]);
+    assert_eq!(
+        edit(&base, "remove the bus").edits,
+        [TextEdit::Remove { id: bus }]
+    );
     assert_eq!(edit(&base, "delete all parked cars").edits.len(), 3);
     assert_eq!(edit(&base, "only one car").edits.len(), 2);
     assert_eq!(edit(&base, "no pedestrians").edits.len(), 2);
@@ -206,12 +295,35 @@ fn edits_hit_what_they_name() {
         other => panic!("{other:?}"),
     }
     let style = edit(&base, "make it night, heavy rain");
-    assert_eq!(style.edits, [TextEdit::Style { prompt: "night, rain".into() }]);
+    assert_eq!(
+        style.edits,
+        [TextEdit::Style {
+            prompt: "night, rain".into()
+        }]
+    );
     let paint = edit(&base, "paint the bus red");
-    assert!(paint.edits.is_empty() && paint.notes[0].contains("no colour"), "{:?}", paint.notes);
+    assert!(
+        paint.edits.is_empty() && paint.notes[0].contains("no colour"),
+        "{:?}",
+        paint.notes
+    );
     let nothing = edit(&base, "remove the trailer");
-    assert!(nothing.edits.is_empty() && nothing.notes[0].contains("no trailer"), "{:?}", nothing.notes);
-    for text in ["", "move", "turn the", "replace the bus with", "remove remove remove", "🚗", "add", "move the bus 1e300 m left", "夜"] {
+    assert!(
+        nothing.edits.is_empty() && nothing.notes[0].contains("no trailer"),
+        "{:?}",
+        nothing.notes
+    );
+    for text in [
+        "",
+        "move",
+        "turn the",
+        "replace the bus with",
+        "remove remove remove",
+        "🚗",
+        "add",
+        "move the bus 1e300 m left",
+        "夜",
+    ] {
         edit(&base, text);
     }
 }

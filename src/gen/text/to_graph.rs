@@ -74,8 +74,16 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                     Anchor::Object(j) => {
                         let ids = out.nodes.get(*j)?;
                         // "two cyclists behind two buses": one each; "between two cars": the first and the second.
-                        let index = if second && ids.len() > 1 { (k + 1) % ids.len() } else { k % ids.len().max(1) };
-                        let index = if r.relation == RelationKind::Between { usize::from(second).min(ids.len().saturating_sub(1)) } else { index };
+                        let index = if second && ids.len() > 1 {
+                            (k + 1) % ids.len()
+                        } else {
+                            k % ids.len().max(1)
+                        };
+                        let index = if r.relation == RelationKind::Between {
+                            usize::from(second).min(ids.len().saturating_sub(1))
+                        } else {
+                            index
+                        };
                         ids.get(index).copied()
                     }
                     Anchor::Lane(role) => Some(place(
@@ -92,7 +100,9 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                     continue;
                 };
                 let and = r.and.as_ref().and_then(|a| node(&mut out, a, true));
-                if from == to || (r.relation == RelationKind::Between && and.is_none_or(|a| a == to || a == from)) {
+                if from == to
+                    || (r.relation == RelationKind::Between && and.is_none_or(|a| a == to || a == from))
+                {
                     continue;
                 }
                 out.graph.edges.push(Edge {
@@ -118,14 +128,22 @@ fn fill(d: &Description, seed: u64, out: &mut Graphed) {
             (Class::Pedestrian, 5, None),
             (Class::Bicycle, 1, Some(ObjectState::Moving)),
         ],
-        Some(Density::Jam) => &[(Class::Car, 12, Some(ObjectState::Waiting)), (Class::Truck, 2, Some(ObjectState::Waiting)), (Class::Bus, 1, Some(ObjectState::Waiting))],
-        Some(Density::Light) => &[(Class::Car, 2, Some(ObjectState::Moving)), (Class::Pedestrian, 1, None)],
+        Some(Density::Jam) => &[
+            (Class::Car, 12, Some(ObjectState::Waiting)),
+            (Class::Truck, 2, Some(ObjectState::Waiting)),
+            (Class::Bus, 1, Some(ObjectState::Waiting)),
+        ],
+        Some(Density::Light) => &[
+            (Class::Car, 2, Some(ObjectState::Moving)),
+            (Class::Pedestrian, 1, None),
+        ],
         Some(Density::Empty) | None => &[],
     };
     let named: Vec<Class> = d.foreground.iter().map(|o| o.class).collect();
     for (class, n, state) in wanted {
         let denied = d.absent.iter().any(|a| a.classes.contains(class));
-        let highway = d.road.kind == Some(super::description::Road::Highway) && matches!(class, Class::Pedestrian | Class::Bicycle);
+        let highway = d.road.kind == Some(super::description::Road::Highway)
+            && matches!(class, Class::Pedestrian | Class::Bicycle);
         if named.contains(class) || denied || highway {
             continue;
         }

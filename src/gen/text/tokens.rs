@@ -64,7 +64,11 @@ fn is_word(c: char) -> bool {
 /// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
 pub fn tokens(prompt: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
-    let end_of = |i: usize| chars.get(i).map_or(chars.last().map_or(0, |(at, c)| at + c.len_utf8()), |c| c.0);
+    let end_of = |i: usize| {
+        chars
+            .get(i)
+            .map_or(chars.last().map_or(0, |(at, c)| at + c.len_utf8()), |c| c.0)
+    };
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < chars.len() {
@@ -94,7 +98,9 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             let value = text.parse().unwrap_or(f64::INFINITY);
             // "2x cars" counts, and so does "cars x2".
             let times = chars.get(j).is_some_and(|(_, c)| matches!(c, 'x' | '×'))
-                && !chars.get(j + 1).is_some_and(|(_, c)| is_word(*c) || c.is_ascii_digit());
+                && !chars
+                    .get(j + 1)
+                    .is_some_and(|(_, c)| is_word(*c) || c.is_ascii_digit());
             push(TokenKind::Number(value), text, i, j);
             j += usize::from(times);
         } else if matches!(c, 'x' | '×') && digit(j) {
@@ -114,13 +120,16 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
         } else {
             match c {
                 ',' | '，' | '、' | '&' | '+' => push(TokenKind::Comma, ",".into(), i, j),
-                '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => push(TokenKind::Stop, ".".into(), i, j),
+                '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => {
+                    push(TokenKind::Stop, ".".into(), i, j)
+                }
                 ':' | '(' | ')' | '/' | '—' | '–' | '[' | ']' | '"' | '“' | '”' | '#' | '|' | '*' => {
                     push(TokenKind::Mark, c.into(), i, j);
                 }
                 '-' | '_' => {
                     // Between spaces it parts clauses, inside a word it parts words.
-                    let spaced = i > 0 && chars[i - 1].1 == ' ' && chars.get(i + 1).is_some_and(|c| c.1 == ' ');
+                    let spaced =
+                        i > 0 && chars[i - 1].1 == ' ' && chars.get(i + 1).is_some_and(|c| c.1 == ' ');
                     if spaced {
                         push(TokenKind::Mark, "-".into(), i, j);
                     }
@@ -142,8 +151,14 @@ mod tests {
     #[test]
     fn words_numbers_and_marks() {
         let texts = |p: &str| tokens(p).into_iter().map(|t| t.text).collect::<Vec<_>>();
-        assert_eq!(texts("Don't, T-junction 20m"), ["dont", ",", "t", "junction", "20", "m"]);
-        assert_eq!(texts("2x cars x5 1,000 2, 3"), ["2", "cars", "5", "1000", "2", ",", "3"]);
+        assert_eq!(
+            texts("Don't, T-junction 20m"),
+            ["dont", ",", "t", "junction", "20", "m"]
+        );
+        assert_eq!(
+            texts("2x cars x5 1,000 2, 3"),
+            ["2", "cars", "5", "1000", "2", ",", "3"]
+        );
         assert_eq!(texts("2.5 m. 🚗"), ["2.5", "m", ".", "🚗"]);
         let prompt = "Zwölf 夜 cars";
         let last = tokens(prompt).pop().expect("a token");

@@ -95,11 +95,19 @@ fn share(good: usize, n: usize) -> Value {
 }
 
 fn ratio(pair: (usize, usize)) -> f64 {
-    if pair.1 == 0 { 1.0 } else { pair.0 as f64 / pair.1 as f64 }
+    if pair.1 == 0 {
+        1.0
+    } else {
+        pair.0 as f64 / pair.1 as f64
+    }
 }
 
 fn mean(values: &[f64]) -> f64 {
-    if values.is_empty() { 1.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
+    if values.is_empty() {
+        1.0
+    } else {
+        values.iter().sum::<f64>() / values.len() as f64
+    }
 }
 
 fn place(prompt: &str, seed: u64) -> (Scene, f64) {
@@ -111,7 +119,12 @@ fn place(prompt: &str, seed: u64) -> (Scene, f64) {
     let wall_s = started.elapsed().as_secs_f64();
     let boxes = placed.boxes.iter().map(|b| (b.id, *b)).collect();
     let frame = Frame::new(road.layout, boxes, crate::scene::VoxelGrid::new());
-    let mut scene = Scene::single(road.template, frame, std::sync::Arc::new(SensorRig::default()), seed);
+    let mut scene = Scene::single(
+        road.template,
+        frame,
+        std::sync::Arc::new(SensorRig::default()),
+        seed,
+    );
     scene.prompt = reading.description.style().into();
     (scene, wall_s)
 }
@@ -149,7 +162,11 @@ impl Tally {
         let style = &*scene.prompt;
         let said = |what: &Option<String>| what.as_ref().map(|w| style.split(", ").any(|s| s == w));
         let road = case.road.as_ref().map(|r| scene.name.as_ref() == r);
-        for (good, what) in [(said(&case.time), &case.time), (said(&case.weather), &case.weather), (road, &case.road)] {
+        for (good, what) in [
+            (said(&case.time), &case.time),
+            (said(&case.weather), &case.weather),
+            (road, &case.road),
+        ] {
             let Some(good) = good else {
                 continue;
             };
@@ -225,7 +242,11 @@ impl Eval {
         let bars: Vec<Bar> = vec![
             ("counts_exact", both(|t| mean(&t.counts)), 0.97),
             ("relations_satisfied", both(|t| mean(&t.relations)), 0.95),
-            ("pairs_apart", both(|t| 1.0 - if t.overlaps.1 == 0 { 0.0 } else { ratio(t.overlaps) }), 0.995),
+            (
+                "pairs_apart",
+                both(|t| 1.0 - if t.overlaps.1 == 0 { 0.0 } else { ratio(t.overlaps) }),
+                0.995,
+            ),
             ("vehicles_on_drivable", both(|t| ratio(t.drivable)), 0.99),
             ("moving_headings", both(|t| ratio(t.headings)), 0.95),
         ];

@@ -25,7 +25,12 @@ impl Judge<'_> {
     /// Nearest point of all lane centres: distance, direction, and signed offset of the point from it (left positive).
     fn lane(&self, p: DVec2) -> Option<(f64, DVec2, DVec2)> {
         let mut best: Option<(f64, DVec2, DVec2)> = None;
-        for line in self.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter) {
+        for line in self
+            .layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter)
+        {
             for w in line.points_m.windows(2) {
                 let d = w[1] - w[0];
                 if d.length() < 1e-6 {
@@ -90,7 +95,9 @@ impl Judge<'_> {
         if self.at(p, &[BevLayer::PedCrossing]) {
             return 0.0;
         }
-        let sides = self.outlines().flat_map(|o| (0..o.len()).map(move |i| (o[i], o[(i + 1) % o.len()])));
+        let sides = self
+            .outlines()
+            .flat_map(|o| (0..o.len()).map(move |i| (o[i], o[(i + 1) % o.len()])));
         sides
             .map(|(a, b)| {
                 let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
@@ -105,7 +112,12 @@ impl Judge<'_> {
             return f64::INFINITY;
         };
         let mut best = f64::INFINITY;
-        for line in self.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter) {
+        for line in self
+            .layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter)
+        {
             for w in line.points_m.windows(2) {
                 let d = (w[1] - w[0]).normalize_or_zero();
                 for v in own.windows(2) {
@@ -132,7 +144,15 @@ impl Judge<'_> {
     }
 
     /// True if at least `n` boxes of class `a` (all, if `None`) stand so to `b` (and `c`); with `metres`, that far away to 15 % or 2 m.
-    pub fn holds(&self, a: &str, relation: &str, b: &str, c: Option<&str>, n: Option<usize>, metres: Option<f64>) -> bool {
+    pub fn holds(
+        &self,
+        a: &str,
+        relation: &str,
+        b: &str,
+        c: Option<&str>,
+        n: Option<usize>,
+        metres: Option<f64>,
+    ) -> bool {
         let all: Vec<&SceneBox> = self.boxes.iter().filter(|x| Self::is(a, x)).collect();
         let wanted = n.unwrap_or(all.len().max(1));
         let found = all.iter().filter(|x| self.one(x, relation, b, c, metres)).count();
@@ -143,7 +163,23 @@ impl Judge<'_> {
         if name == "ego" {
             return vec![To::Point(DVec2::ZERO, DVec2::X, 2.0)];
         }
-        let places = ["crossing", "sidewalk", "left_sidewalk", "right_sidewalk", "ego_lane", "left_lane", "right_lane", "oncoming_lane", "road", "roadside", "left_roadside", "right_roadside", "carpark", "junction", "cross_street"];
+        let places = [
+            "crossing",
+            "sidewalk",
+            "left_sidewalk",
+            "right_sidewalk",
+            "ego_lane",
+            "left_lane",
+            "right_lane",
+            "oncoming_lane",
+            "road",
+            "roadside",
+            "left_roadside",
+            "right_roadside",
+            "carpark",
+            "junction",
+            "cross_street",
+        ];
         if places.contains(&name) {
             return vec![To::Place(name.to_string())];
         }
@@ -151,7 +187,11 @@ impl Judge<'_> {
             .iter()
             .filter(|x| Self::is(name, x) && x.id != not.id)
             .map(|x| {
-                let course = if matches!(x.class, Class::Pedestrian | Class::TrafficCone | Class::Barrier) { DVec2::X } else { x.heading() };
+                let course = if matches!(x.class, Class::Pedestrian | Class::TrafficCone | Class::Barrier) {
+                    DVec2::X
+                } else {
+                    x.heading()
+                };
                 To::Point(x.center_m.truncate(), course, x.size_m.x / 2.0)
             })
             .collect()
@@ -174,7 +214,16 @@ impl Judge<'_> {
         })
     }
 
-    fn to_point(&self, x: &SceneBox, relation: &str, at: DVec2, course: DVec2, half: f64, seconds: &[DVec2], metres: Option<f64>) -> bool {
+    fn to_point(
+        &self,
+        x: &SceneBox,
+        relation: &str,
+        at: DVec2,
+        course: DVec2,
+        half: f64,
+        seconds: &[DVec2],
+        metres: Option<f64>,
+    ) -> bool {
         let p = x.center_m.truncate();
         let d = p - at;
         let (fwd, lat) = (course.dot(d), course.perp_dot(d));
@@ -190,14 +239,19 @@ impl Judge<'_> {
             "at" => (true, d.length()),
             "facing" => (x.heading().dot(-d.normalize_or_zero()) > 0.6, d.length()),
             "away" => (x.heading().dot(-d.normalize_or_zero()) < -0.6, d.length()),
-            "following" => (fwd < -half * 0.8 && lat.abs() < 2.5 && x.heading().dot(course) > 0.9, -fwd),
+            "following" => (
+                fwd < -half * 0.8 && lat.abs() < 2.5 && x.heading().dot(course) > 0.9,
+                -fwd,
+            ),
             "oncoming" => (x.heading().dot(course) < -0.85, d.length()),
             "same_direction" => (x.heading().dot(course) > 0.85, d.length()),
             "between" => {
                 let held = seconds.iter().any(|q| {
                     let line = *q - at;
                     let t = d.dot(line) / line.length_squared().max(1e-9);
-                    t > 0.05 && t < 0.95 && (line.normalize_or_zero().perp_dot(d)).abs() < (0.4 * line.length()).max(2.5)
+                    t > 0.05
+                        && t < 0.95
+                        && (line.normalize_or_zero().perp_dot(d)).abs() < (0.4 * line.length()).max(2.5)
                 });
                 (held, d.length())
             }
@@ -244,7 +298,9 @@ impl Judge<'_> {
             "left_roadside" => edge() && side > 0.0,
             "right_roadside" => edge() && side < 0.0,
             "junction" => self.to_junction(p) < 14.0,
-            "cross_street" => lane.as_ref().is_some_and(|(far, dir, _)| *far < 2.5 && dir.x.abs() < 0.75),
+            "cross_street" => lane
+                .as_ref()
+                .is_some_and(|(far, dir, _)| *far < 2.5 && dir.x.abs() < 0.75),
             lane => lane_kind(lane),
         };
         match relation {
@@ -272,7 +328,14 @@ impl Judge<'_> {
             }
             "crossing" => {
                 let turned = lane.as_ref().is_some_and(|l| l.1.dot(x.heading()).abs() < 0.75);
-                self.at(p, &[BevLayer::DrivableArea, BevLayer::PedCrossing, BevLayer::CarparkArea]) && turned
+                self.at(
+                    p,
+                    &[
+                        BevLayer::DrivableArea,
+                        BevLayer::PedCrossing,
+                        BevLayer::CarparkArea,
+                    ],
+                ) && turned
             }
             _ => false,
         }
@@ -294,7 +357,11 @@ impl Judge<'_> {
     pub fn on_drivable(&self) -> (usize, usize) {
         let mut on = 0;
         let mut n = 0;
-        for b in self.boxes.iter().filter(|b| b.class.is_vehicle() || b.class == Class::Motorcycle) {
+        for b in self
+            .boxes
+            .iter()
+            .filter(|b| b.class.is_vehicle() || b.class == Class::Motorcycle)
+        {
             n += 1;
             let inner = SceneBox {
                 size_m: b.size_m - glam::DVec3::new(0.4, 0.4, 0.0),
@@ -314,21 +381,30 @@ impl Judge<'_> {
     pub fn headings(&self) -> (usize, usize) {
         let (mut good, mut n) = (0, 0);
         let limit = 15f64.to_radians().cos();
-        for b in self.boxes.iter().filter(|b| b.class.is_vehicle() || matches!(b.class, Class::Motorcycle | Class::Bicycle)) {
+        for b in self
+            .boxes
+            .iter()
+            .filter(|b| b.class.is_vehicle() || matches!(b.class, Class::Motorcycle | Class::Bicycle))
+        {
             if b.velocity_mps.length() < 0.5 || self.at(b.center_m.truncate(), &[BevLayer::Walkway]) {
                 continue;
             }
             n += 1;
             let p = b.center_m.truncate();
             // In a junction lanes lie over one another: any within 1.5 m counts.
-            let ok = self.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter).any(|l| {
-                l.points_m.windows(2).any(|w| {
-                    let d = (w[1] - w[0]).normalize_or_zero();
-                    let t = (p - w[0]).dot(w[1] - w[0]) / (w[1] - w[0]).length_squared().max(1e-9);
-                    let q = w[0] + (w[1] - w[0]) * t.clamp(0.0, 1.0);
-                    q.distance(p) < 2.5 && d.dot(b.heading()) > limit
-                })
-            });
+            let ok = self
+                .layout
+                .polylines
+                .iter()
+                .filter(|l| l.kind == PolylineKind::LaneCenter)
+                .any(|l| {
+                    l.points_m.windows(2).any(|w| {
+                        let d = (w[1] - w[0]).normalize_or_zero();
+                        let t = (p - w[0]).dot(w[1] - w[0]) / (w[1] - w[0]).length_squared().max(1e-9);
+                        let q = w[0] + (w[1] - w[0]) * t.clamp(0.0, 1.0);
+                        q.distance(p) < 2.5 && d.dot(b.heading()) > limit
+                    })
+                });
             good += usize::from(ok);
         }
         (good, n)

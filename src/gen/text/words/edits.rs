@@ -25,14 +25,32 @@ pub enum Verb {
 
 /// Imperatives.
 pub const VERBS: &[(Verb, &str)] = &[
-    (Verb::Remove, "take|remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract"),
-    (Verb::Add, "add|insert|put|place|spawn|drop|introduce|bring in|populate|throw in|put in|plant|install|position|stick|set up|park a|park two|give us|duplicate|let there be"),
-    (Verb::Move, "move|shift|push|pull|slide|drag|nudge|relocate|displace|bring|transfer|translate|reposition|send|advance"),
+    (
+        Verb::Remove,
+        "take|remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract",
+    ),
+    (
+        Verb::Add,
+        "add|insert|put|place|spawn|drop|introduce|bring in|populate|throw in|put in|plant|install|position|stick|set up|park a|park two|give us|duplicate|let there be",
+    ),
+    (
+        Verb::Move,
+        "move|shift|push|pull|slide|drag|nudge|relocate|displace|bring|transfer|translate|reposition|send|advance",
+    ),
     (Verb::Turn, "turn|rotate|spin|swivel|face|flip|reorient|orient"),
-    (Verb::Replace, "replace|swap|substitute|exchange|convert|transform|swap out"),
-    (Verb::Paint, "paint|recolour|recolor|colour|color|repaint|dye|tint"),
+    (
+        Verb::Replace,
+        "replace|swap|substitute|exchange|convert|transform|swap out",
+    ),
+    (
+        Verb::Paint,
+        "paint|recolour|recolor|colour|color|repaint|dye|tint",
+    ),
     (Verb::Keep, "keep|leave|reduce|limit|restrict|retain|cut down"),
-    (Verb::Make, "make|set|change|switch|let|turn it|make it|set it|get|i want it|alter|adjust"),
+    (
+        Verb::Make,
+        "make|set|change|switch|let|turn it|make it|set it|get|i want it|alter|adjust",
+    ),
     (Verb::Clear, "clear|empty out|clear out|clean up|vacate"),
 ];
 
@@ -65,15 +83,27 @@ pub enum Pick {
 
 /// Words for them.
 pub const PICKS: &[(Pick, &str)] = &[
-    (Pick::All, "all|every|each of the|all of the|all the|all of|every single|every one of the"),
+    (
+        Pick::All,
+        "all|every|each of the|all of the|all the|all of|every single|every one of the",
+    ),
     (Pick::Nearest, "nearest|closest"),
-    (Pick::Farthest, "farthest|furthest|most distant|farthest away|furthest away"),
+    (
+        Pick::Farthest,
+        "farthest|furthest|most distant|farthest away|furthest away",
+    ),
     (Pick::Leftmost, "leftmost|left most|furthest left|farthest left"),
-    (Pick::Rightmost, "rightmost|right most|furthest right|farthest right"),
+    (
+        Pick::Rightmost,
+        "rightmost|right most|furthest right|farthest right",
+    ),
     (Pick::Frontmost, "frontmost|foremost|front most|front one"),
     (Pick::Rearmost, "rearmost|hindmost|backmost|rear most"),
     (Pick::Largest, "biggest|largest|longest|tallest"),
     (Pick::Smallest, "smallest|shortest|tiniest"),
-    (Pick::Any, "any|any one|some random|a random|random|any of the|one of the|any one of the|whichever"),
+    (
+        Pick::Any,
+        "any|any one|some random|a random|random|any of the|one of the|any one of the|whichever",
+    ),
     (Pick::More, "more|extra|additional|further|another|one more"),
 ];

@@ -54,7 +54,9 @@ impl Noun {
     }
 }
 
-use Class::{Barrier, Bicycle, Bus, Car, ConstructionVehicle, Motorcycle, Pedestrian, TrafficCone, Trailer, Truck};
+use Class::{
+    Barrier, Bicycle, Bus, Car, ConstructionVehicle, Motorcycle, Pedestrian, TrafficCone, Trailer, Truck,
+};
 
 /// Every vehicle with an engine.
 pub const VEHICLES: &[Class] = &[Car, Truck, Bus, Trailer, ConstructionVehicle, Motorcycle];

@@ -52,66 +52,179 @@ pub const PLACES: &[(Anchor, Option<Road>, &str)] = &[
         "oncoming lane|oncoming lanes|opposite lane|opposing lane|oncoming traffic lane|wrong side of the road|opposite carriageway|other carriageway|oncoming side|contraflow lane|opposite lanes|opposing lanes|\
          lane for oncoming traffic|lane of oncoming traffic|lane in the opposite direction|lane in the other direction|opposing traffic lane|oncoming carriageway|lane coming the other way|wrong lane|wrong side",
     ),
-    (Anchor::Lane(L::Cross), None, "cross street|side street|side road|crossing road|crossing street|intersecting road|intersecting street|cross road|cross traffic lane|adjoining road|side streets|perpendicular road|perpendicular street"),
+    (
+        Anchor::Lane(L::Cross),
+        None,
+        "cross street|side street|side road|crossing road|crossing street|intersecting road|intersecting street|cross road|cross traffic lane|adjoining road|side streets|perpendicular road|perpendicular street",
+    ),
     (
         Anchor::Lane(L::Road),
         None,
         "road|street|roadway|carriageway|lanes|tarmac|asphalt|middle of the road|middle of the street|centre of the road|center of the road|center of the street|centre of the street|driveable area|drivable area|travel lanes|lanes of traffic|entire road|whole road|all lanes|both lanes|way",
     ),
-    (Anchor::Lane(L::Carpark), Some(Road::Parking), "car park|carpark|parking lot|parking area|parking garage|parking|parking deck|parking ground|lot|car parks|supermarket car park|supermarket parking lot"),
+    (
+        Anchor::Lane(L::Carpark),
+        Some(Road::Parking),
+        "car park|carpark|parking lot|parking area|parking garage|parking|parking deck|parking ground|lot|car parks|supermarket car park|supermarket parking lot",
+    ),
     (
         Anchor::Crossing,
         None,
         "crosswalk|zebra crossing|pedestrian crossing|zebra|pelican crossing|cross walk|zebra stripes|crossing|ped crossing|foot crossing|puffin crossing|pedestrian crosswalk|zebra cross|school crossing|croswalk",
     ),
-    (Anchor::Junction, Some(Road::Intersection), "junction|intersection|crossroads|crossroad|four way intersection|4 way intersection|four way junction|four way stop|4 way stop|road junction|street corner|corner|4 way junction|four way crossing|road crossing|\
-        signalised intersection|signalized intersection|signalised junction|traffic lights|traffic light|red light|lights|stop line|stop sign|traffic signal|traffic signals|red lights|stop light|stoplight|red traffic light|junctoin|intersecton|four way crossroads|x junction"),
-    (Anchor::Junction, Some(Road::TJunction), "t junction|t intersection|three way intersection|three way junction|tee junction|3 way intersection|t crossing|3 way junction|three way stop|y junction|fork|fork in the road|t shaped junction|t section"),
-    (Anchor::Junction, Some(Road::Roundabout), "roundabout|traffic circle|rotary|gyratory|round about|circle|island roundabout|mini roundabout"),
+    (
+        Anchor::Junction,
+        Some(Road::Intersection),
+        "junction|intersection|crossroads|crossroad|four way intersection|4 way intersection|four way junction|four way stop|4 way stop|road junction|street corner|corner|4 way junction|four way crossing|road crossing|\
+        signalised intersection|signalized intersection|signalised junction|traffic lights|traffic light|red light|lights|stop line|stop sign|traffic signal|traffic signals|red lights|stop light|stoplight|red traffic light|junctoin|intersecton|four way crossroads|x junction",
+    ),
+    (
+        Anchor::Junction,
+        Some(Road::TJunction),
+        "t junction|t intersection|three way intersection|three way junction|tee junction|3 way intersection|t crossing|3 way junction|three way stop|y junction|fork|fork in the road|t shaped junction|t section",
+    ),
+    (
+        Anchor::Junction,
+        Some(Road::Roundabout),
+        "roundabout|traffic circle|rotary|gyratory|round about|circle|island roundabout|mini roundabout",
+    ),
 ];
 
 /// Relations that need a place or an object after them.
 pub const RELATIONS: &[(R, &str)] = &[
-    (R::InFrontOf, "in front of|ahead of|infront of|in the front of|right in front of|just in front of|directly in front of|immediately in front of|directly ahead of|before|just ahead of|straight ahead of|downstream of|right ahead of|shortly before|leading|leads|up ahead of"),
-    (R::Behind, "behind|in back of|at the back of|at the rear of|to the rear of|right behind|just behind|directly behind|immediately behind|straight behind|in the rear of|after|past|beyond|upstream of|hidden behind|half hidden behind|partially hidden behind|occluded by|close behind"),
-    (R::LeftOf, "left of|to the left of|on the left of|to the left hand side of|on the left side of|on the left hand side of|at the left of|left side of|to the left side of|left hand side of|on left of|on left side of|at the left side of|on the lefthand side of|just left of|directly left of|immediately left of|immediately to the left of|directly to the left of|just to the left of|along the left side of|at the left hand side of|along the left of|down the left side of"),
-    (R::RightOf, "right of|to the right of|on the right of|to the right hand side of|on the right side of|on the right hand side of|at the right of|right side of|to the right side of|right hand side of|on right of|on right side of|at the right side of|on the righthand side of|just right of|directly right of|immediately right of|immediately to the right of|directly to the right of|just to the right of|along the right side of|at the right hand side of|along the right of|down the right side of"),
-    (R::Near, "near|near to|close to|in the vicinity of|not far from|around|in the area of|nearby to|close by|somewhere near|within reach of|in close proximity to|nearer to|close up to|surrounding|not far away from|very close to|right near|in proximity to"),
-    (R::NextTo, "next to|beside|besides|alongside|adjacent to|abreast of|at the side of|right next to|level with|directly next to|side by side with|by the side of|along side|right beside|directly beside|alongside of|flanking|immediately next to|just next to|neighbouring|parallel to"),
-    (R::FarFrom, "far from|far away from|a long way from|well away from|distant from|at a distance from"),
-    (R::Between, "between|in between|sandwiched between|wedged between|squeezed between|amid|stuck between|in the gap between|from between"),
-    (R::Across, "opposite|across from|opposite of|opposite to|on the other side from|directly opposite|facing across from"),
-    (R::Blocking, "blocking|block|blocks|obstructing|obstructs|obstruct|closing off|closes off|close off|closing|closes|barring|in the way of|cutting off|cuts off|blocking off|block off|blocks off|obstructing the way of|sealing off|impeding|standing in the way of|occupying|occupies|taking up|takes up|sealing|cordoning off|cordon off|blockading|is blocking|are blocking|barricading|stopping traffic in|narrowing"),
-    (R::Facing, "facing|faces|face|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards"),
-    (R::FacingAway, "facing away from|looking away from|driving away from|walking away from|moving away from|turned away from|going away from|heading away from|with its back to|with their backs to|riding away from|running away from|pointing away from|speeding away from|drives away from|walks away from"),
-    (R::Following, "following|follows|follow|tailgating|tailgates|trailing|trails|chasing|chases|driving behind|drives behind|riding behind|closely following|in pursuit of|tailing|close on the heels of|hot on the heels of|queuing behind|queueing behind|queued behind|cycling behind|rides behind|stuck behind|waiting behind|travelling behind|traveling behind|shadowing|pursuing|lined up behind|walking behind"),
-    (R::Crossing, "crossing|crosses|cross|walking across|running across|walks across|runs across|riding across|cycling across|stepping onto|steps onto|jaywalking across|hurrying across|dashing across|running onto|stepping into|walks over|walking over|going across|strolling across|stepping out onto|runs over|running over|rushing across|run across|walk across|goes across|pushing a pram across|pushing a stroller across|dashes across|darting across|stepping off|traversing|driving across|turning across|drives across|steps out onto|steps into|moving across|heading across|about to cross|making their way across|making his way across|making her way across|jogging across|going over|pass over|wandering across|step onto"),
-    (R::SameDirection, "in the same direction as|same direction as|travelling with|traveling with|going the same way as|in the direction of"),
-    (R::OppositeDirection, "in the opposite direction to|in the opposite direction of|in the other direction from|against the direction of|opposite direction to"),
+    (
+        R::InFrontOf,
+        "in front of|ahead of|infront of|in the front of|right in front of|just in front of|directly in front of|immediately in front of|directly ahead of|before|just ahead of|straight ahead of|downstream of|right ahead of|shortly before|leading|leads|up ahead of",
+    ),
+    (
+        R::Behind,
+        "behind|in back of|at the back of|at the rear of|to the rear of|right behind|just behind|directly behind|immediately behind|straight behind|in the rear of|after|past|beyond|upstream of|hidden behind|half hidden behind|partially hidden behind|occluded by|close behind",
+    ),
+    (
+        R::LeftOf,
+        "left of|to the left of|on the left of|to the left hand side of|on the left side of|on the left hand side of|at the left of|left side of|to the left side of|left hand side of|on left of|on left side of|at the left side of|on the lefthand side of|just left of|directly left of|immediately left of|immediately to the left of|directly to the left of|just to the left of|along the left side of|at the left hand side of|along the left of|down the left side of",
+    ),
+    (
+        R::RightOf,
+        "right of|to the right of|on the right of|to the right hand side of|on the right side of|on the right hand side of|at the right of|right side of|to the right side of|right hand side of|on right of|on right side of|at the right side of|on the righthand side of|just right of|directly right of|immediately right of|immediately to the right of|directly to the right of|just to the right of|along the right side of|at the right hand side of|along the right of|down the right side of",
+    ),
+    (
+        R::Near,
+        "near|near to|close to|in the vicinity of|not far from|around|in the area of|nearby to|close by|somewhere near|within reach of|in close proximity to|nearer to|close up to|surrounding|not far away from|very close to|right near|in proximity to",
+    ),
+    (
+        R::NextTo,
+        "next to|beside|besides|alongside|adjacent to|abreast of|at the side of|right next to|level with|directly next to|side by side with|by the side of|along side|right beside|directly beside|alongside of|flanking|immediately next to|just next to|neighbouring|parallel to",
+    ),
+    (
+        R::FarFrom,
+        "far from|far away from|a long way from|well away from|distant from|at a distance from",
+    ),
+    (
+        R::Between,
+        "between|in between|sandwiched between|wedged between|squeezed between|amid|stuck between|in the gap between|from between",
+    ),
+    (
+        R::Across,
+        "opposite|across from|opposite of|opposite to|on the other side from|directly opposite|facing across from",
+    ),
+    (
+        R::Blocking,
+        "blocking|block|blocks|obstructing|obstructs|obstruct|closing off|closes off|close off|closing|closes|barring|in the way of|cutting off|cuts off|blocking off|block off|blocks off|obstructing the way of|sealing off|impeding|standing in the way of|occupying|occupies|taking up|takes up|sealing|cordoning off|cordon off|blockading|is blocking|are blocking|barricading|stopping traffic in|narrowing",
+    ),
+    (
+        R::Facing,
+        "facing|faces|face|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards",
+    ),
+    (
+        R::FacingAway,
+        "facing away from|looking away from|driving away from|walking away from|moving away from|turned away from|going away from|heading away from|with its back to|with their backs to|riding away from|running away from|pointing away from|speeding away from|drives away from|walks away from",
+    ),
+    (
+        R::Following,
+        "following|follows|follow|tailgating|tailgates|trailing|trails|chasing|chases|driving behind|drives behind|riding behind|closely following|in pursuit of|tailing|close on the heels of|hot on the heels of|queuing behind|queueing behind|queued behind|cycling behind|rides behind|stuck behind|waiting behind|travelling behind|traveling behind|shadowing|pursuing|lined up behind|walking behind",
+    ),
+    (
+        R::Crossing,
+        "crossing|crosses|cross|walking across|running across|walks across|runs across|riding across|cycling across|stepping onto|steps onto|jaywalking across|hurrying across|dashing across|running onto|stepping into|walks over|walking over|going across|strolling across|stepping out onto|runs over|running over|rushing across|run across|walk across|goes across|pushing a pram across|pushing a stroller across|dashes across|darting across|stepping off|traversing|driving across|turning across|drives across|steps out onto|steps into|moving across|heading across|about to cross|making their way across|making his way across|making her way across|jogging across|going over|pass over|wandering across|step onto",
+    ),
+    (
+        R::SameDirection,
+        "in the same direction as|same direction as|travelling with|traveling with|going the same way as|in the direction of",
+    ),
+    (
+        R::OppositeDirection,
+        "in the opposite direction to|in the opposite direction of|in the other direction from|against the direction of|opposite direction to",
+    ),
 ];
 
 /// Relations to the ego vehicle that need nothing after them; followed by "of", they take what follows.
 pub const EGO_RELATIONS: &[(&[R], &str)] = &[
-    (&[R::InFrontOf], "ahead|in front|up ahead|straight ahead|directly ahead|further ahead|just ahead|right ahead|farther ahead|up front|down the road|down the street|further down the road|upcoming|further on|right in front|directly in front|up the road|immediately ahead|close ahead|dead ahead|further along|straight in front|further down the street|down the lane|further up the road|up the street|ahead on the road|ahead in the road|coming up|in my view ahead|ahead in the distance|at the front|forwards|infront|to the front|in the front|away ahead|off ahead"),
-    (&[R::InFrontOf, R::FarFrom], "in the distance|far ahead|far away ahead|in the far distance|in the background|off in the distance|on the horizon|way ahead|way in front|well ahead|a long way ahead|far in front|further away|at the far end of the road|at the end of the road|at the end of the street|far down the road|far down the street"),
-    (&[R::Behind], "behind|from behind|at the rear|in the back|to the rear|in the rear|further behind|just behind|right behind|at the back|directly behind|in the rear view mirror|in my mirror|in the mirror|in my rear view mirror|behind on the road|close behind|in the rearview mirror|to the back|in my rearview mirror|backwards"),
-    (&[R::LeftOf], "on the left|to the left|at left|on my left|on our left|to my left|to our left|on the left side|on the left hand side|on left|at the left|left|leftwards|to the left hand side|on the left flank|on my left hand side|on my left side|on the lefthand side|to the left side|off to the left|over on the left|left hand side|left side|from the left|at my left|from my left|on the ego vehicles left|along the left|down the left|on its left hand|at the left side|on our left hand side|on left side|over to the left|away to the left"),
-    (&[R::RightOf], "on the right|to the right|at right|on my right|on our right|to my right|to our right|on the right side|on the right hand side|on right|at the right|right|rightwards|to the right hand side|on the right flank|on my right hand side|on my right side|on the righthand side|to the right side|off to the right|over on the right|right hand side|right side|from the right|at my right|from my right|on the ego vehicles right|along the right|down the right|on its right hand|at the right side|on our right hand side|on right side|over to the right|away to the right"),
-    (&[R::InFrontOf, R::LeftOf], "front left|ahead left|ahead to the left|ahead on the left|in front to the left|in front on the left|ahead and to the left|ahead and left|to the front left|on the front left|at the front left|diagonally left ahead|left ahead|to my front left|ahead to my left|ahead on my left|ahead and to my left|in front and to the left|in front left|forward left|at ten oclock|up ahead on the left|up ahead to the left|to the left ahead|on the left ahead"),
-    (&[R::InFrontOf, R::RightOf], "front right|ahead right|ahead to the right|ahead on the right|in front to the right|in front on the right|ahead and to the right|ahead and right|to the front right|on the front right|at the front right|diagonally right ahead|right ahead on the right|to my front right|ahead to my right|ahead on my right|ahead and to my right|in front and to the right|in front right|forward right|at two oclock|up ahead on the right|up ahead to the right|to the right ahead|on the right ahead"),
-    (&[R::Behind, R::LeftOf], "rear left|back left|behind left|behind to the left|behind on the left|behind and to the left|to the rear left|on the rear left|at the rear left|to my rear left|behind to my left|behind on my left|left behind|behind and left|behind and to my left|at the back left|in the back left"),
-    (&[R::Behind, R::RightOf], "rear right|back right|behind right|behind to the right|behind on the right|behind and to the right|to the rear right|on the rear right|at the rear right|to my rear right|behind to my right|behind on my right|behind and right|behind and to my right|at the back right|in the back right"),
-    (&[R::Near], "nearby|close by|close|in the vicinity|near here|around here|in close proximity"),
-    (&[R::FarFrom], "far away|far off|distant|a long way off|a long way away|far|further off"),
-    (&[R::SameDirection], "in the same direction|going my way|going our way|in my direction|same direction|going the same way|in our direction|same way"),
-    (&[R::OppositeDirection], "in the opposite direction|oncoming|coming the other way|going the other way|coming towards|approaching|from the opposite direction|in the other direction|coming from the opposite direction|coming from ahead|on coming|opposing|going the opposite way|coming the opposite way|driving the wrong way|travelling the other way|traveling the other way|heading the other way|coming from the front|from the other direction|opposite direction|going in the opposite direction|driving in the opposite direction|coming in the opposite direction|coming at me|incoming"),
+    (
+        &[R::InFrontOf],
+        "ahead|in front|up ahead|straight ahead|directly ahead|further ahead|just ahead|right ahead|farther ahead|up front|down the road|down the street|further down the road|upcoming|further on|right in front|directly in front|up the road|immediately ahead|close ahead|dead ahead|further along|straight in front|further down the street|down the lane|further up the road|up the street|ahead on the road|ahead in the road|coming up|in my view ahead|ahead in the distance|at the front|forwards|infront|to the front|in the front|away ahead|off ahead",
+    ),
+    (
+        &[R::InFrontOf, R::FarFrom],
+        "in the distance|far ahead|far away ahead|in the far distance|in the background|off in the distance|on the horizon|way ahead|way in front|well ahead|a long way ahead|far in front|further away|at the far end of the road|at the end of the road|at the end of the street|far down the road|far down the street",
+    ),
+    (
+        &[R::Behind],
+        "behind|from behind|at the rear|in the back|to the rear|in the rear|further behind|just behind|right behind|at the back|directly behind|in the rear view mirror|in my mirror|in the mirror|in my rear view mirror|behind on the road|close behind|in the rearview mirror|to the back|in my rearview mirror|backwards",
+    ),
+    (
+        &[R::LeftOf],
+        "on the left|to the left|at left|on my left|on our left|to my left|to our left|on the left side|on the left hand side|on left|at the left|left|leftwards|to the left hand side|on the left flank|on my left hand side|on my left side|on the lefthand side|to the left side|off to the left|over on the left|left hand side|left side|from the left|at my left|from my left|on the ego vehicles left|along the left|down the left|on its left hand|at the left side|on our left hand side|on left side|over to the left|away to the left",
+    ),
+    (
+        &[R::RightOf],
+        "on the right|to the right|at right|on my right|on our right|to my right|to our right|on the right side|on the right hand side|on right|at the right|right|rightwards|to the right hand side|on the right flank|on my right hand side|on my right side|on the righthand side|to the right side|off to the right|over on the right|right hand side|right side|from the right|at my right|from my right|on the ego vehicles right|along the right|down the right|on its right hand|at the right side|on our right hand side|on right side|over to the right|away to the right",
+    ),
+    (
+        &[R::InFrontOf, R::LeftOf],
+        "front left|ahead left|ahead to the left|ahead on the left|in front to the left|in front on the left|ahead and to the left|ahead and left|to the front left|on the front left|at the front left|diagonally left ahead|left ahead|to my front left|ahead to my left|ahead on my left|ahead and to my left|in front and to the left|in front left|forward left|at ten oclock|up ahead on the left|up ahead to the left|to the left ahead|on the left ahead",
+    ),
+    (
+        &[R::InFrontOf, R::RightOf],
+        "front right|ahead right|ahead to the right|ahead on the right|in front to the right|in front on the right|ahead and to the right|ahead and right|to the front right|on the front right|at the front right|diagonally right ahead|right ahead on the right|to my front right|ahead to my right|ahead on my right|ahead and to my right|in front and to the right|in front right|forward right|at two oclock|up ahead on the right|up ahead to the right|to the right ahead|on the right ahead",
+    ),
+    (
+        &[R::Behind, R::LeftOf],
+        "rear left|back left|behind left|behind to the left|behind on the left|behind and to the left|to the rear left|on the rear left|at the rear left|to my rear left|behind to my left|behind on my left|left behind|behind and left|behind and to my left|at the back left|in the back left",
+    ),
+    (
+        &[R::Behind, R::RightOf],
+        "rear right|back right|behind right|behind to the right|behind on the right|behind and to the right|to the rear right|on the rear right|at the rear right|to my rear right|behind to my right|behind on my right|behind and right|behind and to my right|at the back right|in the back right",
+    ),
+    (
+        &[R::Near],
+        "nearby|close by|close|in the vicinity|near here|around here|in close proximity",
+    ),
+    (
+        &[R::FarFrom],
+        "far away|far off|distant|a long way off|a long way away|far|further off",
+    ),
+    (
+        &[R::SameDirection],
+        "in the same direction|going my way|going our way|in my direction|same direction|going the same way|in our direction|same way",
+    ),
+    (
+        &[R::OppositeDirection],
+        "in the opposite direction|oncoming|coming the other way|going the other way|coming towards|approaching|from the opposite direction|in the other direction|coming from the opposite direction|coming from ahead|on coming|opposing|going the opposite way|coming the opposite way|driving the wrong way|travelling the other way|traveling the other way|heading the other way|coming from the front|from the other direction|opposite direction|going in the opposite direction|driving in the opposite direction|coming in the opposite direction|coming at me|incoming",
+    ),
     (&[R::Facing], "facing forward"),
 ];
 
 /// What is done to the thing named before: "my lane is blocked by cones".
 pub const REVERSED: &[(R, &str)] = &[
-    (R::Blocking, "blocked by|is blocked by|are blocked by|closed by|closed off by|obstructed by|barred by|blocked off by|blocked with|closed with|is closed by|is closed off by|cut off by|obstructed with|sealed off by|coned off by|coned off with|blocked off with|occupied by|closed off with|cordoned off by|cordoned off with|is obstructed by|is occupied by|shut by|barricaded by|blocked completely by|partially blocked by|partly blocked by"),
-    (R::Following, "towing|tows|pulling|pulls|hauling|hauls|dragging|followed by|is followed by|are followed by|trailed by|pursued by|chased by|being followed by|tailed by|tailgated by|with behind"),
+    (
+        R::Blocking,
+        "blocked by|is blocked by|are blocked by|closed by|closed off by|obstructed by|barred by|blocked off by|blocked with|closed with|is closed by|is closed off by|cut off by|obstructed with|sealed off by|coned off by|coned off with|blocked off with|occupied by|closed off with|cordoned off by|cordoned off with|is obstructed by|is occupied by|shut by|barricaded by|blocked completely by|partially blocked by|partly blocked by",
+    ),
+    (
+        R::Following,
+        "towing|tows|pulling|pulls|hauling|hauls|dragging|followed by|is followed by|are followed by|trailed by|pursued by|chased by|being followed by|tailed by|tailgated by|with behind",
+    ),
     (R::InFrontOf, "preceded by|led by|is preceded by|is led by"),
     (R::NextTo, "flanked by|accompanied by"),
     (R::Near, "surrounded by"),
@@ -121,9 +234,21 @@ pub const REVERSED: &[(R, &str)] = &[
 
 /// Places said in a whole phrase, without a noun of their own: relation and anchor.
 pub const FIXED: &[(R, Anchor, &str)] = &[
-    (R::Crossing, Anchor::Lane(L::Road), "jaywalking|jaywalks|jaywalk|crossing over|stepping out|crosses over|running out"),
-    (R::WaitingAt, Anchor::Crossing, "waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street"),
-    (R::On, Anchor::Lane(L::Oncoming), "on the other side of the divider|on the opposite side of the divider"),
+    (
+        R::Crossing,
+        Anchor::Lane(L::Road),
+        "jaywalking|jaywalks|jaywalk|crossing over|stepping out|crosses over|running out",
+    ),
+    (
+        R::WaitingAt,
+        Anchor::Crossing,
+        "waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street",
+    ),
+    (
+        R::On,
+        Anchor::Lane(L::Oncoming),
+        "on the other side of the divider|on the opposite side of the divider",
+    ),
     (R::Near, Anchor::Junction, "turning at the lights"),
     (R::On, Anchor::Lane(L::Road), "in the middle"),
 ];

@@ -67,17 +67,26 @@ pub const ENVIRONMENTS: &[(Environment, &str)] = &[
         Environment::Urban,
         "urban|city|town|metropolitan|metropolis|boston|singapore|new york|london|tokyo|berlin|paris|san francisco|seattle|chicago|los angeles|munich|big city|chinatown|pittsburgh|las vegas",
     ),
-    (Environment::Suburban, "suburban|suburb|suburbs|suburbia|outskirts"),
+    (
+        Environment::Suburban,
+        "suburban|suburb|suburbs|suburbia|outskirts",
+    ),
     (
         Environment::Residential,
         "residential|residential area|residential street|residential road|residential neighbourhood|residential neighborhood|neighbourhood|neighborhood|housing estate|quiet residential|housing area|cul de sac|school zone",
     ),
-    (Environment::Rural, "rural|countryside|village|country road|country lane|farmland|dirt road|gravel road|back road|farm road|outback"),
+    (
+        Environment::Rural,
+        "rural|countryside|village|country road|country lane|farmland|dirt road|gravel road|back road|farm road|outback",
+    ),
     (
         Environment::Industrial,
         "industrial|industrial area|industrial estate|industrial zone|industrial park|docks|harbour|harbor|port|dockyard|logistics park",
     ),
-    (Environment::Nature, "nature|woods|woodland|forested|mountains|mountainous|desert|coast|coastal|seaside|scenic|wilderness|national park|tree lined|leafy|hills|hilly"),
+    (
+        Environment::Nature,
+        "nature|woods|woodland|forested|mountains|mountainous|desert|coast|coastal|seaside|scenic|wilderness|national park|tree lined|leafy|hills|hilly",
+    ),
 ];
 
 /// Roads that are named without being a place.
@@ -97,9 +106,21 @@ pub const ROADS: &[(Road, Option<Environment>, &str)] = &[
         Some(Environment::Highway),
         "highway|motorway|freeway|expressway|interstate|autobahn|dual carriageway|turnpike|toll road|divided highway|multi lane highway|multi lane road|urban expressway|trunk road|autoroute|ring road|beltway|bypass|divided road",
     ),
-    (Road::Suburb, Some(Environment::Suburban), "suburban street|suburban road|street with driveways|driveways|driveway|estate road"),
-    (Road::Suburb, Some(Environment::Residential), "residential street|residential road|side street with houses|quiet residential street"),
-    (Road::Suburb, Some(Environment::Rural), "country road|country lane|rural road|village road|village street|dirt road|gravel road|farm road"),
+    (
+        Road::Suburb,
+        Some(Environment::Suburban),
+        "suburban street|suburban road|street with driveways|driveways|driveway|estate road",
+    ),
+    (
+        Road::Suburb,
+        Some(Environment::Residential),
+        "residential street|residential road|side street with houses|quiet residential street",
+    ),
+    (
+        Road::Suburb,
+        Some(Environment::Rural),
+        "country road|country lane|rural road|village road|village street|dirt road|gravel road|farm road",
+    ),
 ];
 
 /// How busy.
@@ -126,35 +147,179 @@ pub const DENSITIES: &[(Density, &str)] = &[
 
 /// Counts in words: least, placed, most.
 pub const COUNTS: &[(Count, &str)] = &[
-    (Count { min: 1, n: 1, max: 1 }, "one|single|a single|just one|only one|exactly one|a lone|lone|1|solitary|one single|a solitary|individual"),
-    (Count { min: 2, n: 2, max: 2 }, "two|a couple of|couple of|a pair of|pair of|a couple|couple|twin|both|a duo of|two single|pairs of"),
-    (Count { min: 3, n: 3, max: 3 }, "three|a trio of|trio of|trio|triple"),
+    (
+        Count { min: 1, n: 1, max: 1 },
+        "one|single|a single|just one|only one|exactly one|a lone|lone|1|solitary|one single|a solitary|individual",
+    ),
+    (
+        Count { min: 2, n: 2, max: 2 },
+        "two|a couple of|couple of|a pair of|pair of|a couple|couple|twin|both|a duo of|two single|pairs of",
+    ),
+    (
+        Count { min: 3, n: 3, max: 3 },
+        "three|a trio of|trio of|trio|triple",
+    ),
     (Count { min: 4, n: 4, max: 4 }, "four|a quartet of|fou"),
     (Count { min: 5, n: 5, max: 5 }, "five"),
-    (Count { min: 6, n: 6, max: 6 }, "six|half a dozen|half dozen|a half dozen|a half dozen of"),
+    (
+        Count { min: 6, n: 6, max: 6 },
+        "six|half a dozen|half dozen|a half dozen|a half dozen of",
+    ),
     (Count { min: 7, n: 7, max: 7 }, "seven"),
     (Count { min: 8, n: 8, max: 8 }, "eight"),
     (Count { min: 9, n: 9, max: 9 }, "nine"),
-    (Count { min: 10, n: 10, max: 10 }, "ten"),
-    (Count { min: 11, n: 11, max: 11 }, "eleven"),
-    (Count { min: 12, n: 12, max: 12 }, "twelve|a dozen|dozen|a dozen of"),
-    (Count { min: 13, n: 13, max: 13 }, "thirteen"),
-    (Count { min: 14, n: 14, max: 14 }, "fourteen"),
-    (Count { min: 15, n: 15, max: 15 }, "fifteen"),
-    (Count { min: 16, n: 16, max: 16 }, "sixteen"),
-    (Count { min: 17, n: 17, max: 17 }, "seventeen"),
-    (Count { min: 18, n: 18, max: 18 }, "eighteen"),
-    (Count { min: 19, n: 19, max: 19 }, "nineteen"),
-    (Count { min: 20, n: 20, max: 20 }, "twenty|a score of"),
-    (Count { min: 24, n: 24, max: 24 }, "two dozen"),
-    (Count { min: 30, n: 30, max: 30 }, "thirty"),
-    (Count { min: 40, n: 40, max: 40 }, "forty"),
-    (Count { min: 50, n: 50, max: 50 }, "fifty"),
-    (Count { min: 100, n: 100, max: 100 }, "hundred|a hundred|one hundred"),
-    (Count { min: 1000, n: 1000, max: 1000 }, "thousand|a thousand|one thousand|a million|million"),
-    (Count { min: 2, n: 3, max: 5 }, "some|a few|few|a handful of|handful of|a number of|various|a small number of|different|assorted|a bunch of|bunch of|multiple|several|a small group of|a set of|set of|more than one|a group of|group of|groups of|a cluster of|cluster of|clusters of|a small crowd of|a series of|a mix of|a pack of|a gang of|a string of|string of|a team of|team of"),
-    (Count { min: 3, n: 4, max: 8 }, "a row of|row of|rows of|a line of|line of|lines of|a queue of|queue of|queues of|a column of|column of|a convoy of|convoy of|a chain of|a fleet of|fleet of|a large group of|large group of|a procession of"),
-    (Count { min: 5, n: 8, max: 20 }, "many|lots of|a lot of|a large number of|large number of|numerous|plenty of|loads of|countless|a crowd of|crowds of|crowd of|tons of|heaps of|a swarm of|dozens of|hordes of|a great many|an abundance of|a great number of|masses of|scores of|a multitude of|a host of|so many|too many|full of|lined with|packed with|crowded with|filled with|a throng of|tens of|a long line of|a long queue of|a long row of|littered with|swarming with"),
+    (
+        Count {
+            min: 10,
+            n: 10,
+            max: 10,
+        },
+        "ten",
+    ),
+    (
+        Count {
+            min: 11,
+            n: 11,
+            max: 11,
+        },
+        "eleven",
+    ),
+    (
+        Count {
+            min: 12,
+            n: 12,
+            max: 12,
+        },
+        "twelve|a dozen|dozen|a dozen of",
+    ),
+    (
+        Count {
+            min: 13,
+            n: 13,
+            max: 13,
+        },
+        "thirteen",
+    ),
+    (
+        Count {
+            min: 14,
+            n: 14,
+            max: 14,
+        },
+        "fourteen",
+    ),
+    (
+        Count {
+            min: 15,
+            n: 15,
+            max: 15,
+        },
+        "fifteen",
+    ),
+    (
+        Count {
+            min: 16,
+            n: 16,
+            max: 16,
+        },
+        "sixteen",
+    ),
+    (
+        Count {
+            min: 17,
+            n: 17,
+            max: 17,
+        },
+        "seventeen",
+    ),
+    (
+        Count {
+            min: 18,
+            n: 18,
+            max: 18,
+        },
+        "eighteen",
+    ),
+    (
+        Count {
+            min: 19,
+            n: 19,
+            max: 19,
+        },
+        "nineteen",
+    ),
+    (
+        Count {
+            min: 20,
+            n: 20,
+            max: 20,
+        },
+        "twenty|a score of",
+    ),
+    (
+        Count {
+            min: 24,
+            n: 24,
+            max: 24,
+        },
+        "two dozen",
+    ),
+    (
+        Count {
+            min: 30,
+            n: 30,
+            max: 30,
+        },
+        "thirty",
+    ),
+    (
+        Count {
+            min: 40,
+            n: 40,
+            max: 40,
+        },
+        "forty",
+    ),
+    (
+        Count {
+            min: 50,
+            n: 50,
+            max: 50,
+        },
+        "fifty",
+    ),
+    (
+        Count {
+            min: 100,
+            n: 100,
+            max: 100,
+        },
+        "hundred|a hundred|one hundred",
+    ),
+    (
+        Count {
+            min: 1000,
+            n: 1000,
+            max: 1000,
+        },
+        "thousand|a thousand|one thousand|a million|million",
+    ),
+    (
+        Count { min: 2, n: 3, max: 5 },
+        "some|a few|few|a handful of|handful of|a number of|various|a small number of|different|assorted|a bunch of|bunch of|multiple|several|a small group of|a set of|set of|more than one|a group of|group of|groups of|a cluster of|cluster of|clusters of|a small crowd of|a series of|a mix of|a pack of|a gang of|a string of|string of|a team of|team of",
+    ),
+    (
+        Count { min: 3, n: 4, max: 8 },
+        "a row of|row of|rows of|a line of|line of|lines of|a queue of|queue of|queues of|a column of|column of|a convoy of|convoy of|a chain of|a fleet of|fleet of|a large group of|large group of|a procession of",
+    ),
+    (
+        Count {
+            min: 5,
+            n: 8,
+            max: 20,
+        },
+        "many|lots of|a lot of|a large number of|large number of|numerous|plenty of|loads of|countless|a crowd of|crowds of|crowd of|tons of|heaps of|a swarm of|dozens of|hordes of|a great many|an abundance of|a great number of|masses of|scores of|a multitude of|a host of|so many|too many|full of|lined with|packed with|crowded with|filled with|a throng of|tens of|a long line of|a long queue of|a long row of|littered with|swarming with",
+    ),
 ];
 
 /// Colours; they name no geometry.
@@ -167,7 +332,11 @@ pub const STATES: &[(ObjectState, bool, &str)] = &[
         false,
         "parked|parking|parked up|abandoned|double parked|broken down|stalled|left standing|parked illegally|illegally parked|badly parked|disabled|crashed|unoccupied|neatly parked",
     ),
-    (ObjectState::Parked, true, "parks|is parked|are parked|sits parked|stands parked|stand parked|park"),
+    (
+        ObjectState::Parked,
+        true,
+        "parks|is parked|are parked|sits parked|stands parked|stand parked|park",
+    ),
     (
         ObjectState::Waiting,
         false,
@@ -200,7 +369,10 @@ pub const SIZES: &[(SizeHint, &str)] = &[
         SizeHint::Large,
         "big|large|huge|long|tall|giant|massive|enormous|heavy|bulky|oversized|wide|full size|full sized|extra long|gigantic|heavy duty|stretch|high|bigger|larger",
     ),
-    (SizeHint::Small, "small|little|tiny|short|mini|miniature|compact sized|petite|smaller|low"),
+    (
+        SizeHint::Small,
+        "small|little|tiny|short|mini|miniature|compact sized|petite|smaller|low",
+    ),
 ];
 
 /// Attributes that are kept in words.
