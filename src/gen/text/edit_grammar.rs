@@ -185,7 +185,7 @@ pub fn commands(text: &str) -> Vec<Command> {
             && matches!(all[i].text.as_str(), "stop" | "halt" | "park" | "start")
             && matches!(
                 all.get(i + 1).map(|t| t.text.as_str()),
-                Some("the" | "all" | "every")
+                Some("the" | "all" | "every" | "raining" | "snowing")
             );
         if stop {
             starts.push((i, 1, Some(Verb::Make)));
@@ -334,7 +334,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (verb == Verb::Keep && to.words == "to"
+                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to"
                     || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {

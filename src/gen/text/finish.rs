@@ -201,6 +201,16 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         }
     }
     reading.phrases.sort_by_key(|p| (p.span.start, p.span.end));
+    let anchors = foreground.iter().flat_map(|o| &o.relations).map(|r| r.anchor);
+    for anchor in anchors {
+        match anchor {
+            Anchor::Crossing => reading.description.road.crossing = true,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk) => {
+                reading.description.road.sidewalk |= !reading.description.road.no_sidewalk;
+            }
+            _ => {}
+        }
+    }
     reading.description.foreground = foreground;
     reading.description.summarise();
 }

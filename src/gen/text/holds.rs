@@ -148,8 +148,12 @@ pub fn holds(
                 R::InFrontOf => fwd > half.x && lat.abs() <= (0.6 * fwd).max(2.0),
                 R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
                 // Of the ego vehicle it means the whole side of the street.
-                R::LeftOf => lat > half.y + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0)),
-                R::RightOf => -lat > half.y + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0)),
+                R::LeftOf => {
+                    lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0))
+                }
+                R::RightOf => {
+                    -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0))
+                }
                 R::Near if distance_m.is_some() => true,
                 R::Near => gap_m(from, b) <= 5.5,
                 R::NextTo => gap_m(from, b) <= 3.2,

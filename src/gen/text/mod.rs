@@ -20,3 +20,6 @@ mod words;
 
 pub use description::{Description, Reading};
 pub use parse::read;
+
+#[cfg(test)]
+mod tests;

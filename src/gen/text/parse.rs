@@ -251,7 +251,12 @@ impl<'a> Parser<'a> {
                 if self.try_distance(v, span) {
                     return false;
                 }
-                if matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true)))
+                let back = if self.item(self.at.wrapping_sub(1)).is_some_and(|i| i.words == ":") {
+                    2
+                } else {
+                    1
+                };
+                if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(_, true)))
                     && !self.noun_ahead(self.at + 1)
                     && (1.0..1000.0).contains(&v)
                     && let Some(&i) = self.last.last()
@@ -357,6 +362,15 @@ impl<'a> Parser<'a> {
                 self.pre.cover(span);
                 return true;
             }
+            // "deserted except for a bicycle"
+            Sense::Not
+                if item.words.starts_with("except")
+                    && (self.d().density == Some(Density::Empty) || !self.d().absent.is_empty()) =>
+            {
+                self.denied = false;
+                self.not_goes_on = false;
+                return true;
+            }
             Sense::Not => {
                 self.pre.not = true;
                 self.pre.cover(span);
@@ -413,6 +427,11 @@ impl<'a> Parser<'a> {
                     }
                 }
             }
+            Sense::Noun(_, false) if item.words.is_ascii() && self.noun_next() => {
+                // "tanker lorry", "bus driver": the last noun says what it is.
+                self.pre.cover(span);
+                self.pre.attributes.push(item.words.clone());
+            }
             Sense::Noun(noun, plural) => {
                 let word = item.read_as.unwrap_or(&item.words).to_string();
                 self.noun(noun, &word, plural, span);
@@ -433,7 +452,18 @@ impl<'a> Parser<'a> {
                     return false;
                 }
                 let of = self.item(self.at + 1).is_some_and(|n| n.words == "of");
-                if (of || self.takes_object(item)) && self.anchor_ahead(self.at + 1) {
+                // "on the left a bus, in front a cone and behind a person"
+                let listed = self.fresh
+                    && self.fronted.last().is_some_and(|f| f.anchor == Anchor::Ego)
+                    && matches!(
+                        self.sense(self.at + 1),
+                        Some(Sense::Article(false) | Sense::Count(_))
+                    )
+                    && self.noun_ahead(self.at + 1);
+                if listed {
+                    self.begin(Prep::Rels(kinds.to_vec()), span);
+                    self.anchor(Anchor::Ego, span);
+                } else if (of || self.takes_object(item)) && self.anchor_ahead(self.at + 1) {
                     self.begin(Prep::Rels(kinds.to_vec()), span);
                 } else {
                     self.begin(Prep::Rels(kinds.to_vec()), span);
@@ -457,6 +487,7 @@ impl<'a> Parser<'a> {
                 self.reversed = Some((kind, span, subjects, topic));
             }
             Sense::Fixed(kind, anchor) => {
+                self.reading.description.road.crossing |= anchor == Anchor::Crossing;
                 self.begin(Prep::Rels(vec![kind]), span);
                 self.anchor(anchor, span);
             }
@@ -636,6 +667,12 @@ impl<'a> Parser<'a> {
             }
         }
         false
+    }
+
+    fn noun_next(&self) -> bool {
+        self.item(self.at + 1)
+            .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+            && !self.edits
     }
 
     fn history_last(&self) -> Option<&usize> {
@@ -1140,6 +1177,9 @@ impl<'a> Parser<'a> {
             };
             apply(&mut mention.spec, &frag);
         }
+        if matches!(word, "everything" | "anything") {
+            mention.pick = mention.pick.or(Some(Pick::All));
+        }
         let index = self.coreferent(&mention).unwrap_or_else(|| {
             self.mentions.push(mention.clone());
             self.mentions.len() - 1
@@ -1423,6 +1463,9 @@ impl<'a> Parser<'a> {
             match antecedent {
                 Some(i) => self.anchor(Anchor::Object(i), item.span),
                 None if item.words == "that" => return true,
+                None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
+                    self.anchor(Anchor::Ego, item.span)
+                }
                 None => {
                     let span = self.pending.take().map_or(item.span, |p| p.span.to(item.span));
                     self.unread(span, Some("what it points to was not named".into()));

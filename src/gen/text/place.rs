@@ -313,10 +313,21 @@ impl Placer<'_> {
         // Several in one lane: a place that breaks what was said is none.
         let broken = |b: &SceneBox| stated.iter().filter(|(e, _)| !self.edge_holds(e, b)).count();
         match best {
-            Some((_, b)) if broken(&b) > 0 && !siblings.is_empty() => None,
+            // (where none at all holds, a wrong place is better than none, and is reported)
+            Some((_, b)) if broken(&b) > 0 && self.a_twin_holds(&siblings, o.class, &stated) => None,
             Some((_, b)) => Some(b),
             None => None,
         }
+    }
+
+    fn a_twin_holds(&self, siblings: &[DVec2], class: Class, stated: &[(Edge, Option<Target>)]) -> bool {
+        let twins = self
+            .placed
+            .values()
+            .filter(|b| b.class == class && siblings.contains(&b.center_m.truncate()));
+        twins
+            .into_iter()
+            .any(|b| stated.iter().all(|(e, _)| self.edge_holds(e, b)))
     }
 
     /// Where boxes that the same was said of stand.

@@ -1,6 +1,6 @@
 //! Which road a description gets: a template and the seed whose variation has what is asked for.
 
-use super::description::{Description, Environment, Road};
+use super::description::{Anchor, Description, Environment, Road};
 use super::lanes::LaneMap;
 use super::to_graph::roles;
 use crate::generation::world::draw::hash;
@@ -157,6 +157,14 @@ fn judge(
     // Many objects need room.
     wishes += usize::from(nodes > 10 && role(LaneRole::Left) + role(LaneRole::Right) < 8);
     let strip = layout.count(BevLayer::CarparkArea);
+    // Right of the ego vehicle there must be room for what drives or parks there.
+    let right = d.foreground.iter().any(|o| {
+        o.class != crate::scene::Class::Pedestrian
+            && o.relations
+                .iter()
+                .any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
+    });
+    wishes += usize::from(right && role(LaneRole::Right) < 8 && strip < 300);
     wishes += usize::from(parked && strip < 300);
     (missing, wishes)
 }

@@ -352,7 +352,13 @@ impl Gather<'_, '_> {
                 let crosses = matches!(l.role, LaneRole::Cross);
                 let old = self.base.cost;
                 self.base.cost += if crosses { 0.7 } else { 0.0 };
+                let (still, moves) = (self.base.still, self.base.moves);
+                if off > 2.0 {
+                    // Off the lane nothing drives.
+                    (self.base.still, self.base.moves) = (true, false);
+                }
                 self.push(l.p + out * off, l.dir.to_angle());
+                (self.base.still, self.base.moves) = (still, moves);
                 self.base.cost = old;
             }
         }

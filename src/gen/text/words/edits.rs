@@ -27,7 +27,7 @@ pub enum Verb {
 pub const VERBS: &[(Verb, &str)] = &[
     (
         Verb::Remove,
-        "remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract",
+        "take|remove|delete|erase|get rid of|take out|take away|eliminate|drop out|cut out|kill|discard|dispose of|wipe out|wipe|scrap|lose|hide|rub out|throw out|strike|cancel|unplace|subtract",
     ),
     (
         Verb::Add,

@@ -128,7 +128,7 @@ pub const NOUNS: &[Noun] = &[
         "pedestrian|person/people/persons|human|human being|walker|passer by/passers by|passerby/passersby|bystander|man/men|woman/women|guy|lady|\
          gentleman/gentlemen|male|female|adult|worker|construction worker|road worker|workman/workmen|workmen|builder|labourer|laborer|police officer|\
          policeman/policemen|policewoman/policewomen|cop|officer|traffic warden|traffic officer|crossing guard|lollipop lady|lollipop man|\
-         commuter|shopper|tourist|student|teenager|teen|youth|grandma|grandmother|grandpa|grandfather|old man/old men|old woman/old women|old lady|\
+         commuter|shopper|tourist|student|teenager|teen|youth|granny|gran|grandad|granddad|nanny|baby|teacher|nurse|doctor|vendor|street vendor|cleaner|gardener|engineer|soldier|protester|demonstrator|spectator|onlooker|visitor|customer|friend|lad|bloke|chap|dude|elder|athlete|football fan|inspector|security guard|waiter|busker|musician|photographer|salesman/salesmen|cameraman/cameramen|grandma|grandmother|grandpa|grandfather|old man/old men|old woman/old women|old lady|\
          elderly person/elderly people|elderly man/elderly men|elderly woman/elderly women|senior|senior citizen|pensioner|mother|father|mum|mom|dad|\
          parent|businessman/businessmen|businesswoman/businesswomen|businessperson|office worker|postman/postmen|mailman/mailmen|mail carrier|\
          delivery man/delivery men|delivery person|courier|dog walker|hiker|stroller|jaywalker|someone|somebody|figure|foot traffic|folk|folks|individual|\

@@ -136,7 +136,7 @@ pub const DENSITIES: &[(Density, &str)] = &[
     ),
     (
         Density::Light,
-        "light traffic|little traffic|sparse traffic|low traffic|quiet|calm|moderate traffic|some traffic|a bit of traffic|few cars about|sparse|peaceful|normal traffic|medium traffic|sleepy|sparsely populated|average traffic",
+        "light traffic|hardly any traffic|barely any traffic|not much traffic|very little traffic|next to no traffic|almost no traffic|little traffic|sparse traffic|low traffic|quiet|calm|moderate traffic|some traffic|a bit of traffic|few cars about|sparse|peaceful|normal traffic|medium traffic|sleepy|sparsely populated|average traffic",
     ),
     (
         Density::Empty,
@@ -359,7 +359,7 @@ pub const STATES: &[(ObjectState, bool, &str)] = &[
         ObjectState::Moving,
         true,
         "moves|move along|drives|drive|travels|travel|passes|pass|rides|ride|walks|walk|runs|run|jogs|jog|cycles past|strolls|stroll|cruises|cruise|overtakes|overtake|merges|turns left|turns right|turn left|turn right|brakes|brake|goes|speeds|speed past|\
-         races|race past|rolls|heads|is moving|are moving|is driving|are driving|is walking|are walking|is running|are running|is riding|are riding|pulls out|pull out|comes|reverses|accelerates|hurries|wanders|wander|is turning|are turning|enters|enter|leaves|exits",
+         races|race past|rolls|heads|crawls|crawls along|trundles|is moving|are moving|is driving|are driving|is walking|are walking|is running|are running|is riding|are riding|pulls out|pull out|comes|reverses|accelerates|hurries|wanders|wander|is turning|are turning|enters|enter|leaves|exits",
     ),
 ];
 

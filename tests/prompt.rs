@@ -1,0 +1,110 @@
+//! `sceneloom prompt` as a user runs it: scenes and edits from words, questions, bad input.
+
+use std::process::{Command, Output};
+
+fn sceneloom(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .args(args)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output()
+        .expect("the built program runs")
+}
+
+fn report(output: &Output) -> serde_json::Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(&text)
+        .unwrap_or_else(|e| panic!("{e}: {text}{}", String::from_utf8_lossy(&output.stderr)))
+}
+
+#[test]
+fn scenes_and_edits_from_words() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let (a, b, c) = (path("a.loom"), path("b.loom"), path("c.loom"));
+    let text = "an intersection at night in the rain, five cones block my lane, three parked cars, a glorp";
+    let made = sceneloom(&["prompt", text, "--seed", "3", "--json", "-o", &a]);
+    assert_eq!(
+        made.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+    let made = report(&made);
+    for key in ["description", "graph", "phrases", "not_understood"] {
+        assert!(!made[key].is_null(), "{key}: {made}");
+    }
+    assert_eq!(made["boxes"], 8);
+    assert_eq!(made["description"]["weather"], "rain");
+    assert_eq!(made["not_understood"][0]["text"], "glorp");
+    assert!(made["occupied_voxels"].as_u64() > Some(30_000));
+    sceneloom(&["prompt", text, "--seed", "3", "--json", "-o", &b]);
+    assert_eq!(
+        std::fs::read(&a).expect("written"),
+        std::fs::read(&b).expect("written")
+    );
+
+    let asked = sceneloom(&[
+        "prompt",
+        "remove the parked car",
+        "--base",
+        &a,
+        "--json",
+        "-o",
+        &c,
+    ]);
+    assert_eq!(asked.status.code(), Some(1));
+    assert!(!std::path::Path::new(&c).exists());
+    let asked = report(&asked);
+    let candidates = asked["questions"][0]["candidates"].as_array().expect("a list");
+    assert_eq!(candidates.len(), 3);
+    let one = format!("remove #{}", candidates[0]["id"]);
+    let edited = sceneloom(&["prompt", &one, "--base", &a, "--json", "-o", &c]);
+    assert_eq!(
+        edited.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&edited.stderr)
+    );
+    assert_eq!(report(&edited)["boxes"], 7);
+}
+
+#[test]
+fn what_cannot_be_done_is_said_in_one_line() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let out = dir.path().join("x.loom").display().to_string();
+    for (args, code, needle) in [
+        (vec!["prompt", "", "-o", &out], 2, "empty"),
+        (vec!["prompt", "夜晚", "-o", &out], 2, "English"),
+        (
+            vec![
+                "prompt",
+                "a car",
+                "--endpoint",
+                "https://x",
+                "--model",
+                "m",
+                "-o",
+                &out,
+            ],
+            2,
+            "TLS",
+        ),
+        (
+            vec!["prompt", "40 buses in my lane", "-o", &out],
+            1,
+            "of 40 placed",
+        ),
+        (
+            vec!["prompt", "a car", "--base", "/nowhere.loom", "-o", &out],
+            2,
+            "nowhere",
+        ),
+    ] {
+        let output = sceneloom(&args);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {error}");
+        assert_eq!(error.trim_end().lines().count(), 1, "{args:?}: {error}");
+        assert!(error.contains(needle), "{args:?}: {needle:?} is not in {error}");
+    }
+}
