@@ -448,13 +448,13 @@ fn lidar_agrees_with_python() {
         .field_of(keys, golden.bytes("classes", Dtype::U8))
         .expect("a finite field");
     let rows = field.hidden.iter().zip(&field.planes);
-    let geometry = rows.flat_map(|(hidden, plane)| hidden.iter().chain(plane).copied());
+    let geometry = rows.flat_map(|(hidden, plane)| hidden.0.iter().chain(plane).copied());
     assert_close(
         "geometry",
         geometry.step_by(97),
         &golden.f32("every_97th_geometry"),
     );
-    let appearance = field.appearance.iter().flatten().copied();
+    let appearance = field.appearance.iter().flat_map(|line| line.0);
     assert_close(
         "appearance",
         appearance.step_by(97),

@@ -116,7 +116,7 @@ pub const ACTIONS: &[ActionDef] = &[
         Some(Command::Tool(Tool::Select))
     }),
     action(Tools, "brush_tool", "Brush", "B", |_| {
-        Some(Command::Tool(Tool::Brush))
+        Some(Command::Tools(ToolCommand::Shape(PaintShape::Stroke)))
     }),
     action(Tools, "voxel_brush", "Voxel brush (over the 3D view)", "B", |s| {
         let tool = if s.tool == Tool::Voxel {

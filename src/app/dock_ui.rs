@@ -101,9 +101,9 @@ impl Panes<'_> {
     }
 
     fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: Pane) {
-        let text = egui::RichText::new(format!("{}  ⏷", title(pane, self.scene))).color(theme::text());
+        let text = egui::RichText::new(format!("{}     ", title(pane, self.scene))).color(theme::text());
         let button = egui::Button::new(text).fill(egui::Color32::TRANSPARENT);
-        egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
+        let (opened, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_min_width(190.0);
             let mut act = |ui: &mut Ui, name: &str, action: DockAction| {
                 if ui.button(name).clicked() {
@@ -129,6 +129,11 @@ impl Panes<'_> {
                 }
             }
         });
+        // The fonts have no small triangle.
+        let tip = opened.rect.right_center() + vec2(-13.0, 2.5);
+        let points = vec![tip, tip + vec2(-4.0, -5.0), tip + vec2(4.0, -5.0)];
+        let shape = egui::Shape::convex_polygon(points, theme::text_weak(), egui::Stroke::NONE);
+        ui.painter().add(shape);
         if self.maximized && icons::button(ui, Icon::Close, "Show all panes", "", false, true).clicked() {
             self.actions.push(DockAction::Maximize(tile));
         }

@@ -94,6 +94,7 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tools::{PaintShape, ToolCommand};
     use crate::scene::BoxId;
     use glam::DVec3;
 
@@ -125,7 +126,7 @@ mod tests {
         assert!(of(Key::A, Modifiers::NONE, &mut state, true).is_empty());
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
-            [Command::Tool(Tool::Brush)]
+            [Command::Tools(ToolCommand::Shape(PaintShape::Stroke))]
         );
         state.hovered_pane = Some(Pane::View3d);
         assert_eq!(

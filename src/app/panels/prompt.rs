@@ -97,7 +97,10 @@ impl PromptPane {
             let button = egui::Button::new("New scene");
             let hint = "Ctrl+Enter: road, objects and style are made from the words";
             make |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        });
+        ui.horizontal(|ui| {
+            let some = !self.prompt.trim().is_empty();
+            ui.scope(|ui| {
                 let dice = ui
                     .button("Re-roll")
                     .on_hover_text("Another scene of the same words");
