@@ -4,6 +4,7 @@ pub mod boxes;
 pub mod classes;
 pub mod density;
 pub mod draft;
+pub mod graph;
 pub mod grid;
 pub mod infer;
 pub mod inferred;
