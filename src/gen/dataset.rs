@@ -1,5 +1,6 @@
 //! Training and evaluation data from procedural worlds, as safetensors shards.
 
+pub mod layout;
 pub mod lidar;
 
 use std::io::Read;

@@ -9,6 +9,7 @@ pub mod metrics;
 pub mod model;
 pub mod params;
 pub mod pipeline;
+pub mod placement;
 pub mod region;
 pub mod replay;
 pub mod rng;

@@ -9,6 +9,7 @@ use super::{Common, Outcome, output};
 use crate::app::open;
 use crate::app::roads::Roads;
 use crate::formats::occ3d;
+use crate::generation::dataset::layout::layout_frame;
 use crate::generation::dataset::lidar::lidar_frame;
 use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
 
@@ -16,7 +17,7 @@ use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
 #[derive(clap::Args)]
 pub struct Dataset {
     /// What the frames hold.
-    #[arg(value_parser = ["occupancy", "lidar"])]
+    #[arg(value_parser = ["occupancy", "lidar", "layout", "text"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -42,9 +43,9 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = std::time::Instant::now();
-        if self.kind == "lidar" && self.from.is_some() {
+        if self.kind != "occupancy" && self.from.is_some() {
             (|| -> anyhow::Result<()> {
-                bail!("--from gives labels, kind lidar needs surfaces: expected procedural worlds")
+                bail!("--from gives labels, kind {} needs more: expected procedural worlds", self.kind)
             })()?;
         }
         let files = match &self.from {
@@ -77,11 +78,16 @@ impl Dataset {
             progress.at(&self.kind, done, frames);
             true
         };
-        let report = if self.kind == "lidar" {
-            let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
-            dataset::write(&self.output, frames, make, step)
-        } else {
-            dataset::write(&self.output, frames, make, step)
+        let report = match self.kind.as_str() {
+            "lidar" => {
+                let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "layout" => {
+                let make = |i: usize| anyhow::Ok(layout_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            _ => dataset::write(&self.output, frames, make, step),
         }
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();

@@ -7,6 +7,7 @@ pub mod encoder;
 mod golden;
 pub mod kernels;
 pub mod layers;
+pub mod layout;
 pub mod lidar;
 pub mod map;
 pub mod occ_dit;

@@ -1,0 +1,3 @@
+//! The layout network.
+
+pub mod input;
