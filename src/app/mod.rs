@@ -13,6 +13,7 @@ mod file_dialogs;
 mod icons;
 mod keys;
 pub mod live;
+pub mod memory;
 pub mod open;
 pub mod panels;
 pub mod picture;

@@ -2,6 +2,7 @@
 
 pub mod layout;
 pub mod lidar;
+pub mod text;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

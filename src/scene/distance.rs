@@ -73,7 +73,10 @@ pub fn signed_distance_m(inside: impl Fn(usize) -> bool) -> Vec<f32> {
     let ny = GridSpec::NY;
     let distance = |from: usize, to: u32| {
         let (dx, dy) = (from / ny, from % ny);
-        let (dx, dy) = (dx as f32 - (to as usize / ny) as f32, dy as f32 - (to as usize % ny) as f32);
+        let (dx, dy) = (
+            dx as f32 - (to as usize / ny) as f32,
+            dy as f32 - (to as usize % ny) as f32,
+        );
         // Between a cell of the set and one beside it runs the border, half a cell from both centres.
         ((dx * dx + dy * dy).sqrt() - 0.5) * GridSpec::VOXEL_M as f32
     };

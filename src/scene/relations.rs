@@ -154,8 +154,17 @@ impl Placed<'_> {
                     RelationKind::FarFrom => distance >= FAR_M,
                     RelationKind::On => on,
                     RelationKind::ParkedOn => on && standing,
-                    RelationKind::Blocking => standing && from.footprint().iter().chain([&p]).any(|c| self.area(anchor, *c).0 <= 0.0),
-                    RelationKind::Crossing => distance <= 1.0 && (self.crosswise(from) || from.class == Class::Pedestrian),
+                    RelationKind::Blocking => {
+                        standing
+                            && from
+                                .footprint()
+                                .iter()
+                                .chain([&p])
+                                .any(|c| self.area(anchor, *c).0 <= 0.0)
+                    }
+                    RelationKind::Crossing => {
+                        distance <= 1.0 && (self.crosswise(from) || from.class == Class::Pedestrian)
+                    }
                     RelationKind::WaitingAt => {
                         let before = heading(from).dot(center - p) > 0.0;
                         let on_road = self.road.has(BevLayer::DrivableArea, p);
@@ -201,7 +210,9 @@ impl Placed<'_> {
             RelationKind::NextTo => gap() <= NEXT_M,
             RelationKind::FarFrom => gap() >= FAR_M,
             RelationKind::On => to.id == ego_box().id && self.road.in_role(LaneRole::Ego, p),
-            RelationKind::ParkedOn => standing && to.id == ego_box().id && self.road.in_role(LaneRole::Ego, p),
+            RelationKind::ParkedOn => {
+                standing && to.id == ego_box().id && self.road.in_role(LaneRole::Ego, p)
+            }
             RelationKind::Across => {
                 let side = |p| self.road.along_ego_lane(p).y > self.road.middle_m;
                 side(p) != side(at)
@@ -217,9 +228,7 @@ impl Placed<'_> {
             }
             RelationKind::Facing => toward() > 0.707,
             RelationKind::FacingAway => toward() < -0.707,
-            RelationKind::Following => {
-                fwd < 0.0 && lat.abs() <= 2.2 && gap() <= AHEAD_M && cosine() > 0.866
-            }
+            RelationKind::Following => fwd < 0.0 && lat.abs() <= 2.2 && gap() <= AHEAD_M && cosine() > 0.866,
             RelationKind::Crossing => {
                 let ahead = fwd > half.x && fwd <= AHEAD_M;
                 let angle = heading(from).dot(axis).abs() < 0.766;
@@ -233,7 +242,13 @@ impl Placed<'_> {
         }
     }
 
-    fn to_lane(&self, relation: RelationKind, from: &SceneBox, role: LaneRole, polyline: Option<u32>) -> bool {
+    fn to_lane(
+        &self,
+        relation: RelationKind,
+        from: &SceneBox,
+        role: LaneRole,
+        polyline: Option<u32>,
+    ) -> bool {
         let p = from.center_m.truncate();
         let standing = from.velocity_mps.length() <= STANDING_MPS;
         let lanes = || self.lanes(role, polyline);
@@ -245,7 +260,11 @@ impl Placed<'_> {
             Some(_) => nearest().is_some_and(|l| l.distance_m <= HALF_LANE_M),
             None => self.road.in_role(role, p),
         };
-        let direction = || nearest().or_else(|| self.road.nearest_lane(p)).map(|l| l.direction);
+        let direction = || {
+            nearest()
+                .or_else(|| self.road.nearest_lane(p))
+                .map(|l| l.direction)
+        };
         let cosine = || direction().map_or(f64::NAN, |d| d.dot(heading(from)));
         let distance = || match (is_strip(role), nearest()) {
             (false, Some(lane)) => (lane.distance_m - HALF_LANE_M).max(0.0),
@@ -269,8 +288,12 @@ impl Placed<'_> {
             RelationKind::WaitingAt => standing && distance() <= WAIT_M,
             RelationKind::SameDirection | RelationKind::Following => cosine() > 0.866,
             RelationKind::OppositeDirection => cosine() < -0.866,
-            RelationKind::Facing => nearest().is_some_and(|l| heading(from).dot((l.position_m - p).normalize_or_zero()) > 0.707),
-            RelationKind::FacingAway => nearest().is_some_and(|l| heading(from).dot((l.position_m - p).normalize_or_zero()) < -0.707),
+            RelationKind::Facing => {
+                nearest().is_some_and(|l| heading(from).dot((l.position_m - p).normalize_or_zero()) > 0.707)
+            }
+            RelationKind::FacingAway => {
+                nearest().is_some_and(|l| heading(from).dot((l.position_m - p).normalize_or_zero()) < -0.707)
+            }
             RelationKind::InFrontOf | RelationKind::Behind | RelationKind::Between => false,
         }
     }
@@ -278,14 +301,22 @@ impl Placed<'_> {
     fn lanes(&self, role: LaneRole, polyline: Option<u32>) -> impl Iterator<Item = usize> {
         self.road
             .lanes_of(role)
-            .chain(0..if polyline.is_some() { self.road.lanes.len() } else { 0 })
+            .chain(
+                0..if polyline.is_some() {
+                    self.road.lanes.len()
+                } else {
+                    0
+                },
+            )
             .filter(move |i| polyline.is_none_or(|line| self.road.lanes[*i].polyline == line))
     }
 
     fn strip_distance_m(&self, role: LaneRole, p: DVec2) -> f64 {
         match role {
             LaneRole::Carpark => self.road.from_area_m(1, p).max(0.0),
-            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk => self.road.from_area_m(2, p).max(0.0),
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk => {
+                self.road.from_area_m(2, p).max(0.0)
+            }
             _ => self.road.from_road_m(p).abs(),
         }
     }
@@ -305,7 +336,11 @@ impl Placed<'_> {
         };
         // The end of a lane is no side of it.
         covers(from, |c| near.direction.perp_dot(c - near.position_m), 1.0)
-            && near.direction.dot(from.center_m.truncate() - near.position_m).abs() < 1.0 + from.size_m.x / 2.0
+            && near
+                .direction
+                .dot(from.center_m.truncate() - near.position_m)
+                .abs()
+                < 1.0 + from.size_m.x / 2.0
     }
 
     /// The distance that `distance_m` of a statement speaks of.
@@ -315,13 +350,17 @@ impl Placed<'_> {
             Anchor::Thing(to, at) => {
                 let (axis, d) = (course(to), p - *at);
                 match relation {
-                    RelationKind::InFrontOf | RelationKind::Behind | RelationKind::Following => axis.dot(d).abs(),
+                    RelationKind::InFrontOf | RelationKind::Behind | RelationKind::Following => {
+                        axis.dot(d).abs()
+                    }
                     RelationKind::LeftOf | RelationKind::RightOf => axis.perp_dot(d).abs(),
                     _ => d.length(),
                 }
             }
             Anchor::Lane(role, polyline) => {
-                let hits = self.lanes(*role, *polyline).filter_map(|i| self.road.on_lane(i, p));
+                let hits = self
+                    .lanes(*role, *polyline)
+                    .filter_map(|i| self.road.on_lane(i, p));
                 let nearest = hits.map(|l| l.distance_m).fold(f64::INFINITY, f64::min);
                 if is_strip(*role) {
                     self.strip_distance_m(*role, p)
@@ -339,7 +378,10 @@ pub fn crossing_of(road: &RoadMap, polyline: Option<u32>) -> Option<&CrossingAre
     match polyline {
         Some(line) => road.crossings.iter().find(|c| c.polyline == line),
         None => {
-            let ahead = road.crossings.iter().find(|c| road.along_ego_lane(c.center_m).x > 0.0);
+            let ahead = road
+                .crossings
+                .iter()
+                .find(|c| road.along_ego_lane(c.center_m).x > 0.0);
             ahead.or(road.crossings.first())
         }
     }
@@ -348,7 +390,12 @@ pub fn crossing_of(road: &RoadMap, polyline: Option<u32>) -> Option<&CrossingAre
 fn is_strip(role: LaneRole) -> bool {
     !matches!(
         role,
-        LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming | LaneRole::Cross | LaneRole::Road
+        LaneRole::Ego
+            | LaneRole::Left
+            | LaneRole::Right
+            | LaneRole::Oncoming
+            | LaneRole::Cross
+            | LaneRole::Road
     )
 }
 
@@ -405,7 +452,11 @@ pub fn overlap_m(a: &SceneBox, b: &SceneBox) -> f64 {
     let axes = [a.heading(), a.heading().perp(), b.heading(), b.heading().perp()];
     let depths = axes.map(|axis| reach(a, axis) + reach(b, axis) - d.dot(axis).abs());
     let least = depths.into_iter().fold(f64::INFINITY, f64::min);
-    if depths.iter().all(|v| v.is_finite()) { least } else { f64::NEG_INFINITY }
+    if depths.iter().all(|v| v.is_finite()) {
+        least
+    } else {
+        f64::NEG_INFINITY
+    }
 }
 
 /// True if the point lies in the crossing.

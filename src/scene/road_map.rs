@@ -68,8 +68,8 @@ pub struct RoadMap {
     pub middle_m: f64,
     cells: Vec<u32>,
     distance_m: [Vec<f32>; AREAS.len()],
-    nearest: Option<Vec<u32>>,    // cell with the nearest lane sample
-    sample_of: Vec<(u32, u32)>,   // lane and point of a cell's sample
+    nearest: Option<Vec<u32>>,  // cell with the nearest lane sample
+    sample_of: Vec<(u32, u32)>, // lane and point of a cell's sample
 }
 
 /// Layers whose borders are measured.
@@ -159,7 +159,10 @@ impl RoadMap {
         let cell = self.nearest.as_ref()?[Self::column(p)?];
         let (lane, point) = self.sample_of[cell as usize];
         let points = &self.lanes[lane as usize].points_m;
-        let (from, to) = ((point as usize).saturating_sub(2), (point as usize + 3).min(points.len()));
+        let (from, to) = (
+            (point as usize).saturating_sub(2),
+            (point as usize + 3).min(points.len()),
+        );
         project(&points[from..to], p).map(|hit| LanePoint {
             lane: lane as usize,
             along_m: hit.along_m + from as f64 * STEP_M,
@@ -212,9 +215,10 @@ impl RoadMap {
             LaneRole::Roadside => roadside(),
             LaneRole::LeftRoadside => roadside() && left(),
             LaneRole::RightRoadside => roadside() && !left(),
-            lane => self
-                .lanes_of(lane)
-                .any(|i| self.on_lane(i, p).is_some_and(|hit| hit.distance_m <= HALF_LANE_M)),
+            lane => self.lanes_of(lane).any(|i| {
+                self.on_lane(i, p)
+                    .is_some_and(|hit| hit.distance_m <= HALF_LANE_M)
+            }),
         }
     }
 }
@@ -414,7 +418,11 @@ fn assign_roles(lanes: &mut [Lane], ego: Option<usize>, axis: &[DVec2]) -> f64 {
             }
         }
     }
-    let last_left = left.iter().map(|l| l.0).filter(|o| *o < BESIDE_M).fold(0.0, f64::max);
+    let last_left = left
+        .iter()
+        .map(|l| l.0)
+        .filter(|o| *o < BESIDE_M)
+        .fold(0.0, f64::max);
     let nearest_oncoming = oncoming.iter().copied().filter(|o| *o > last_left);
     match nearest_oncoming.fold(f64::INFINITY, f64::min) {
         first if first.is_finite() => (last_left + first) / 2.0,
@@ -449,7 +457,10 @@ fn junctions(lanes: &[Lane]) -> Vec<DVec2> {
             let (s, t) = ((*c - *a).perp_dot(v) / det, (*c - *a).perp_dot(u) / det);
             if (0.0..1.0).contains(&s) && (0.0..1.0).contains(&t) {
                 let p = *a + u * s;
-                match places.iter_mut().find(|(sum, n)| (*sum / *n).distance(p) < APART_M) {
+                match places
+                    .iter_mut()
+                    .find(|(sum, n)| (*sum / *n).distance(p) < APART_M)
+                {
                     Some((sum, n)) => (*sum, *n) = (*sum + p, *n + 1.0),
                     None => places.push((p, 1.0)),
                 }

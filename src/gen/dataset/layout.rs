@@ -3,7 +3,9 @@
 use safetensors::tensor::Dtype;
 
 use super::Shard;
-use crate::generation::model::layout::input::{LayoutInput, MAP_CHANNELS, MAP_SIDE, VALUES, input_of, map_raster};
+use crate::generation::model::layout::input::{
+    LayoutInput, MAP_CHANNELS, MAP_SIDE, VALUES, input_of, map_raster,
+};
 use crate::generation::placement::graph_of::graph_of;
 use crate::generation::world::draw::{Draw, hash};
 use crate::generation::world::{template, traffic};
@@ -29,7 +31,11 @@ pub fn street(
     seed: u64,
     index: u64,
     roads: impl Fn(u64) -> Option<BevLayout>,
-) -> (BevLayout, std::collections::BTreeMap<BoxId, SceneBox>, Option<&'static str>) {
+) -> (
+    BevLayout,
+    std::collections::BTreeMap<BoxId, SceneBox>,
+    Option<&'static str>,
+) {
     let seed = hash(hash(seed) ^ index);
     let mut draw = Draw::new(seed, "street");
     let name = template::TEMPLATES[draw.below(template::TEMPLATES.len())];
@@ -78,7 +84,11 @@ impl Shard for LayoutFrame {
                 }
             }
             for i in 0..EDGES {
-                let row = frame.input.edges.get(i).filter(|e| usize::from(e.from.max(e.to)) < NODES);
+                let row = frame
+                    .input
+                    .edges
+                    .get(i)
+                    .filter(|e| usize::from(e.from.max(e.to)) < NODES);
                 let row = row.map_or([-1; 4], |e| {
                     let distance = e.distance_m.map_or(-1, |d| (d * 10.0).round() as i16);
                     [e.from as i16, e.to as i16, i16::from(e.relation), distance]

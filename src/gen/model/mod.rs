@@ -13,6 +13,7 @@ pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
 pub mod panels;
+pub mod text;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use crate::generation::world::draw::Draw;
-use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint};
+use crate::scene::graph::{
+    Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
+};
 use crate::scene::relations::{Placed, STANDING_MPS};
 use crate::scene::road_map::RoadMap;
 use crate::scene::{BoxId, Class, SceneBox};
@@ -30,7 +32,11 @@ const NEIGHBOURS: usize = 3;
 
 /// The graph of a scene, every node locked where it is, and which box each object node is. `seed` fixes which of the
 /// true statements are made.
-pub fn graph_of(road: &RoadMap, boxes: &BTreeMap<BoxId, SceneBox>, seed: u64) -> (SceneGraph, BTreeMap<u32, SceneBox>) {
+pub fn graph_of(
+    road: &RoadMap,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    seed: u64,
+) -> (SceneGraph, BTreeMap<u32, SceneBox>) {
     let mut draw = Draw::new(seed, "graph");
     let mut graph = SceneGraph::with_ego();
     add_road(&mut graph, road);
@@ -99,7 +105,9 @@ pub fn add_road(graph: &mut SceneGraph, road: &RoadMap) {
 /// The longest run of points within the grid.
 pub fn visible(points_m: &[DVec2]) -> Vec<DVec2> {
     let runs = points_m.split(|p| !(p.abs().max_element() <= 40.0));
-    runs.max_by_key(|run| run.len()).map(<[DVec2]>::to_vec).unwrap_or_default()
+    runs.max_by_key(|run| run.len())
+        .map(<[DVec2]>::to_vec)
+        .unwrap_or_default()
 }
 
 /// Moving, waiting in traffic or parked, judged by speed and place.
@@ -108,7 +116,9 @@ pub fn state_of(road: &RoadMap, b: &SceneBox) -> ObjectState {
     if b.velocity_mps.length() > STANDING_MPS {
         return ObjectState::Moving;
     }
-    let in_lane = road.nearest_lane(p).is_some_and(|l| l.distance_m < 1.2 && l.direction.dot(b.heading()).abs() > 0.9);
+    let in_lane = road
+        .nearest_lane(p)
+        .is_some_and(|l| l.distance_m < 1.2 && l.direction.dot(b.heading()).abs() > 0.9);
     if in_lane || b.class == Class::Pedestrian {
         ObjectState::Waiting
     } else {
@@ -130,14 +140,27 @@ fn size_of(b: &SceneBox) -> Option<SizeHint> {
 fn weight(relation: RelationKind) -> f64 {
     match relation {
         RelationKind::FarFrom | RelationKind::FacingAway | RelationKind::SameDirection => 0.1,
-        RelationKind::Facing | RelationKind::OppositeDirection | RelationKind::Near | RelationKind::Across => 0.3,
+        RelationKind::Facing
+        | RelationKind::OppositeDirection
+        | RelationKind::Near
+        | RelationKind::Across => 0.3,
         _ => 1.0,
     }
 }
 
-fn statements(graph: &SceneGraph, boxes: &BTreeMap<u32, SceneBox>, road: &RoadMap, draw: &mut Draw) -> Vec<Edge> {
+fn statements(
+    graph: &SceneGraph,
+    boxes: &BTreeMap<u32, SceneBox>,
+    road: &RoadMap,
+    draw: &mut Draw,
+) -> Vec<Edge> {
     let placed = Placed { graph, boxes, road };
-    let surroundings: Vec<u32> = graph.nodes.iter().filter(|n| !matches!(n.kind, NodeKind::Object(_))).map(|n| n.id).collect();
+    let surroundings: Vec<u32> = graph
+        .nodes
+        .iter()
+        .filter(|n| !matches!(n.kind, NodeKind::Object(_)))
+        .map(|n| n.id)
+        .collect();
     let mut edges = Vec::new();
     for (id, b) in boxes {
         let mut others: Vec<(f64, u32)> = boxes
@@ -157,7 +180,10 @@ fn statements(graph: &SceneGraph, boxes: &BTreeMap<u32, SceneBox>, road: &RoadMa
             }
         }
         if let [a, c, ..] = neighbours[..] {
-            let edge = Edge { and: Some(c), ..Edge::new(*id, RelationKind::Between, a) };
+            let edge = Edge {
+                and: Some(c),
+                ..Edge::new(*id, RelationKind::Between, a)
+            };
             if placed.satisfied(&edge) {
                 found.push((1.0, edge));
             }
@@ -187,7 +213,10 @@ fn statements(graph: &SceneGraph, boxes: &BTreeMap<u32, SceneBox>, road: &RoadMa
 /// The distance that the statement could name, m.
 fn measured(placed: &Placed<'_>, edge: &Edge) -> Option<f64> {
     let (from, (to, at)) = (placed.thing(edge.from)?.0, placed.thing(edge.to)?);
-    let (axis, d) = (crate::scene::relations::course(&to), from.center_m.truncate() - at);
+    let (axis, d) = (
+        crate::scene::relations::course(&to),
+        from.center_m.truncate() - at,
+    );
     Some(match edge.relation {
         RelationKind::LeftOf | RelationKind::RightOf => axis.perp_dot(d).abs(),
         _ => axis.dot(d).abs(),
@@ -212,7 +241,11 @@ mod tests {
             assert!(graph.nodes.len() <= 64);
             assert!(road.ego_lane.is_some(), "{name} {seed}");
             assert_eq!(graph, graph_of(&road, &boxes, seed).0);
-            let view = Placed { graph: &graph, boxes: &placed, road: &road };
+            let view = Placed {
+                graph: &graph,
+                boxes: &placed,
+                road: &road,
+            };
             for edge in &graph.edges {
                 assert!(view.satisfied(edge), "{name}: {edge:?}");
                 kinds.insert(edge.relation);

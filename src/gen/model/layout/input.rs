@@ -102,7 +102,9 @@ pub fn kind_of(kind: &NodeKind) -> u8 {
 /// Size that the logarithms of a kind's sizes are relative to, m.
 pub fn typical_size_m(kind: u8) -> DVec3 {
     const CROSSING: [f64; 3] = [3.2, 12.0, 0.1];
-    let class = usize::from(kind).checked_sub(2).and_then(|i| Class::OBJECTS.get(i));
+    let class = usize::from(kind)
+        .checked_sub(2)
+        .and_then(|i| Class::OBJECTS.get(i));
     DVec3::from_array(class.and_then(|c| c.typical_size_m()).unwrap_or(CROSSING))
 }
 
@@ -173,7 +175,12 @@ pub fn crossing_box(outline_m: &[DVec2]) -> Option<SceneBox> {
     let longest = (0..n).max_by(|a, b| side(*a).length().total_cmp(&side(*b).length()))?;
     let axis = side(longest).try_normalize()?;
     let center = outline_m.iter().sum::<DVec2>() / n as f64;
-    let reach = |d: DVec2| outline_m.iter().map(|p| d.dot(*p - center).abs()).fold(0.0, f64::max);
+    let reach = |d: DVec2| {
+        outline_m
+            .iter()
+            .map(|p| d.dot(*p - center).abs())
+            .fold(0.0, f64::max)
+    };
     let mut heading = -axis.perp();
     if heading.x < 0.0 || (heading.x == 0.0 && heading.y < 0.0) {
         heading = -heading;
@@ -267,8 +274,15 @@ pub fn map_raster(road: &RoadMap) -> Vec<u8> {
             out.push(step(road.from_area_m(area, inner), 20.0));
         }
         let lane = road.nearest_lane(inner);
-        let (to, direction) = lane.map_or((DVec2::splat(100.0), DVec2::ZERO), |l| (l.position_m - p, l.direction));
-        out.extend([step(to.x, 20.0), step(to.y, 20.0), step(direction.x, 127.0), step(direction.y, 127.0)]);
+        let (to, direction) = lane.map_or((DVec2::splat(100.0), DVec2::ZERO), |l| {
+            (l.position_m - p, l.direction)
+        });
+        out.extend([
+            step(to.x, 20.0),
+            step(to.y, 20.0),
+            step(direction.x, 127.0),
+            step(direction.y, 127.0),
+        ]);
     }
     out
 }
@@ -287,14 +301,19 @@ mod tests {
             yaw_rad: -2.5,
             velocity_mps: DVec2::ZERO,
         };
-        let node = kind_of(&NodeKind::Object(crate::scene::graph::ObjectNode::new(Class::Bus)));
+        let node = kind_of(&NodeKind::Object(crate::scene::graph::ObjectNode::new(
+            Class::Bus,
+        )));
         let values: Vec<f64> = box_values(node, &b).iter().map(|v| f64::from(*v)).collect();
         let back = box_of(node, Class::Bus, BoxId(3), &values);
         assert!((back.center_m - b.center_m).length() < 1e-5 && (back.size_m - b.size_m).length() < 1e-5);
         assert!((back.yaw_rad - b.yaw_rad).abs() < 1e-6);
         let bad = box_of(node, Class::Bus, BoxId(3), &[f64::NAN; VALUES]);
         assert_eq!(bad.problem(), None);
-        assert_eq!(box_of(node, Class::Bus, BoxId(3), &[1e300; VALUES]).problem(), None);
+        assert_eq!(
+            box_of(node, Class::Bus, BoxId(3), &[1e300; VALUES]).problem(),
+            None
+        );
     }
 
     #[test]
