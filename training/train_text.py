@@ -83,9 +83,9 @@ def main():
     run = Run(model, args, lr=3e-3, betas=(0.9, 0.98), weight_decay=0.02, ema=0.99, warmup=30)
     rng = np.random.default_rng(args.seed)
     while not run.done():
-        index = rng.choice(len(train.ids), 256, replace=False)
+        index = rng.choice(len(train.ids), 128, replace=False)
         loss = losses(model, train.ids[index], train.features[index], rng)
-        run.update(loss, 256)
+        run.update(loss, 128)
         if run.step % 50 == 0:
             print(f"step {run.step} {run.elapsed():.2f} min loss {loss.item():.3f}", flush=True)
     config = json.dumps({"width": WIDTH, "buckets": BUCKETS})

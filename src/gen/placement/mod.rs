@@ -2,7 +2,11 @@
 
 pub mod describe;
 pub mod diffuse;
+pub mod evaluate;
 pub mod facts;
 pub mod graph_of;
 pub mod memory;
 pub mod project;
+
+#[cfg(test)]
+mod tests;

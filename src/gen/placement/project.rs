@@ -66,6 +66,10 @@ struct Repair<'a> {
     road: &'a RoadMap,
     boxes: BTreeMap<u32, SceneBox>,
     locked: BTreeSet<u32>,
+    /// Statements that name a node.
+    about: BTreeMap<u32, Vec<Edge>>,
+    /// Faults that a search through all places could not mend: not searched again while nothing is worse.
+    exhausted: BTreeMap<u32, Fault>,
 }
 
 /// Repairs `boxes` (by node id) in place. Boxes of `locked` nodes never move; boxes that are not finite count as standing
@@ -96,6 +100,8 @@ pub fn project(
         road,
         boxes: clean,
         locked: locked.clone(),
+        about: about(graph),
+        exhausted: BTreeMap::new(),
     };
     let order = repair.order();
     for _ in 0..ROUNDS {
@@ -142,6 +148,15 @@ pub fn project(
     out
 }
 
+fn about(graph: &SceneGraph) -> BTreeMap<u32, Vec<Edge>> {
+    let mut out: BTreeMap<u32, Vec<Edge>> = BTreeMap::new();
+    for e in &graph.edges {
+        let named: BTreeSet<u32> = [Some(e.from), Some(e.to), e.and].into_iter().flatten().collect();
+        named.into_iter().for_each(|id| out.entry(id).or_default().push(*e));
+    }
+    out
+}
+
 impl Repair<'_> {
     fn placed(&self) -> Placed<'_> {
         Placed {
@@ -180,7 +195,7 @@ impl Repair<'_> {
     }
 
     fn edges(&self, id: u32) -> impl Iterator<Item = &Edge> {
-        self.graph.edges.iter().filter(move |e| e.from == id)
+        self.about.get(&id).into_iter().flatten().filter(move |e| e.from == id)
     }
 
     fn state(&self, id: u32) -> Option<ObjectState> {
@@ -234,14 +249,8 @@ impl Repair<'_> {
         }
         let old = self.boxes.insert(id, *b);
         let placed = self.placed();
-        let own = |e: &&Edge| e.from == id || e.to == id || e.and == Some(id);
-        let statements = self
-            .graph
-            .edges
-            .iter()
-            .filter(own)
-            .filter(|e| !placed.satisfied(e))
-            .count();
+        let about = self.about.get(&id).map_or(&[][..], Vec::as_slice);
+        let statements = about.iter().filter(|e| !placed.satisfied(e)).count();
         if let Some(old) = old {
             self.boxes.insert(id, old);
         }
@@ -265,7 +274,8 @@ impl Repair<'_> {
                 statements: 0,
             },
         );
-        if now == NONE {
+        let hopeless = now.physics == 0 && self.exhausted.get(&id).is_some_and(|f| now <= *f);
+        if now == NONE || hopeless {
             return false;
         }
         let mut best = (now, own);
@@ -285,6 +295,9 @@ impl Repair<'_> {
                     break 'search;
                 }
             }
+        }
+        if best.0 != NONE {
+            self.exhausted.insert(id, best.0);
         }
         let moved = best.1 != own;
         self.boxes.insert(id, best.1);
