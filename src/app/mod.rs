@@ -23,6 +23,7 @@ mod icons;
 pub mod keymap;
 mod keys;
 pub mod live;
+pub mod memory;
 pub mod open;
 mod pane_views;
 pub mod panels;

@@ -1,6 +1,8 @@
 //! Training and evaluation data from procedural worlds, as safetensors shards.
 
+pub mod layout;
 pub mod lidar;
+pub mod text;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -10,6 +10,7 @@ pub mod model;
 pub mod params;
 pub mod pipeline;
 pub mod redraw;
+pub mod placement;
 pub mod region;
 pub mod replay;
 pub mod rng;

@@ -3,6 +3,7 @@
 pub mod boxes;
 pub mod classes;
 pub mod density;
+pub mod distance;
 pub mod draft;
 pub mod graph;
 pub mod grid;
@@ -12,8 +13,10 @@ pub mod layout;
 pub mod look;
 pub mod pose;
 pub mod raster;
+pub mod relations;
 pub mod rig;
 pub mod rig_presets;
+pub mod road_map;
 pub mod sensor_data;
 pub mod splats;
 pub mod variants;

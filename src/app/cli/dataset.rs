@@ -6,17 +6,20 @@ use anyhow::{Context, bail};
 
 use super::progress::Progress;
 use super::{Common, Outcome, output};
+use crate::app::memory;
 use crate::app::open;
 use crate::app::roads::Roads;
 use crate::formats::occ3d;
+use crate::generation::dataset::layout::layout_frame;
 use crate::generation::dataset::lidar::lidar_frame;
-use crate::generation::dataset::{self, OccupancyFrame, occupancy_frame};
+use crate::generation::dataset::text::text_frame;
+use crate::generation::dataset::{self, DatasetReport, OccupancyFrame, occupancy_frame};
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Dataset {
-    /// What the frames hold.
-    #[arg(value_parser = ["occupancy", "lidar"])]
+    /// What the frames hold; `memory` writes the bank of remembered scenes instead.
+    #[arg(value_parser = ["occupancy", "lidar", "layout", "text", "memory"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -42,9 +45,12 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = std::time::Instant::now();
-        if self.kind == "lidar" && self.from.is_some() {
+        if self.kind != "occupancy" && self.from.is_some() {
             (|| -> anyhow::Result<()> {
-                bail!("--from gives labels, kind lidar needs surfaces: expected procedural worlds")
+                bail!(
+                    "--from gives labels, kind {} needs more: expected procedural worlds",
+                    self.kind
+                )
             })()?;
         }
         let files = match &self.from {
@@ -77,11 +83,22 @@ impl Dataset {
             progress.at(&self.kind, done, frames);
             true
         };
-        let report = if self.kind == "lidar" {
-            let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
-            dataset::write(&self.output, frames, make, step)
-        } else {
-            dataset::write(&self.output, frames, make, step)
+        let report = match self.kind.as_str() {
+            "lidar" => {
+                let make = |i: usize| anyhow::Ok(lidar_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "layout" => {
+                let make =
+                    |i: usize| anyhow::Ok(layout_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "text" => {
+                let make = |i: usize| anyhow::Ok(text_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "memory" => self.memory(frames),
+            _ => dataset::write(&self.output, frames, make, step),
         }
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
@@ -96,5 +113,17 @@ impl Dataset {
             )
         });
         Ok(())
+    }
+    /// `bank.json` of that many remembered scenes on templates and the project's own roads.
+    fn memory(&self, frames: usize) -> anyhow::Result<DatasetReport> {
+        let bank = memory::make_bank(frames, self.seed)?;
+        let text = serde_json::to_string(&bank)?;
+        std::fs::create_dir_all(&self.output)?;
+        std::fs::write(self.output.join("bank.json"), &text)?;
+        Ok(DatasetReport {
+            frames: bank.entries.len(),
+            bytes: text.len() as u64,
+            resumed_shards: 0,
+        })
     }
 }

@@ -5,6 +5,7 @@ pub mod extractor;
 pub mod frechet;
 pub mod iou;
 pub mod kernel;
+pub mod layout;
 pub mod lidar;
 pub mod maps;
 pub mod occupancy;

@@ -7,11 +7,13 @@ pub mod encoder;
 mod golden;
 pub mod kernels;
 pub mod layers;
+pub mod layout;
 pub mod lidar;
 pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
 pub mod panels;
+pub mod text;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

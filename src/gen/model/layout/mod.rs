@@ -1,0 +1,4 @@
+//! The layout network.
+
+pub mod input;
+pub mod net;
