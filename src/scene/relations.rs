@@ -479,15 +479,25 @@ mod tests {
             if back {
                 points.reverse();
             }
-            Polyline { kind: PolylineKind::LaneCenter, points_m: points }
+            Polyline {
+                kind: PolylineKind::LaneCenter,
+                points_m: points,
+            }
         };
         let mut lines = vec![line(0.0, false), line(3.5, false), line(7.0, true)];
         let middle: Vec<DVec2> = lines[1].points_m.clone();
-        line_cells(&middle, 5.25, |x, y| layout.set(BevLayer::DrivableArea, x, y, true));
+        line_cells(&middle, 5.25, |x, y| {
+            layout.set(BevLayer::DrivableArea, x, y, true)
+        });
         let walk = [(-44.0, -1.75), (44.0, -1.75), (44.0, -4.0), (-44.0, -4.0)].map(DVec2::from);
         polygon_cells(&walk, |x, y| layout.set(BevLayer::Walkway, x, y, true));
-        let outline = [(20.0, 8.75), (20.0, -1.75), (23.0, -1.75), (23.0, 8.75)].map(DVec2::from).to_vec();
-        lines.push(Polyline { kind: PolylineKind::PedCrossing, points_m: outline });
+        let outline = [(20.0, 8.75), (20.0, -1.75), (23.0, -1.75), (23.0, 8.75)]
+            .map(DVec2::from)
+            .to_vec();
+        lines.push(Polyline {
+            kind: PolylineKind::PedCrossing,
+            points_m: outline,
+        });
         lines.iter().for_each(|l| draw_polyline(&mut layout, l));
         RoadMap::new(&BevLayout::from_cells(layout.cells().to_vec(), lines).expect("40,000 cells"))
     }
@@ -505,13 +515,31 @@ mod tests {
         }
     }
 
-    fn holds(road: &RoadMap, b: SceneBox, relation: RelationKind, to: NodeKind, distance_m: Option<f64>) -> bool {
+    fn holds(
+        road: &RoadMap,
+        b: SceneBox,
+        relation: RelationKind,
+        to: NodeKind,
+        distance_m: Option<f64>,
+    ) -> bool {
         let mut graph = SceneGraph::with_ego();
         let from = graph.add(NodeKind::Object(ObjectNode::new(b.class)));
-        let to = if to == NodeKind::Ego { SceneGraph::EGO } else { graph.add(to) };
+        let to = if to == NodeKind::Ego {
+            SceneGraph::EGO
+        } else {
+            graph.add(to)
+        };
         let boxes = BTreeMap::from([(from, b)]);
-        let edge = Edge { distance_m, ..Edge::new(from, relation, to) };
-        Placed { graph: &graph, boxes: &boxes, road }.satisfied(&edge)
+        let edge = Edge {
+            distance_m,
+            ..Edge::new(from, relation, to)
+        };
+        Placed {
+            graph: &graph,
+            boxes: &boxes,
+            road,
+        }
+        .satisfied(&edge)
     }
 
     #[test]
@@ -535,30 +563,132 @@ mod tests {
         let car = |x, y, yaw, speed| boxed(Class::Car, x, y, yaw, speed);
         let person = |x, y, yaw, speed| boxed(Class::Pedestrian, x, y, yaw, speed);
         let cases: [(R, NodeKind, SceneBox, SceneBox); 18] = [
-            (R::InFrontOf, NodeKind::Ego, car(12.0, 0.0, 0.0, 5.0), car(-12.0, 0.0, 0.0, 5.0)),
-            (R::Behind, NodeKind::Ego, car(-12.0, 0.0, 0.0, 5.0), car(12.0, 0.0, 0.0, 5.0)),
-            (R::LeftOf, NodeKind::Ego, car(2.0, 3.5, 0.0, 5.0), car(2.0, -3.5, 0.0, 5.0)),
-            (R::RightOf, NodeKind::Ego, person(2.0, -3.0, 0.0, 0.0), person(2.0, 3.0, 0.0, 0.0)),
-            (R::Near, NodeKind::Ego, person(6.0, -3.0, 0.0, 0.0), person(30.0, -3.0, 0.0, 0.0)),
-            (R::FarFrom, NodeKind::Ego, person(30.0, -3.0, 0.0, 0.0), person(6.0, -3.0, 0.0, 0.0)),
-            (R::NextTo, NodeKind::Ego, car(2.0, 3.5, 0.0, 0.0), car(2.0, 8.5, 0.0, 0.0)),
-            (R::On, lane(LaneRole::Oncoming), car(9.0, 7.0, 180.0, 5.0), car(9.0, 0.0, 0.0, 5.0)),
-            (R::On, lane(LaneRole::RightSidewalk), person(9.0, -3.0, 0.0, 1.0), person(9.0, 3.0, 0.0, 1.0)),
-            (R::Across, lane(LaneRole::Ego), boxed(Class::Truck, 15.0, 1.0, 90.0, 0.0), car(15.0, 0.0, 0.0, 0.0)),
-            (R::Across, NodeKind::Ego, car(9.0, 7.0, 180.0, 5.0), car(9.0, 3.5, 0.0, 5.0)),
-            (R::Blocking, lane(LaneRole::Ego), car(15.0, 0.5, 0.0, 0.0), car(15.0, 3.5, 0.0, 0.0)),
-            (R::Facing, NodeKind::Ego, car(20.0, 0.0, 180.0, 0.0), car(20.0, 0.0, 0.0, 0.0)),
-            (R::Following, NodeKind::Ego, car(-12.0, 0.0, 0.0, 5.0), car(-12.0, 3.5, 0.0, 5.0)),
-            (R::Crossing, NodeKind::Ego, person(21.0, 1.0, 90.0, 1.2), person(21.0, 1.0, 0.0, 1.2)),
-            (R::ParkedOn, lane(LaneRole::Left), car(5.0, 3.5, 0.0, 0.0), car(5.0, 3.5, 0.0, 5.0)),
-            (R::WaitingAt, crossing(), car(14.0, 0.0, 0.0, 0.0), car(26.0, 0.0, 0.0, 0.0)),
-            (R::OppositeDirection, NodeKind::Ego, car(9.0, 7.0, 180.0, 5.0), car(9.0, 3.5, 0.0, 5.0)),
+            (
+                R::InFrontOf,
+                NodeKind::Ego,
+                car(12.0, 0.0, 0.0, 5.0),
+                car(-12.0, 0.0, 0.0, 5.0),
+            ),
+            (
+                R::Behind,
+                NodeKind::Ego,
+                car(-12.0, 0.0, 0.0, 5.0),
+                car(12.0, 0.0, 0.0, 5.0),
+            ),
+            (
+                R::LeftOf,
+                NodeKind::Ego,
+                car(2.0, 3.5, 0.0, 5.0),
+                car(2.0, -3.5, 0.0, 5.0),
+            ),
+            (
+                R::RightOf,
+                NodeKind::Ego,
+                person(2.0, -3.0, 0.0, 0.0),
+                person(2.0, 3.0, 0.0, 0.0),
+            ),
+            (
+                R::Near,
+                NodeKind::Ego,
+                person(6.0, -3.0, 0.0, 0.0),
+                person(30.0, -3.0, 0.0, 0.0),
+            ),
+            (
+                R::FarFrom,
+                NodeKind::Ego,
+                person(30.0, -3.0, 0.0, 0.0),
+                person(6.0, -3.0, 0.0, 0.0),
+            ),
+            (
+                R::NextTo,
+                NodeKind::Ego,
+                car(2.0, 3.5, 0.0, 0.0),
+                car(2.0, 8.5, 0.0, 0.0),
+            ),
+            (
+                R::On,
+                lane(LaneRole::Oncoming),
+                car(9.0, 7.0, 180.0, 5.0),
+                car(9.0, 0.0, 0.0, 5.0),
+            ),
+            (
+                R::On,
+                lane(LaneRole::RightSidewalk),
+                person(9.0, -3.0, 0.0, 1.0),
+                person(9.0, 3.0, 0.0, 1.0),
+            ),
+            (
+                R::Across,
+                lane(LaneRole::Ego),
+                boxed(Class::Truck, 15.0, 1.0, 90.0, 0.0),
+                car(15.0, 0.0, 0.0, 0.0),
+            ),
+            (
+                R::Across,
+                NodeKind::Ego,
+                car(9.0, 7.0, 180.0, 5.0),
+                car(9.0, 3.5, 0.0, 5.0),
+            ),
+            (
+                R::Blocking,
+                lane(LaneRole::Ego),
+                car(15.0, 0.5, 0.0, 0.0),
+                car(15.0, 3.5, 0.0, 0.0),
+            ),
+            (
+                R::Facing,
+                NodeKind::Ego,
+                car(20.0, 0.0, 180.0, 0.0),
+                car(20.0, 0.0, 0.0, 0.0),
+            ),
+            (
+                R::Following,
+                NodeKind::Ego,
+                car(-12.0, 0.0, 0.0, 5.0),
+                car(-12.0, 3.5, 0.0, 5.0),
+            ),
+            (
+                R::Crossing,
+                NodeKind::Ego,
+                person(21.0, 1.0, 90.0, 1.2),
+                person(21.0, 1.0, 0.0, 1.2),
+            ),
+            (
+                R::ParkedOn,
+                lane(LaneRole::Left),
+                car(5.0, 3.5, 0.0, 0.0),
+                car(5.0, 3.5, 0.0, 5.0),
+            ),
+            (
+                R::WaitingAt,
+                crossing(),
+                car(14.0, 0.0, 0.0, 0.0),
+                car(26.0, 0.0, 0.0, 0.0),
+            ),
+            (
+                R::OppositeDirection,
+                NodeKind::Ego,
+                car(9.0, 7.0, 180.0, 5.0),
+                car(9.0, 3.5, 0.0, 5.0),
+            ),
         ];
         for (relation, to, yes, no) in cases {
-            assert!(holds(&road, yes, relation, to.clone(), None), "{relation:?} {to:?}");
-            assert!(!holds(&road, no, relation, to.clone(), None), "not {relation:?} {to:?}");
-            let bad = SceneBox { center_m: DVec3::NAN, ..yes };
-            assert!(!holds(&road, bad, relation, to.clone(), None), "{relation:?} of NaN");
+            assert!(
+                holds(&road, yes, relation, to.clone(), None),
+                "{relation:?} {to:?}"
+            );
+            assert!(
+                !holds(&road, no, relation, to.clone(), None),
+                "not {relation:?} {to:?}"
+            );
+            let bad = SceneBox {
+                center_m: DVec3::NAN,
+                ..yes
+            };
+            assert!(
+                !holds(&road, bad, relation, to.clone(), None),
+                "{relation:?} of NaN"
+            );
         }
         let ahead = car(12.0, 0.0, 0.0, 5.0);
         assert!(holds(&road, ahead, R::InFrontOf, NodeKind::Ego, Some(10.5)));
@@ -568,11 +698,20 @@ mod tests {
     #[test]
     fn between_needs_both() {
         let (road, mut graph) = (street(), SceneGraph::with_ego());
-        let ids: Vec<u32> = (0..3).map(|_| graph.add(NodeKind::Object(ObjectNode::new(Class::Car)))).collect();
+        let ids: Vec<u32> = (0..3)
+            .map(|_| graph.add(NodeKind::Object(ObjectNode::new(Class::Car))))
+            .collect();
         let at = |x| boxed(Class::Car, x, 0.0, 0.0, 0.0);
         let boxes = BTreeMap::from([(ids[0], at(20.0)), (ids[1], at(10.0)), (ids[2], at(30.0))]);
-        let placed = Placed { graph: &graph, boxes: &boxes, road: &road };
-        let edge = |from: usize, a: usize, b: usize| Edge { and: Some(ids[b]), ..Edge::new(ids[from], RelationKind::Between, ids[a]) };
+        let placed = Placed {
+            graph: &graph,
+            boxes: &boxes,
+            road: &road,
+        };
+        let edge = |from: usize, a: usize, b: usize| Edge {
+            and: Some(ids[b]),
+            ..Edge::new(ids[from], RelationKind::Between, ids[a])
+        };
         assert!(placed.satisfied(&edge(0, 1, 2)) && !placed.satisfied(&edge(1, 0, 2)));
         assert!(!placed.satisfied(&Edge::new(ids[0], RelationKind::Between, ids[1])));
     }
@@ -584,7 +723,10 @@ mod tests {
         assert!((gap_m(&a, &b) - 2.0).abs() < 1e-9 && (overlap_m(&a, &b) + 2.0).abs() < 1e-9);
         let turned = boxed(Class::Car, 2.0, 1.0, 40.0, 0.0);
         assert!(overlap_m(&a, &turned) > 0.0 && gap_m(&a, &turned) == 0.0);
-        let nowhere = SceneBox { yaw_rad: f64::NAN, ..a };
+        let nowhere = SceneBox {
+            yaw_rad: f64::NAN,
+            ..a
+        };
         assert!(overlap_m(&a, &nowhere) < 0.0);
     }
 }

@@ -128,7 +128,9 @@ fn counted(draw: &mut Draw, class: Class, state: ObjectState, n: usize) -> Strin
         (ObjectState::Parked, c) if c.is_vehicle() => pick(draw, &["parked ", "parked ", "standing ", ""]),
         (ObjectState::Moving, c) if c.is_vehicle() => pick(draw, &["moving ", "", "", "driving "]),
         (ObjectState::Moving, Class::Pedestrian) => pick(draw, &["walking ", "", ""]),
-        (ObjectState::Waiting, c) if !matches!(c, Class::TrafficCone | Class::Barrier) => pick(draw, &["waiting ", "stopped ", ""]),
+        (ObjectState::Waiting, c) if !matches!(c, Class::TrafficCone | Class::Barrier) => {
+            pick(draw, &["waiting ", "stopped ", ""])
+        }
         _ => "",
     };
     let number = match n {

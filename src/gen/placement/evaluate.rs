@@ -17,7 +17,8 @@ use crate::scene::road_map::RoadMap;
 use crate::scene::{BevLayout, GridSpec, SceneBox};
 
 /// A way to place the objects of a graph: boxes in the order of `PlacementReport::nodes`.
-pub type Place<'a> = &'a dyn Fn(&SceneGraph, &BevLayout, u64) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError>;
+pub type Place<'a> =
+    &'a dyn Fn(&SceneGraph, &BevLayout, u64) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError>;
 
 /// Figures of one way to place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -64,7 +65,8 @@ pub fn held_out(seed: u64, index: u64) -> (SceneGraph, BevLayout) {
 /// Places the graphs of `count` held-out streets.
 pub fn evaluate(place: Place<'_>, seed: u64, count: usize) -> Result<PlacementFigures, PlacementError> {
     const DIVERSE: usize = 4;
-    let (mut objects, mut dropped, mut statements, mut broken, mut moved, mut moves) = (0, 0, 0, 0, 0, Vec::new());
+    let (mut objects, mut dropped, mut statements, mut broken, mut moved, mut moves) =
+        (0, 0, 0, 0, 0, Vec::new());
     let (mut diffusion, mut projection) = (Vec::new(), Vec::new());
     let mut figures = LayoutFigures::default();
     let (mut spread, mut pairs) = ((0.0, 0.0), 0);
@@ -83,9 +85,12 @@ pub fn evaluate(place: Place<'_>, seed: u64, count: usize) -> Result<PlacementFi
         projection.push(report.projection_s);
         figures.add(&road, &boxes);
         if index < DIVERSE as u64 {
-            let by_node = |(boxes, report): (Vec<SceneBox>, PlacementReport)| report.nodes.into_iter().zip(boxes).collect();
-            let runs: Result<Vec<BTreeMap<u32, SceneBox>>, PlacementError> =
-                (0..4).map(|k| Ok(by_node(place(&graph, &layout, 100 + k)?))).collect();
+            let by_node = |(boxes, report): (Vec<SceneBox>, PlacementReport)| {
+                report.nodes.into_iter().zip(boxes).collect()
+            };
+            let runs: Result<Vec<BTreeMap<u32, SceneBox>>, PlacementError> = (0..4)
+                .map(|k| Ok(by_node(place(&graph, &layout, 100 + k)?)))
+                .collect();
             let found = diversity(&runs?);
             spread = (spread.0 + found.footprints, spread.1 + found.displacement_m);
             pairs += found.pairs;
@@ -114,7 +119,11 @@ pub fn evaluate(place: Place<'_>, seed: u64, count: usize) -> Result<PlacementFi
 }
 
 /// What the network is compared with: every object at a random place of the map, then the same projection.
-pub fn place_at_random(graph: &SceneGraph, layout: &BevLayout, seed: u64) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError> {
+pub fn place_at_random(
+    graph: &SceneGraph,
+    layout: &BevLayout,
+    seed: u64,
+) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError> {
     let road = RoadMap::new(layout);
     let mut draw = Draw::new(seed, "random places");
     let mut boxes = BTreeMap::new();

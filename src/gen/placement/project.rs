@@ -152,7 +152,9 @@ fn about(graph: &SceneGraph) -> BTreeMap<u32, Vec<Edge>> {
     let mut out: BTreeMap<u32, Vec<Edge>> = BTreeMap::new();
     for e in &graph.edges {
         let named: BTreeSet<u32> = [Some(e.from), Some(e.to), e.and].into_iter().flatten().collect();
-        named.into_iter().for_each(|id| out.entry(id).or_default().push(*e));
+        named
+            .into_iter()
+            .for_each(|id| out.entry(id).or_default().push(*e));
     }
     out
 }
@@ -195,7 +197,11 @@ impl Repair<'_> {
     }
 
     fn edges(&self, id: u32) -> impl Iterator<Item = &Edge> {
-        self.about.get(&id).into_iter().flatten().filter(move |e| e.from == id)
+        self.about
+            .get(&id)
+            .into_iter()
+            .flatten()
+            .filter(move |e| e.from == id)
     }
 
     fn state(&self, id: u32) -> Option<ObjectState> {
