@@ -346,7 +346,10 @@ mod tests {
         assert!((3.0..4.0).contains(&width.found.p50), "{width:?}");
         let sound = figures.soundness();
         // Machines of building sites may stand beside the road.
-        assert!(sound.overlapping_pairs < 0.01 && sound.vehicles_on_road > 0.9, "{sound:?}");
+        assert!(
+            sound.overlapping_pairs < 0.01 && sound.vehicles_on_road > 0.9,
+            "{sound:?}"
+        );
         assert!(sound.moving_along_lane > 0.95);
         let spread = diversity(&placements);
         assert!(spread.footprints > 0.5 && spread.pairs == 28, "{spread:?}");
