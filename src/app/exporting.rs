@@ -44,7 +44,7 @@ impl SceneloomApp {
         let wanted = export_window(ui, &input, &mut panel, &mut open);
         if let Some(format) = wanted {
             let mut options = panel.options.clone();
-            options.shot.camera = self.view3d.camera.clone();
+            options.shot.camera = self.view3d.camera;
             self.start_export(format, options, PathBuf::from(panel.path.trim()), ui.ctx());
         }
         self.exporting.panel = open.then_some(panel);

@@ -175,7 +175,7 @@ impl View3d {
     ) {
         self.rect = rect;
         self.pixels_per_point = ui.ctx().pixels_per_point();
-        self.camera = camera.clone();
+        self.camera = *camera;
         self.options = options.clone();
         if self.gpu.is_some() {
             let now_s = ui.input(|i| i.time);

@@ -57,10 +57,7 @@ pub fn along(layout: &BevLayout, from: &LanePoint, distance_m: f64) -> (DVec2, f
     let mut next = if backward { from.segment } else { from.segment + 1 };
     // Each line is entered once at most, so that a ring ends too.
     let mut seen = vec![line];
-    loop {
-        let Some(points_m) = layout.polylines.get(line).map(|l| &l.points_m) else {
-            break;
-        };
+    while let Some(points_m) = layout.polylines.get(line).map(|l| &l.points_m) {
         while let Some(&to_m) = points_m.get(next) {
             let step = to_m - at_m;
             let length_m = step.length();

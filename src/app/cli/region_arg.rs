@@ -6,6 +6,7 @@ use crate::generation::redraw::RedrawMask;
 
 /// What is regenerated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one per run of the program")]
 pub enum RegionArg {
     /// What an edit touches.
     Auto,

@@ -119,13 +119,7 @@ impl BoxViewsPane {
         let reach = frame.size_m / 2.0 + DVec3::splat(MARGIN_M);
         // Far ones first, as a painter would.
         let depth_axis = 3 - view.right.0 - view.up.0;
-        let toward = if view.right.0 == 1 && view.up.0 == 2 {
-            -1.0
-        } else if depth_axis == 1 {
-            -1.0
-        } else {
-            1.0
-        };
+        let toward = if depth_axis == 2 { 1.0 } else { -1.0 };
         let mut seen: Vec<(f64, Pos2, Color32)> = voxels(scene, &frame, reach)
             .map(|(local, class)| {
                 (

@@ -1,6 +1,6 @@
 //! The start screen: recent files, ready-made roads, import.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use egui::{Id, Modal, Ui, vec2};
 
@@ -45,7 +45,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
             }
             for path in settings.recent.iter().take(6) {
                 if recent(left, path).clicked() {
-                    choose(open, Command::OpenPath(path.clone()));
+                    choose(open, Command::OpenPath(path.to_owned()));
                 }
             }
             crate::app::icons::section(right, "Roads to begin with");
@@ -76,7 +76,7 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
     ui.add(button)
 }
 
-fn recent(ui: &mut Ui, path: &PathBuf) -> egui::Response {
+fn recent(ui: &mut Ui, path: &Path) -> egui::Response {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     wide(ui, &name, "").on_hover_text(path.display().to_string())
 }

@@ -104,7 +104,7 @@ pub fn add_road(graph: &mut SceneGraph, road: &RoadMap) {
 
 /// The longest run of points within the grid.
 pub fn visible(points_m: &[DVec2]) -> Vec<DVec2> {
-    let runs = points_m.split(|p| !(p.abs().max_element() <= 40.0));
+    let runs = points_m.split(|p| p.is_nan() || p.abs().max_element() > 40.0);
     runs.max_by_key(|run| run.len())
         .map(<[DVec2]>::to_vec)
         .unwrap_or_default()

@@ -211,7 +211,9 @@ impl Repair<'_> {
     /// Number of physical faults of a box in the place of object `id`.
     fn physics(&self, id: u32, b: &SceneBox) -> usize {
         let corners = b.footprint();
-        let outside = corners.iter().any(|c| !(c.abs().max_element() <= REACH_M));
+        let outside = corners
+            .iter()
+            .any(|c| c.is_nan() || c.abs().max_element() > REACH_M);
         let p = b.center_m.truncate();
         let mut off = false;
         let mut turned = false;

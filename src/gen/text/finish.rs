@@ -124,11 +124,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
                     Some(a) => Some(renumber(a)?),
                     None => None,
                 };
-                (anchor != Anchor::Object(own)).then_some(Stated {
-                    anchor,
-                    and,
-                    ..r.clone()
-                })
+                (anchor != Anchor::Object(own)).then_some(Stated { anchor, and, ..*r })
             })
             .collect();
         if spec.count.n > MOST_OF_ONE {

@@ -556,7 +556,7 @@ impl<'a> Parser<'a> {
             }
             Sense::Part(all) => self.part(all, Count::exactly(1), span),
             Sense::Time(time) => {
-                if is_color(&item.words) && prenominal || item.words == "dark" && prenominal {
+                if (is_color(&item.words) || item.words == "dark") && prenominal {
                     self.pre.attributes.push(item.words.clone());
                     return false;
                 }

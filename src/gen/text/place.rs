@@ -228,13 +228,7 @@ impl Placer<'_> {
         }
         match o.class {
             Class::Pedestrian if moves => self.draw.range(0.9, 1.8),
-            Class::Pedestrian => {
-                if self.draw.chance(0.5) {
-                    self.draw.range(0.7, 1.6)
-                } else {
-                    0.0
-                }
-            }
+            Class::Pedestrian if self.draw.chance(0.5) => self.draw.range(0.7, 1.6),
             Class::Bicycle => self.draw.range(2.5, 6.0),
             Class::ConstructionVehicle | Class::Trailer if !moves => 0.0,
             _ if moves || self.draw.chance(0.8) => self.draw.range(3.0, 12.0),

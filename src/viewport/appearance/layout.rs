@@ -48,12 +48,12 @@ impl GpuView {
             lens: [fx, fy, cx, cy].map(|v| v as f32),
             size: [width, height, look.seed, 0],
         };
-        let numbers = [&view.columns.as_flattened()[..], &view.place, &view.lens].concat();
+        let numbers = [view.columns.as_flattened(), &view.place, &view.lens].concat();
         (numbers.iter().all(|v| v.is_finite()) && fx != 0.0 && fy != 0.0).then_some(view)
     }
 
     /// The same, drawing from this row on.
-    pub fn from_row(mut self, row: u32) -> GpuView {
+    pub fn starting_at_row(mut self, row: u32) -> GpuView {
         self.size[3] = row;
         self
     }

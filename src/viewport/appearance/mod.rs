@@ -165,7 +165,7 @@ impl LookRenderer {
                     entries: &entries,
                 });
                 for row in (0..height).step_by(BAND as usize) {
-                    let uniform = view.from_row(row);
+                    let uniform = view.starting_at_row(row);
                     queue.write_buffer(view_buffer, 0, bytemuck::bytes_of(&uniform));
                     let label = Some("appearance");
                     let mut encoder =

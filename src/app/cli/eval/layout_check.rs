@@ -214,6 +214,10 @@ impl Judge<'_> {
         })
     }
 
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what a relation says of one point: all of it is needed, once"
+    )]
     fn to_point(
         &self,
         x: &SceneBox,

@@ -375,8 +375,11 @@ fn local(cells: &[f32], place: [f32; 2], out: &mut [f32]) {
     out[MAP_CHANNELS + 2] = 1.0;
 }
 
-/// Every edge both ways: source, target, relation (mirrored ones beyond the first 19), stated distance.
-fn directed(input: &LayoutInput) -> Result<Vec<(usize, usize, usize, [f32; 2])>, ModelError> {
+/// Source, target, relation (mirrored ones beyond the first 19), stated distance.
+type Directed = (usize, usize, usize, [f32; 2]);
+
+/// Every edge both ways.
+fn directed(input: &LayoutInput) -> Result<Vec<Directed>, ModelError> {
     let n = input.nodes.len();
     let mut out = Vec::with_capacity(2 * input.edges.len());
     for mirrored in [false, true] {
