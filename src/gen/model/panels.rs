@@ -310,7 +310,7 @@ mod avx512 {
         }
     }
 
-    /// out[to] += a[from] b for each pair [to, from] of rows.
+    /// `out[to] += a[from] b` for each pair `[to, from]` of rows.
     ///
     /// # Safety
     /// AVX-512F; the rows of every pair and k rows of b (to a whole number of sixteens) must be valid.
