@@ -6,7 +6,7 @@ use crate::viewport::ViewPreset;
 
 use super::command::Command;
 use super::dock::Workspace;
-use super::state::{Pane, Tool, UiState, VoxelVerb};
+use super::state::{Tool, UiState, VoxelVerb};
 use super::tools::{PaintShape, ToolCommand, VoxelMode};
 use crate::editor::transform::Kind;
 
@@ -396,18 +396,6 @@ pub const ACTIONS: &[ActionDef] = &[
     }),
     action(Views, "workspace_label", "Workspace: Label", "Alt+5", |_| {
         Some(Command::Workspace(Workspace::Label))
-    }),
-    action(Views, "pane_lidar", "Show the LiDAR sweep", "", |_| {
-        Some(Command::ShowPane(Pane::Lidar))
-    }),
-    action(Views, "pane_box_views", "Show the box views", "", |_| {
-        Some(Command::ShowPane(Pane::BoxViews))
-    }),
-    action(Views, "pane_versions", "Show the versions", "", |_| {
-        Some(Command::ShowPane(Pane::Versions))
-    }),
-    action(Views, "pane_cameras", "Show the cameras", "", |_| {
-        Some(Command::ShowPane(Pane::Cameras))
     }),
     action(Views, "sensors", "Sensors of the vehicle", "", |_| {
         Some(Command::ToggleSensors)

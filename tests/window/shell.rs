@@ -3,6 +3,7 @@
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use sceneloom::app::compare::CompareMode;
+use sceneloom::app::dock::Workspace;
 use sceneloom::app::settings::Settings;
 use sceneloom::app::state::{Pane, Tool};
 use sceneloom::app::theme::Look;
@@ -77,17 +78,14 @@ fn keys_are_changed_in_the_sheet() {
     let mut bench = Bench::new();
     bench.off();
     bench.key(Modifiers::NONE, Key::F1);
-    bench.click("Ctrl+Enter");
+    bench.click("M");
     bench.key(Modifiers::CTRL, Key::G);
-    assert_eq!(bench.app().keymap.text("generate"), "Ctrl+G");
+    assert_eq!(bench.app().keymap.text("measure_tool"), "Ctrl+G");
     bench.key(Modifiers::NONE, Key::Escape);
+    bench.key(Modifiers::NONE, Key::M);
+    assert_eq!(bench.app().state.tool, Tool::Select, "the old chord is free");
     bench.key(Modifiers::CTRL, Key::G);
-    bench
-        .started
-        .recv_timeout(super::bench::PATIENCE)
-        .expect("generation starts");
-    bench.orders.send(Do::Finish).expect("it runs");
-    bench.wait_until("versions", |b| b.app().versions.list().len() == 2);
+    assert_eq!(bench.app().state.tool, Tool::Measure);
 }
 
 #[test]
@@ -146,7 +144,7 @@ fn settings_are_kept() {
     bench.app().settings.start_screen = false;
     bench.click("Sensors");
     bench.wait_until("settings", |_| {
-        Settings::load(&file).is_ok_and(|s| s.look == Look::Light && s.dock.is_some())
+        Settings::load(&file).is_ok_and(|s| s.look == Look::Light && s.workspace == Workspace::Sensors)
     });
     drop(bench);
     let mut again = Bench::with_settings(&file);

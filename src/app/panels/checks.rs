@@ -39,7 +39,9 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
     };
     if findings.is_empty() {
         ui.horizontal(|ui| {
-            ui.label(egui::RichText::new("✔").color(ui.visuals().hyperlink_color));
+            let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
+            ui.painter()
+                .circle_filled(dot.center(), 4.0, crate::app::theme::good());
             ui.label("All is well: no check found anything.");
         });
         ui.weak("Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.");
@@ -91,7 +93,7 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
         |ui| {
             if let Some(first) = finding.fixes.first() {
                 if finding.fixes.len() > 1 {
-                    ui.menu_button("▾", |ui| {
+                    ui.menu_button("…", |ui| {
                         for fix in &finding.fixes {
                             if ui.button(fix.label).clicked() {
                                 commands.push(Command::Apply(fix.label, fix.edits.clone()));

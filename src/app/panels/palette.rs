@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(first("undo"), "Undo");
         assert_eq!(first("gen ev"), "Generate everything");
         assert_eq!(first("cone"), "Place a box: traffic cone");
-        assert_eq!(first("lidar"), "Show the LiDAR sweep");
+        assert_eq!(first("lidar"), "Pane: LiDAR sweep");
         assert_eq!(first("swap"), "Swap bird's-eye and 3D view");
         assert!(matching(items(&keymap, &[]), "zzzz").is_empty());
         assert_eq!(matching(items(&keymap, &[]), "").len(), items(&keymap, &[]).len());

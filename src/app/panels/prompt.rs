@@ -115,6 +115,10 @@ impl PromptPane {
                     .on_hover_text("The same words and seed give the same scene");
             });
         });
+        if change || make {
+            // What comes next is worked on with the keys of the tools.
+            field.surrender_focus();
+        }
         if change {
             self.change(scene, commands);
         } else if make {

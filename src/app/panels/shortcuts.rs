@@ -40,6 +40,7 @@ impl Shortcuts {
             self.head(ui, keymap);
             ui.add_space(theme::GAP);
             egui::ScrollArea::vertical()
+                .min_scrolled_height(room.y - 190.0)
                 .max_height(room.y - 190.0)
                 .show(ui, |ui| {
                     ui.columns_const(|[left, right]: &mut [Ui; 2]| {

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use egui::{Id, Modal, Ui, vec2};
+use egui::accesskit::Role;
+use egui::{Id, Modal, Ui, WidgetInfo, vec2};
 
 use crate::app::command::Command;
 use crate::app::settings::Settings;
@@ -73,7 +74,9 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
     let button = egui::Button::new(name)
         .shortcut_text(egui::RichText::new(keys).color(theme::text_weak()))
         .min_size(vec2(ui.available_width(), 26.0));
-    ui.add(button)
+    let response = ui.add(button);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    response
 }
 
 fn recent(ui: &mut Ui, path: &Path) -> egui::Response {
