@@ -232,7 +232,7 @@ impl SceneloomApp {
                 .dock
                 .clone()
                 .and_then(Dock::from_kept)
-                .unwrap_or_default(),
+                .unwrap_or_else(|| Dock::workspace(settings.workspace)),
             keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
             palette: Palette::default(),
             versions,

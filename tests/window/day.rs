@@ -74,7 +74,7 @@ fn a_day_of_work() {
     bench.steps(2);
     assert_eq!(bench.frame().occupancy.get(150, 95, 2), Class::Manmade.id());
     let choose = sceneloom::app::Command::Select(Some(BoxId(8)));
-    bench.app().execute(choose, &ctx);
+    bench.app().execute(choose.clone(), &ctx);
     bench.steps(1);
     let start = bench.frame().boxes[&BoxId(8)].center_m;
     for _ in 0..40 {
@@ -116,7 +116,10 @@ fn a_day_of_work() {
     let path = bench.open_path();
     bench.key(Modifiers::CTRL, Key::S);
     bench.give_path(&path, "Save file");
+    bench.app().execute(choose, &ctx);
+    bench.steps(1);
     bench.key(Modifiers::NONE, Key::Delete);
+    assert!(bench.app().document.is_dirty());
     bench.key(Modifiers::CTRL, Key::O);
     bench.click("Discard changes");
     bench.give_path(&path, "Open file");

@@ -63,7 +63,9 @@ pub fn camera_controls(ui: &mut Ui, state: &mut UiState) {
             for (mode, name) in modes {
                 ui.selectable_value(&mut state.camera_mode, mode, name);
             }
-        });
+        })
+        .response
+        .accessible_name("Camera picture");
 }
 
 /// Of the unrolled sweep.
@@ -83,7 +85,9 @@ pub fn lidar_controls(ui: &mut Ui, state: &mut UiState) {
             for (mode, name) in colors {
                 ui.selectable_value(&mut state.lidar_colors, mode, name);
             }
-        });
+        })
+        .response
+        .accessible_name("LiDAR colour");
 }
 
 fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
