@@ -144,10 +144,8 @@ def main():
     if not args.fine and "occ_vae_fine" in kept:
         card["occ_vae_fine"] = kept["occ_vae_fine"]
         kinds.append("occ_vae_fine")
-    for kind in ("lidar", "lidar_flat"):  # export_lidar.py writes these
-        if kind in kept:
-            card[kind] = kept[kind]
-            kinds.append(kind)
+    elsewhere = [kind for kind, of in kept.items() if isinstance(of, dict) and kind not in kinds]  # the other export scripts write these
+    card |= {kind: kept[kind] for kind in elsewhere}
     (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
     lines = ["# Weights", "", "Trained on this project's own procedural worlds; no frame of a data set went in. With `--roads` a third of the",
              "layouts are places on public OpenDRIVE files (MIT, MPL-2.0), which are not part of this repository.", "",
@@ -159,7 +157,9 @@ def main():
         lines += [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.1f} MB; config `{json.dumps(c['config'])}`",
                   f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {float(c['minutes']) / 60:.2f} h",
                   "- held-out at the end of training: " + (", ".join(f"{k} {v}" for k, v in c["held_out"].items()) or "no log"), ""]
-    (args.weights / "CARD.md").write_text("\n".join(lines))
+    old_text = (args.weights / "CARD.md").read_text().split("\n## ") if elsewhere else []
+    sections = ["## " + part.strip() + "\n" for part in old_text if part.split()[0] in elsewhere]
+    (args.weights / "CARD.md").write_text("\n".join(lines + sections))
 
 
 if __name__ == "__main__":
