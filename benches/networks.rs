@@ -8,7 +8,8 @@ use sceneloom::generation::metrics::stats::median;
 use sceneloom::generation::model::candle_dit::CandleDit;
 use sceneloom::generation::model::layers::{View, matmul};
 use sceneloom::generation::model::panels::{Panels, Start};
-use sceneloom::generation::model::{DitCondition, OccModels};
+use sceneloom::generation::model::{DitCondition, KeysValues, Middle, OccModels};
+use sceneloom::generation::params::Precision;
 
 const RUNS: usize = 15;
 
@@ -27,8 +28,10 @@ fn products() {
     let b: Vec<f32> = (0..k * n).map(number).collect();
     let mut out = vec![0.0; m * n];
     let panels = Panels::new(View::rows(&b, n), k, n);
-    let [mut ours, mut theirs] = [const { Vec::new() }; 2];
+    let (int8, bias) = (panels.to_int8(), vec![0.0; n]);
+    let [mut ours, mut theirs, mut bytes] = [const { Vec::new() }; 3];
     for _ in 0..20 * RUNS {
+        timed(&mut bytes, || int8.multiply(&a, &bias, &mut out));
         timed(&mut ours, || {
             panels.multiply(&a, k, [m, 0, k], Start::Zero, &mut out, n)
         });
@@ -45,9 +48,10 @@ fn products() {
     }
     let rate = |ms: &[f64]| 2e-6 * (m * n * k) as f64 / median(ms);
     println!(
-        "product of a layer, one core: panels {:.0}, gemm {:.0} GFLOP/s",
+        "product of a layer, one core: panels {:.0}, gemm {:.0}, eight bits {:.0} GFLOP/s",
         rate(&ours),
-        rate(&theirs)
+        rate(&theirs),
+        rate(&bytes)
     );
 }
 
@@ -56,7 +60,7 @@ fn main() {
     let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
     let candle = CandleDit::new(bytes, 4).expect("the shipped weights load");
     let frame = occupancy_frame(3, 0, |_| None);
-    let [mut encode, mut decode, mut ours, mut theirs] = [const { Vec::new() }; 4];
+    let [mut encode, mut decode, mut ours, mut theirs, mut int8, mut reused] = [const { Vec::new() }; 6];
     let latent = models.vae.encode(&frame.dense).expect("a sound grid");
     let condition = DitCondition {
         bev: frame.bev,
@@ -71,13 +75,40 @@ fn main() {
     for run in 0..RUNS + 2 {
         if run == 2 {
             // The first two warm up.
-            for values in [&mut encode, &mut decode, &mut ours, &mut theirs] {
+            for values in [
+                &mut encode,
+                &mut decode,
+                &mut ours,
+                &mut theirs,
+                &mut int8,
+                &mut reused,
+            ] {
                 values.clear();
             }
         }
         timed(&mut encode, || models.vae.encode(&frame.dense)).expect("a sound grid");
         timed(&mut decode, || models.vae.decode(&latent)).expect("a sound latent");
         timed(&mut ours, || models.dit.forward(&latent, 500.0, &prepared)).expect("finite");
+        let mut added = Vec::new();
+        let in_int8 = timed(&mut int8, || {
+            let (mut kept, middle) = (KeysValues::default(), Middle::Kept(&mut added));
+            models.dit.forward_in(&latent, 500.0, &prepared, &mut kept, Precision::Int8, middle)
+        })
+        .expect("finite");
+        timed(&mut reused, || {
+            let (mut kept, middle) = (KeysValues::default(), Middle::Reused(&added));
+            models.dit.forward_in(&latent, 500.0, &prepared, &mut kept, Precision::F32, middle)
+        })
+        .expect("finite");
+        if run == 0 {
+            let exact = models.dit.forward(&latent, 500.0, &prepared).expect("finite");
+            let square = |v: &mut dyn Iterator<Item = f32>| v.map(|v| f64::from(v).powi(2)).sum::<f64>().sqrt();
+            let error = square(&mut in_int8.iter().zip(&exact).map(|(a, b)| a - b));
+            println!(
+                "eight bits: relative RMS error of v {:.4}",
+                error / square(&mut exact.iter().copied())
+            );
+        }
         timed(&mut theirs, || {
             candle.forward(&latent, 500.0, &condition, &tokens)
         })
@@ -89,6 +120,8 @@ fn main() {
         ("encode", encode),
         ("decode", decode),
         ("DiT step", ours),
+        ("DiT step, 8 bits", int8),
+        ("middle reused", reused),
         ("DiT step, candle", theirs),
     ] {
         println!("{name:<18} {:>8.1}", median(&values));

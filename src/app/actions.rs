@@ -397,6 +397,15 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Views, "workspace_label", "Workspace: Label", "Alt+5", |_| {
         Some(Command::Workspace(Workspace::Label))
     }),
+    action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", |_| {
+        Some(Command::Workspace(Workspace::Trade))
+    }),
+    action(Generation, "calibrate", "Calibrate the quality slider", "", |_| {
+        Some(Command::Calibrate)
+    }),
+    action(Generation, "refine", "Measure the last edit's error", "", |_| {
+        Some(Command::Refine)
+    }),
     action(Views, "sensors", "Sensors of the vehicle", "", |_| {
         Some(Command::ToggleSensors)
     }),

@@ -45,6 +45,7 @@ use super::sensing::Sensing;
 use super::settings::Settings;
 use super::state::{Pane, UiState};
 use super::theme;
+use super::tuning::Tuning;
 use super::versions::Versions;
 use super::view3d::View3d;
 
@@ -133,6 +134,8 @@ pub struct SceneloomApp {
     /// Copies of unsaved work; none in tests.
     pub recovery: Option<Recovery>,
     pub(super) exporting: Exporting,
+    /// The quality slider.
+    pub tuning: Tuning,
     pub(super) path: Option<PathBuf>,
     pub(super) worker: GenWorker,
     pub(super) dialogs: FileDialogs,
@@ -203,12 +206,17 @@ impl SceneloomApp {
         let wake = waker(ctx, if view3d.is_software() { 0.15 } else { 0.015 });
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
+        let tuning = Tuning::new(config.settings_file.as_deref());
+        // Whoever starts the window without settings names its parameters.
+        let quality = tuning.stops.named(&settings.quality).filter(|_| config.settings_file.is_some());
+        let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
         Ok(Self {
+            tuning,
             document: Document::new(config.scene),
             state,
             canvas: Canvas::default(),
             view3d,
-            live: Live::new(config.params, config.full_params, config.warm_up),
+            live: Live::new(params, config.full_params, config.warm_up),
             receipt: None,
             toasts,
             checking: Checking::spawn(wake.clone())?,
@@ -287,6 +295,7 @@ impl SceneloomApp {
     /// Everything that happens without drawing: news of the worker, of sensing, of files.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.sensing.drain();
+        self.tuning.update();
         let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
         for event in events {
             if self.gate.admit(&event) {
@@ -406,6 +415,10 @@ impl SceneloomApp {
                     if !full {
                         self.live.took(now_s - running.submitted_s);
                     }
+                    if !full && running.key.rev == self.document.settled_scene().rev {
+                        let edited = self.document.settled_scene().clone();
+                        self.tuning.note(edited, result.clone(), now_s - running.edited_s);
+                    }
                     if running.key.rev == self.document.settled_scene().rev {
                         self.receipt = Some(Receipt::new(&result.report, now_s - running.edited_s, full));
                     }
@@ -419,6 +432,7 @@ impl SceneloomApp {
             JobUpdate::Failed(error) => {
                 self.live.ended(event.id);
                 self.preview = None;
+                self.tuning.note_failure(&error.to_string());
                 let now_s = self.now_s();
                 let paused = if std::mem::replace(&mut self.live.on, false) {
                     " Live is off now."
@@ -477,6 +491,7 @@ impl SceneloomApp {
                 self.worker.cancel();
                 self.live.reset();
                 (self.receipt, self.finished, self.preview) = (None, None, None);
+                self.tuning.reset();
                 if opening.is_import {
                     let text = format!("Imported {} as a draft. Ctrl+Enter generates it.", scene.name);
                     self.toasts.push(Level::Info, text, now_s);

@@ -127,6 +127,14 @@ pub enum Command {
     MaximizePane,
     /// Arranges the panes for one kind of work.
     Workspace(Workspace),
+    /// Generates with the settings of a stop of the quality slider, by index.
+    Quality(usize),
+    /// Times the stops on this machine.
+    Calibrate,
+    /// Measures how far the last edit lies from the reference.
+    Refine,
+    /// Stops either.
+    StopMeasuring,
     /// Shows or hides the 10 m grid.
     ToggleGrid,
     /// Shows or hides the log.

@@ -23,16 +23,19 @@ pub enum Workspace {
     Sensors,
     /// The chosen box from three sides, beside bird's-eye and 3D view.
     Label,
+    /// The quality slider and its measurements beside the views.
+    Trade,
 }
 
 impl Workspace {
     /// Every workspace with its name.
-    pub const ALL: [(Workspace, &'static str); 5] = [
+    pub const ALL: [(Workspace, &'static str); 6] = [
         (Workspace::Edit, "Edit"),
         (Workspace::Paint, "Paint"),
         (Workspace::Voxels, "Voxels"),
         (Workspace::Sensors, "Sensors"),
         (Workspace::Label, "Label"),
+        (Workspace::Trade, "Trade"),
     ];
 }
 
@@ -99,6 +102,13 @@ impl Dock {
                 let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
                 let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.55)]);
                 join(&mut t, Horizontal, &[(cameras, 1.5), (views, 1.0)])
+            }
+            Workspace::Trade => {
+                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let strip = t.insert_pane(Pane::Cameras);
+                let center = join(&mut t, Vertical, &[(views, 700.0), (strip, 150.0)]);
+                let (tools, trade) = (t.insert_pane(Pane::Tools), t.insert_pane(Pane::Trade));
+                join(&mut t, Horizontal, &[(tools, 232.0), (center, 940.0), (trade, 430.0)])
             }
             Workspace::Label => {
                 let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);

@@ -132,6 +132,16 @@ impl SceneloomApp {
             Command::Inspect(camera) => self.state.inspected = camera,
             Command::SwapPanes => self.dock.swap(Pane::Bev, Pane::View3d),
             Command::ShowPane(pane) => self.dock.open(pane),
+            Command::Quality(stop) => self.set_quality(stop),
+            Command::Calibrate => {
+                let ctx = ctx.clone();
+                self.tuning.calibrate(move || ctx.request_repaint());
+            }
+            Command::Refine => {
+                let ctx = ctx.clone();
+                self.tuning.refine(move || ctx.request_repaint());
+            }
+            Command::StopMeasuring => self.tuning.stop(),
             Command::MaximizePane => {
                 if let Some(tile) = self.state.hovered_pane.and_then(|pane| self.dock.find(pane)) {
                     self.dock.toggle_maximized(tile);
@@ -261,6 +271,15 @@ impl SceneloomApp {
             self.live.look(&scene, now_s);
             self.submit(scene, params);
         }
+    }
+
+    /// Puts a stop's settings to use, from the next edit on.
+    pub(super) fn set_quality(&mut self, stop: usize) {
+        let Some(stop) = self.tuning.stops.stops.get(stop) else { return };
+        self.live.params = stop.knobs.on(self.live.params);
+        self.settings.quality.clone_from(&stop.name);
+        // The source's trajectory belongs to its settings.
+        self.live.source_changed();
     }
 
     fn frame_selection(&mut self) {

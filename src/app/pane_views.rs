@@ -15,6 +15,7 @@ use super::panels::cameras::CamerasInput;
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
 use super::panels::panes;
+use super::panels::trade::trade_ui;
 use super::panels::versions::{versions_controls, versions_ui};
 use super::state::Pane;
 use super::theme;
@@ -73,6 +74,10 @@ impl SceneloomApp {
                 let frame = self.document.scene().frame();
                 theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, &mut self.state, commands));
             }
+            Pane::Trade => {
+                let (tuning, params) = (&mut self.tuning, self.live.params);
+                theme::panel_frame().show(ui, |ui| trade_ui(ui, tuning, &params, commands));
+            }
             Pane::Objects => {
                 theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
             }
@@ -127,6 +132,9 @@ impl SceneloomApp {
         in_rect(ui, rect, |ui| {
             canvas.show(ui, &input, state, commands);
         });
+        if let (true, Some(last), Some(map)) = (self.tuning.show_modelled, &self.tuning.last, &self.canvas.map) {
+            super::modelled::draw(ui, rect, map, last);
+        }
         let (Some(before), Some(map)) = (self.compare.before.clone(), self.canvas.map) else {
             return;
         };

@@ -34,6 +34,8 @@ pub struct Settings {
     pub keys: Chords,
     /// The workspace chosen last.
     pub workspace: Workspace,
+    /// Name of the stop of the quality slider.
+    pub quality: String,
     /// Where the panes stand.
     pub dock: Option<Tree<Pane>>,
     /// Files opened or saved, the newest first.
@@ -50,6 +52,7 @@ impl Default for Settings {
             key_preset: "Default".into(),
             keys: Chords::new(),
             workspace: Workspace::default(),
+            quality: "balanced".into(),
             dock: None,
             recent: Vec::new(),
         }

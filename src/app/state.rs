@@ -86,11 +86,13 @@ pub enum Pane {
     Tools,
     /// The chosen box in numbers, all boxes, the history.
     Objects,
+    /// The quality slider, its measurements, the receipt of the last edit.
+    Trade,
 }
 
 impl Pane {
     /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 15] = [
+    pub const CHOICES: [Pane; 16] = [
         Pane::Bev,
         Pane::View3d,
         Pane::Cameras,
@@ -100,6 +102,7 @@ impl Pane {
         Pane::Versions,
         Pane::Tools,
         Pane::Objects,
+        Pane::Trade,
         Pane::Camera(0),
         Pane::Camera(1),
         Pane::Camera(2),
@@ -121,6 +124,7 @@ impl Pane {
             Pane::Versions => "Versions".into(),
             Pane::Tools => "Tools".into(),
             Pane::Objects => "Objects".into(),
+            Pane::Trade => "Speed and accuracy".into(),
         }
     }
 }

@@ -13,7 +13,7 @@ use super::schedule::ScheduleError;
 use super::solver::SolverError;
 use crate::scene::{Scene, SceneRev, VoxelGrid};
 
-pub use super::params::{GenParams, Named, Quality, RegionMode};
+pub use super::params::{DitVariant, GenParams, Named, Precision, Quality, RegionMode};
 
 /// All that a pipeline may read.
 #[derive(Clone, Debug)]
@@ -103,6 +103,8 @@ pub struct GenReport {
     pub tokens: usize,
     /// Voxels outside the region, not painted, that differ from the source: must be 0.
     pub untouched_voxels_changed: usize,
+    /// Names the labels outside the region that are not painted (FNV-1a): the same before and after.
+    pub untouched_hash: u64,
     /// Share of voxels changed along the inner border of the region.
     pub seam_change_share: f64,
     /// Voxels that differ from the source.

@@ -18,6 +18,7 @@ pub mod schedule;
 pub mod sensors;
 pub mod solver;
 pub mod text;
+pub mod trade;
 pub mod weights;
 pub mod worker;
 pub mod world;

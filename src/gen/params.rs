@@ -31,6 +31,28 @@ pub enum Quality {
     Final,
 }
 
+/// In what the denoising network's products are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 32-bit numbers: the reference.
+    #[default]
+    F32,
+    /// Eight bits with exact 32-bit sums: faster where the machine has AVX-512 VNNI, the same bits everywhere.
+    Int8,
+}
+
+/// Which denoising network.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DitVariant {
+    /// The one that was trained on worlds.
+    #[default]
+    Base,
+    /// Its student, which was trained to make four steps of what takes its teacher twelve.
+    Distilled,
+}
+
 /// Numbers of [`Density`] that the user names, each 0 to 1. What is not named stays as it is in an edit, and is left
 /// to the networks in a new scene (but completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -102,6 +124,12 @@ pub struct GenParams {
     pub local: bool,
     /// Tokens (3.2 m) around an edited region that are computed with it.
     pub halo_tokens: u32,
+    /// In what the denoising network's products are computed.
+    pub precision: Precision,
+    /// Which denoising network.
+    pub network: DitVariant,
+    /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
+    pub reuse_steps: u32,
     /// How much work the result is worth.
     pub quality: Quality,
     /// Densities and completeness asked for.
@@ -126,6 +154,9 @@ impl Default for GenParams {
             halo_columns: 2,
             local: true,
             halo_tokens: 1,
+            precision: Precision::F32,
+            network: DitVariant::Base,
+            reuse_steps: 1,
             quality: Quality::Final,
             named: Named::default(),
             keep_objects: true,
@@ -134,8 +165,8 @@ impl Default for GenParams {
 }
 
 /// Counts, numbers, named numbers, choices.
-type Bits = ([u32; 4], [u64; 4], [Option<u32>; 4], Choices);
-type Choices = (SolverKind, RegionMode, RedrawMask, Quality, [bool; 2]);
+type Bits = ([u32; 5], [u64; 4], [Option<u32>; 4], Choices);
+type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, DitVariant, [bool; 2]);
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
@@ -148,6 +179,7 @@ impl GenParams {
                 self.inversion_iterations,
                 self.halo_columns,
                 self.halo_tokens,
+                self.reuse_steps,
             ],
             [
                 self.seed,
@@ -161,6 +193,8 @@ impl GenParams {
                 self.region,
                 self.redraw,
                 self.quality,
+                self.precision,
+                self.network,
                 [self.keep_objects, self.local],
             ),
         )
@@ -189,7 +223,9 @@ impl GenParams {
         }
         let iterations = f64::from(self.inversion_iterations);
         in_range("inversion_iterations", iterations, 0.0, 100.0)?;
-        in_range("halo_columns", f64::from(self.halo_columns), 0.0, 200.0)
+        in_range("halo_columns", f64::from(self.halo_columns), 0.0, 200.0)?;
+        in_range("halo_tokens", f64::from(self.halo_tokens), 0.0, 25.0)?;
+        in_range("reuse_steps", f64::from(self.reuse_steps), 1.0, 100.0)
     }
 
     /// The guidance that these parameters ask for.
@@ -230,7 +266,10 @@ mod tests {
         };
         let same = GenParams { strength: -0.0, ..a };
         assert_eq!((a, hash(&a)), (same, hash(&same)));
-        let changes: [fn(&mut GenParams); 12] = [
+        let changes: [fn(&mut GenParams); 15] = [
+            |p| p.precision = Precision::Int8,
+            |p| p.network = DitVariant::Distilled,
+            |p| p.reuse_steps = 2,
             |p| p.redraw.set(3, 4, true),
             |p| p.steps = 11,
             |p| p.guidance = 1.0 + f64::EPSILON,
@@ -261,7 +300,9 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_refused_in_one_line() {
         assert_eq!(GenParams::default().check(), Ok(()));
-        let changes: [fn(&mut GenParams); 9] = [
+        let changes: [fn(&mut GenParams); 11] = [
+            |p| p.reuse_steps = 0,
+            |p| p.halo_tokens = 26,
             |p| p.steps = 0,
             |p| p.steps = 1001,
             |p| p.guidance = f64::NAN,

@@ -48,7 +48,7 @@ impl EditCommand {
         let scene = open::scene(&self.scene)?;
         let edits = read_edits(&self.edits)?;
         let progress = Progress::new(&self.common);
-        let params = self.generation.params(GenParams::default());
+        let params = self.generation.params(GenParams::default())?;
         let mut document = Document::new(scene);
         let before = document.scene().clone();
         document

@@ -87,7 +87,7 @@ impl Generate {
         let scene = open::scene(&self.scene)?;
         let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
         let progress = Progress::new(&self.common);
-        let params = self.generation.params(full_params());
+        let params = self.generation.params(full_params())?;
         let mut document = Document::new(scene);
         let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
         let scene = document.scene();

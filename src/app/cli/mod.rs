@@ -8,15 +8,17 @@ mod doctor;
 mod edit;
 mod eval;
 mod export;
-mod generate;
+pub(in crate::app) mod generate;
 mod import;
 mod new;
-mod output;
+pub(in crate::app) mod output;
 mod progress;
 mod prompt;
 mod region_arg;
 mod render;
 mod shot;
+pub(in crate::app) mod trade;
+pub(in crate::app) mod trials;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,8 +29,9 @@ use clap::{Args, Parser, Subcommand};
 
 use self::region_arg::RegionArg;
 use crate::app::open;
-use crate::generation::job::{GenParams, Named, RegionMode};
+use crate::generation::job::{GenParams, Named, Precision, RegionMode};
 use crate::generation::solver::SolverKind;
+use crate::generation::trade::Stops;
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -68,13 +71,15 @@ enum Command {
     Dataset(dataset::Dataset),
     /// Held-out quality.
     Eval(eval::Eval),
+    /// What each knob of speed and accuracy costs and buys, measured on this machine.
+    Trade(trade::Trade),
     /// What this machine offers.
     Doctor(doctor::Doctor),
 }
 
 /// Options that every command has.
 #[derive(Args, Clone, Debug, Default)]
-struct Common {
+pub(in crate::app) struct Common {
     /// Print exactly one JSON object on stdout at the end.
     #[arg(long)]
     json: bool,
@@ -121,22 +126,40 @@ struct Gen {
     #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
     region: Option<RegionArg>,
     /// Number of fixed-point updates per inversion step.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    inversion_iterations: u32,
+    #[arg(long, value_name = "N")]
+    inversion_iterations: Option<u32>,
     /// How far an edited region's noise leaves the inverted one, 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     strength: f64,
     /// Compute every token, not only those around an edit.
     #[arg(long)]
     dense: bool,
+    /// A stop of the measured trade: `draft`, `balanced`, `accurate` or another that `sceneloom trade` names; the
+    /// options beside it go first.
+    #[arg(long, value_name = "STOP")]
+    quality: Option<String>,
+    /// In what the network's products are computed: f32, or int8, which is faster where the machine has AVX-512 VNNI.
+    #[arg(long, value_parser = ["f32", "int8"])]
+    precision: Option<String>,
     /// Leave the networks' output as it is, also where they left out a box that the user placed.
     #[arg(long)]
     raw: bool,
 }
 
 impl Gen {
-    fn params(&self, default: GenParams) -> GenParams {
-        GenParams {
+    fn params(&self, default: GenParams) -> anyhow::Result<GenParams> {
+        let default = match &self.quality {
+            Some(name) => {
+                let stops = Stops::bundled();
+                let Some(stop) = stops.named(name) else {
+                    let names: Vec<&str> = stops.stops.iter().map(|s| s.name.as_str()).collect();
+                    anyhow::bail!("--quality {name}: expected one of {}", names.join(", "));
+                };
+                stop.knobs.on(default)
+            }
+            None => default,
+        };
+        Ok(GenParams {
             steps: self.steps.unwrap_or(default.steps),
             solver: self.solver.unwrap_or(default.solver),
             guidance: self.guidance.unwrap_or(default.guidance),
@@ -158,12 +181,17 @@ impl Gen {
                 Some(RegionArg::Rect(mask)) => mask,
                 _ => default.redraw,
             },
-            inversion_iterations: self.inversion_iterations,
+            inversion_iterations: self.inversion_iterations.unwrap_or(default.inversion_iterations),
             strength: self.strength,
             keep_objects: !self.raw,
-            local: !self.dense,
+            local: !self.dense && default.local,
+            precision: match self.precision.as_deref() {
+                Some("int8") => Precision::Int8,
+                Some(_) => Precision::F32,
+                None => default.precision,
+            },
             ..default
-        }
+        })
     }
 }
 
@@ -207,6 +235,7 @@ pub fn main() -> ExitCode {
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),
+        Some(Command::Trade(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
         None => editor(cli.scene),
     };

@@ -21,4 +21,5 @@ pub mod start;
 pub mod status;
 pub mod toasts;
 pub mod toolbar;
+pub mod trade;
 pub mod versions;

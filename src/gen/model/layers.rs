@@ -2,11 +2,15 @@
 //! Work is cut into pieces of fixed size before it is spread over threads, so the number of threads
 //! cannot change a bit.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
+use super::int8::Int8Panels;
 use super::kernels;
 use super::map::Map;
 use super::panels::{Panels, Start, product};
+use crate::generation::params::Precision;
 use crate::generation::weights::{WeightFile, WeightsError};
 
 /// Epsilon of every norm in these networks.
@@ -95,6 +99,8 @@ pub fn matmul(
 pub struct Linear {
     weight: Panels, // [inputs][outputs]
     bias: Vec<f32>,
+    /// The weight in eight bits, made when it is first asked for.
+    int8: OnceLock<Int8Panels>,
 }
 
 impl Linear {
@@ -130,7 +136,11 @@ impl Linear {
     /// From a weight `[outputs][inputs]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, inputs: usize) -> Self {
         let weight = Panels::new(View::columns(weight, inputs), inputs, bias.len());
-        Self { weight, bias }
+        Self {
+            weight,
+            bias,
+            int8: OnceLock::new(),
+        }
     }
 
     /// Rows of `x` to rows of `out`, on the calling thread.
@@ -145,6 +155,17 @@ impl Linear {
             out,
             outputs,
         );
+    }
+
+    /// The same in the precision asked for.
+    pub fn rows_in(&self, precision: Precision, x: &[f32], out: &mut [f32]) {
+        match precision {
+            Precision::F32 => self.rows(x, out),
+            Precision::Int8 => {
+                let int8 = self.int8.get_or_init(|| self.weight.to_int8());
+                int8.multiply(x, &self.bias, out);
+            }
+        }
     }
 
     /// One vector to one vector.

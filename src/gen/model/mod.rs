@@ -5,6 +5,8 @@ pub mod candle_dit;
 pub mod encoder;
 #[cfg(test)]
 mod golden;
+pub mod int8;
+pub mod int8_attention;
 pub mod kernels;
 pub mod layers;
 pub mod layout;
@@ -20,9 +22,11 @@ use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
-pub use occ_dit::{DitCondition, DitConfig, KeysValues, OccDit, Prepared, tokens_of};
+pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
 pub use occ_vae::{OccVae, VaeConfig};
 
+use super::job::GenError;
+use super::params::DitVariant;
 use super::weights::{self, WeightFile, WeightsError};
 
 /// Latent cells along x and along y.
@@ -122,6 +126,8 @@ pub struct OccModels {
     pub vae: OccVae,
     /// Latents from noise and a layout.
     pub dit: OccDit,
+    /// Its student of few steps, if there is one for this VAE.
+    pub distilled: Option<OccDit>,
     /// Which weights these are.
     pub card: ModelCard,
 }
@@ -183,7 +189,21 @@ impl OccModels {
         Ok(Self {
             vae,
             dit: OccDit::new(dit)?,
+            distilled: None,
             card,
         })
+    }
+
+    /// Tokens of a whole map.
+    pub const TOKENS: usize = occ_dit::TOKENS;
+
+    /// The denoising network asked for.
+    pub fn dit_of(&self, variant: DitVariant) -> Result<&OccDit, GenError> {
+        match variant {
+            DitVariant::Base => Ok(&self.dit),
+            DitVariant::Distilled => self.distilled.as_ref().ok_or_else(|| {
+                GenError::Params("network is distilled, expected base: these weights have no student".into())
+            }),
+        }
     }
 }

@@ -5,15 +5,17 @@
 use rayon::prelude::*;
 use serde::Deserialize;
 
+use super::int8_attention::Int8Head;
 use super::layers::{Head, Linear, NORM_EPS};
 use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
+use crate::generation::params::Precision;
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::GridSpec;
 use crate::scene::raster::HEADINGS;
 
 const PATCH: usize = 2;
 const TOKENS_PER_SIDE: usize = SIDE / PATCH;
-const TOKENS: usize = TOKENS_PER_SIDE * TOKENS_PER_SIDE;
+pub(super) const TOKENS: usize = TOKENS_PER_SIDE * TOKENS_PER_SIDE;
 const PATCH_CELLS: usize = PATCH * PATCH;
 const COLUMNS: usize = GridSpec::NX / SIDE;
 const LAYERS: usize = 18;
@@ -135,6 +137,22 @@ pub fn tokens_of(cells: &[bool], halo: usize) -> Vec<usize> {
         }
     }
     (0..TOKENS).filter(|token| wanted[*token]).collect()
+}
+
+/// What becomes of the blocks between the first and the last: what they add to the tokens changes slowly from one
+/// step to the next (Delta-DiT, 2406.01125).
+pub enum Middle<'a> {
+    /// They are computed.
+    Computed,
+    /// They are computed, and what they added is kept here.
+    Kept(&'a mut Vec<f32>),
+    /// What they added at an earlier step is added again; they are computed if that is of other tokens.
+    Reused(&'a [f32]),
+}
+
+enum AnyHead<'a> {
+    F32(Head<'a>),
+    Int8(Int8Head),
 }
 
 struct Block {
@@ -277,6 +295,19 @@ impl OccDit {
         condition: &Prepared,
         keys_values: &mut KeysValues,
     ) -> Result<Vec<f32>, ModelError> {
+        self.forward_in(x, t, condition, keys_values, Precision::F32, Middle::Computed)
+    }
+
+    /// The same with the blocks' products in the precision asked for, and the middle blocks computed or not.
+    pub fn forward_in(
+        &self,
+        x: &[f32],
+        t: f32,
+        condition: &Prepared,
+        keys_values: &mut KeysValues,
+        precision: Precision,
+        mut middle: Middle<'_>,
+    ) -> Result<Vec<f32>, ModelError> {
         check_length("state", x.len(), LATENT)?;
         check_finite("state", x)?;
         if !(0.0..1000.0).contains(&t) {
@@ -309,8 +340,26 @@ impl OccDit {
             .zip(&condition.embedded)
             .for_each(|(t, c)| *t += c);
         let modulations: Vec<Vec<f32>> = self.blocks.par_iter().map(|b| b.ada.vector(&time)).collect();
-        for ((block, ada), keys_values) in self.blocks.iter().zip(&modulations).zip(&mut keys_values.0) {
-            block.apply(&mut tokens, ada, self.config.heads, places, keys_values);
+        let last = self.blocks.len() - 1;
+        let mut before = Vec::new();
+        for (i, ((block, ada), keys_values)) in
+            self.blocks.iter().zip(&modulations).zip(&mut keys_values.0).enumerate()
+        {
+            match &mut middle {
+                Middle::Reused(added) if i == 1 && added.len() == tokens.len() && last > 1 => {
+                    tokens.iter_mut().zip(&**added).for_each(|(t, a)| *t += a);
+                }
+                Middle::Kept(_) if i == 1 => before.clone_from(&tokens),
+                Middle::Kept(added) if i == last && last > 1 => {
+                    added.clear();
+                    added.extend(tokens.iter().zip(&before).map(|(t, b)| t - b));
+                }
+                _ => {}
+            }
+            let skipped = matches!(&middle, Middle::Reused(added) if added.len() == tokens.len());
+            if !skipped || i == 0 || i == last {
+                block.apply(&mut tokens, ada, self.config.heads, places, keys_values, precision);
+            }
         }
         let ada = self.final_ada.vector(&time);
         let (shift, scale) = ada.split_at(width);
@@ -376,6 +425,7 @@ impl Block {
         heads: usize,
         places: &[usize],
         keys_values: &mut [f32],
+        precision: Precision,
     ) {
         let width = ada.len() / 6;
         let part = |i: usize| &ada[i * width..][..width];
@@ -389,23 +439,25 @@ impl Block {
             .for_each(|(qkv, x)| {
                 let mut normed = vec![0.0; x.len()];
                 kernels::norm_rows(x, NORM_EPS, &scale1, part(0), &mut normed);
-                self.qkv.rows(&normed, qkv);
+                self.qkv.rows_in(precision, &normed, qkv);
             });
         for (row, place) in qkv.chunks_exact(3 * width).zip(places) {
             keys_values[place * 2 * width..][..2 * width].copy_from_slice(&row[width..]);
         }
         let keys_values = &*keys_values;
         let head_width = width / heads;
-        let heads: Vec<Head<'_>> = (0..heads)
+        let heads: Vec<AnyHead<'_>> = (0..heads)
             .into_par_iter()
             .map(|h| {
-                Head::new(
-                    keys_values,
-                    2 * width,
-                    head_width,
-                    h * head_width,
-                    width + h * head_width,
-                )
+                let (at, stride) = (h * head_width, 2 * width);
+                match precision {
+                    Precision::F32 => {
+                        AnyHead::F32(Head::new(keys_values, stride, head_width, at, width + at))
+                    }
+                    Precision::Int8 => {
+                        AnyHead::Int8(Int8Head::new(keys_values, stride, head_width, at, width + at))
+                    }
+                }
             })
             .collect();
         let shrink = 1.0 / (head_width as f32).sqrt();
@@ -421,16 +473,22 @@ impl Block {
                     for row in qkv.chunks_exact(3 * width) {
                         queries.extend(row[at..][..head_width].iter().map(|q| q * shrink));
                     }
-                    head.attend(&queries, &mut attended[at..], width);
+                    match head {
+                        AnyHead::F32(head) => head.attend(&queries, &mut attended[at..], width),
+                        AnyHead::Int8(head) => head.attend(&queries, &mut attended[at..], width),
+                    }
                 }
                 let mut out = vec![0.0; x.len()];
-                self.proj.rows(&attended, &mut out);
+                self.proj.rows_in(precision, &attended, &mut out);
                 kernels::add_gated(x, part(2), &out);
                 kernels::norm_rows(x, NORM_EPS, &scale2, part(3), &mut attended);
                 let mut hidden = vec![0.0; 4 * x.len()];
-                self.fc1.rows(&attended, &mut hidden);
-                kernels::gelu_all(&mut hidden);
-                self.fc2.rows(&hidden, &mut out);
+                self.fc1.rows_in(precision, &attended, &mut hidden);
+                match precision {
+                    Precision::F32 => kernels::gelu_all(&mut hidden),
+                    Precision::Int8 => kernels::gelu_all_roughly(&mut hidden),
+                }
+                self.fc2.rows_in(precision, &hidden, &mut out);
                 kernels::add_gated(x, part(5), &out);
             });
     }

@@ -5,6 +5,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::int8::Int8Panels;
 use super::layers::{View, matmul};
 
 /// Columns of a panel: three vectors of sixteen.
@@ -52,6 +53,14 @@ impl Panels {
             }
         }
         Self { data: lines, k, n }
+    }
+
+    /// The same matrix in eight bits.
+    pub fn to_int8(&self) -> Int8Panels {
+        let rows: Vec<f32> = (0..self.k)
+            .flat_map(|row| (0..self.n).map(move |column| self.at(row, column)))
+            .collect();
+        Int8Panels::new(View::rows(&rows, self.n), self.k, self.n)
     }
 
     fn values(&self) -> &[f32] {

@@ -7,7 +7,9 @@ mod network;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use crate::generation::composite::{composite, label_hash, seam_change_share, untouched_voxels_changed};
+use crate::generation::composite::{
+    composite, label_hash, seam_change_share, untouched_hash, untouched_voxels_changed,
+};
 use crate::generation::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
 use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
@@ -17,6 +19,7 @@ use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
 use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::{RegionNoise, edit_with_replay};
+use crate::generation::params::{DitVariant, Precision};
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::{Guidance, Sampler, SolverKind};
 use crate::generation::world::draw::hash;
@@ -46,6 +49,8 @@ struct SourceKey {
     steps: u32,
     iterations: u32,
     exact: bool,
+    network: DitVariant,
+    precision: Precision,
 }
 
 #[derive(Clone)]
@@ -64,6 +69,11 @@ fn stored(steps: u32) -> Option<StepKeysValues> {
     (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
 }
 
+/// The same; blocks that are not computed at every step leave none.
+fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
+    stored(params.steps).filter(|_| params.reuse_steps <= 1)
+}
+
 /// What inverting and sampling again gave.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundTrip {
@@ -73,8 +83,9 @@ pub struct RoundTrip {
     pub noise_std: f64,
 }
 
-/// Generates occupancy. Keeps the trajectories of recent sources, its own results among them, so
+/// Generates occupancy. Clones share what they keep. Keeps the trajectories of recent sources, its own results among them, so
 /// that the next edit of a scene needs no inversion.
+#[derive(Clone)]
 pub struct OccPipeline {
     models: Arc<OccModels>,
     sources: VecDeque<Source>,
@@ -154,8 +165,9 @@ impl OccPipeline {
         tokens: Option<Vec<usize>>,
         mask: Vec<f32>,
         context: Vec<f32>,
-        guided: bool,
+        params: &GenParams,
     ) -> Result<Network, GenError> {
+        let guided = params.guidance != 1.0;
         let draft_latent = self.draft_latent(&condition.draft)?;
         let full = DitCondition {
             bev: condition.bev.clone(),
@@ -165,14 +177,16 @@ impl OccPipeline {
             mask,
             context,
         };
+        let models = self.models.clone();
+        let dit = models.dit_of(params.network)?;
         let prepared = match tokens {
-            Some(tokens) => self.models.dit.prepare_some(&full, tokens),
-            None => self.models.dit.prepare(&full),
+            Some(tokens) => dit.prepare_some(&full, tokens),
+            None => dit.prepare(&full),
         };
         let prepared = prepared.map_err(GenError::failed)?;
         let without = if guided {
-            let null = self.models.dit.null_condition(&full);
-            Some(self.models.dit.prepare(&null).map_err(GenError::failed)?)
+            let null = dit.null_condition(&full);
+            Some(dit.prepare(&null).map_err(GenError::failed)?)
         } else {
             None
         };
@@ -181,6 +195,11 @@ impl OccPipeline {
             condition: prepared,
             without,
             keys_values: None,
+            variant: params.network,
+            precision: params.precision,
+            reuse_steps: params.reuse_steps,
+            predictions: 0,
+            added: Vec::new(),
         })
     }
 
@@ -196,6 +215,8 @@ impl OccPipeline {
             steps: params.steps,
             iterations: params.inversion_iterations,
             exact: params.solver == SolverKind::OBelm,
+            network: params.network,
+            precision: params.precision,
         }
     }
 
@@ -242,7 +263,7 @@ impl OccPipeline {
             .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(frame))?;
+        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(frame, params))?;
         network.keys_values = stored(params.steps);
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let mut solver = params.solver;
@@ -280,6 +301,11 @@ impl OccPipeline {
         Ok(source)
     }
 
+    /// The clean end of the trajectory that the latest job used or made: latent, 50x50x8.
+    pub fn latest_latent(&self) -> Option<Vec<f32>> {
+        self.sources.front().map(|s| s.trajectory.latent_f32())
+    }
+
     /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
@@ -291,7 +317,7 @@ impl OccPipeline {
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
         let frame = job.scene.frame();
         let known = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
-        let mut network = self.network_of_source(frame)?;
+        let mut network = self.network_of_source(frame, &job.params)?;
         let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
@@ -312,7 +338,7 @@ impl OccPipeline {
             .into_iter()
             .map(f64::from)
             .collect();
-        let mut network = self.network_of_source(frame)?;
+        let mut network = self.network_of_source(frame, params)?;
         let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {
@@ -328,12 +354,17 @@ impl OccPipeline {
     }
 
     /// The network under the condition of a frame's source, for all tokens.
-    fn network_of_source(&mut self, frame: &Frame) -> Result<Network, GenError> {
+    fn network_of_source(&mut self, frame: &Frame, params: &GenParams) -> Result<Network, GenError> {
         let source = &*frame.source;
         let named = Named::default().or(&density_of_source(frame));
         let condition = Condition::new(&source.layout, &source.boxes, named, self.ablation);
         let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
-        self.network(&condition, None, mask, context, false)
+        let params = GenParams {
+            guidance: 1.0,
+            reuse_steps: 1,
+            ..*params
+        };
+        self.network(&condition, None, mask, context, &params)
     }
 
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
@@ -342,17 +373,16 @@ impl OccPipeline {
         let condition = Condition::new(&frame.layout, &frame.boxes, params.named, self.ablation);
         let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
-        let guided = sampler.guidance.weight != 1.0;
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(
                 &condition,
                 None,
                 vec![1.0; CELLS],
                 vec![0.0; CELLS * CHANNELS],
-                guided,
+                params,
             )
         })?;
-        network.keys_values = stored(params.steps);
+        network.keys_values = stored_for(params);
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
         let states = report.timed(Stage::Denoise, |_| {
             sampler.sample(start, &mut network, |view| {
@@ -435,7 +465,6 @@ impl OccPipeline {
         let named = params.named.or(&density_of_source(frame));
         let condition = Condition::new(&frame.layout, &frame.boxes, named, self.ablation);
         let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
-        let guided = sampler.guidance.weight != 1.0;
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent
@@ -449,10 +478,10 @@ impl OccPipeline {
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
             Some(kept) => Some(kept.clone()),
-            None => stored(params.steps),
+            None => stored_for(params),
         };
         let mut network = report.timed(Stage::Encode, |_| {
-            self.network(&condition, local, mask, context, guided)
+            self.network(&condition, local, mask, context, params)
         })?;
         network.keys_values = keys_values;
         report.tokens = network.condition.tokens();
@@ -493,7 +522,7 @@ impl OccPipeline {
                 },
             )
         })?;
-        let keys_values = network.keys_values.take();
+        let keys_values = network.keys_values.take().filter(|_| params.reuse_steps <= 1);
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
@@ -554,6 +583,7 @@ impl OccPipeline {
         report.region_share = region.share();
         report.region_cells = region.cell_count();
         report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
+        report.untouched_hash = untouched_hash(&occupancy, region, painted);
         report.voxels_changed = source.count_different(&occupancy);
         report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
         GenResult {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::generation::job::{GenError, Named};
-use crate::generation::model::{KeysValues, OccModels, Prepared};
+use crate::generation::model::{KeysValues, Middle, OccModels, Prepared};
+use crate::generation::params::{DitVariant, Precision};
 use crate::generation::solver::{Branch, Denoiser};
 use crate::scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
 
@@ -76,6 +77,16 @@ pub struct Network {
     /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
     /// computed; none if nobody wants them.
     pub keys_values: Option<StepKeysValues>,
+    /// Which of the two denoising networks, and how its products are computed.
+    pub variant: DitVariant,
+    /// See [`DitVariant`].
+    pub precision: Precision,
+    /// Compute the middle blocks at every so many predictions; 1 = at every one.
+    pub reuse_steps: u32,
+    /// Predictions so far.
+    pub predictions: u32,
+    /// What the middle blocks added when they were last computed.
+    pub added: Vec<f32>,
 }
 
 impl Denoiser for Network {
@@ -83,13 +94,30 @@ impl Denoiser for Network {
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
         let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
-        let (dit, step) = (&self.models.dit, t as f32);
-        let v = match (branch, &self.without, &mut self.keys_values) {
-            (Branch::Unconditional, Some(without), _) => dit.forward(&x, step, without),
-            (_, _, Some(kept)) => {
-                dit.forward_some(&x, step, &self.condition, kept.entry(t.to_bits()).or_default())
+        let (dit, step) = (self.models.dit_of(self.variant)?, t as f32);
+        let mut fresh = KeysValues::default();
+        let v = match (branch, &self.without) {
+            (Branch::Unconditional, Some(without)) => dit.forward_in(
+                &x,
+                step,
+                without,
+                &mut fresh,
+                self.precision,
+                Middle::Computed,
+            ),
+            _ => {
+                let kept = match &mut self.keys_values {
+                    Some(kept) => kept.entry(t.to_bits()).or_default(),
+                    None => &mut fresh,
+                };
+                let middle = match self.reuse_steps {
+                    0 | 1 => Middle::Computed,
+                    n if self.predictions.is_multiple_of(n) => Middle::Kept(&mut self.added),
+                    _ => Middle::Reused(&self.added),
+                };
+                self.predictions += 1;
+                dit.forward_in(&x, step, &self.condition, kept, self.precision, middle)
             }
-            _ => dit.forward(&x, step, &self.condition),
         };
         Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::edits::{KINDS, Reached, Trial};
+use crate::app::cli::trials::{KINDS, Reached, Trial};
 use super::{Bar, Eval, scene, with_interval};
 use crate::app::cli::progress::Progress;
 use crate::editor::Document;
@@ -74,7 +74,7 @@ impl Eval {
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let params = GenParams {
             keep_objects: false,
-            ..self.generation.params(GenParams::default())
+            ..self.generation.params(GenParams::default())?
         };
         let ctx = JobCtx::detached();
         let mut kinds: BTreeMap<&str, Kind> = BTreeMap::new();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::editing::edited;
-use super::edits::{KINDS, Trial};
+use crate::app::cli::trials::{KINDS, Trial};
 use super::{Eval, scene, with_interval};
 use crate::app::cli::progress::Progress;
 use crate::editor::Document;

@@ -62,7 +62,7 @@ impl Eval {
         let extractor = Extractor::bundled()?;
         let mut params = GenParams {
             keep_objects: false,
-            ..self.generation.params(full_params())
+            ..self.generation.params(full_params())?
         };
         let [mut found, mut worlds, mut bare, mut boxless] = <[Agreement; 4]>::default();
         let mut likeness = Confusion::default();

@@ -2,7 +2,6 @@
 //! output is judged: drafts are not put in for boxes that they left out.
 
 mod editing;
-mod edits;
 mod fidelity;
 mod generation;
 mod layout;

@@ -1,0 +1,198 @@
+//! The stops of the quality slider: settings on the measured front, from draft to reference.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Cost, Interval};
+use crate::generation::params::{DitVariant, GenParams, Precision};
+use crate::generation::solver::SolverKind;
+
+/// The knobs that a stop sets; everything else of the parameters stays.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StopKnobs {
+    /// Sampling steps.
+    pub steps: u32,
+    /// How a step is made.
+    pub solver: SolverKind,
+    /// Of the network's products.
+    pub precision: Precision,
+    /// Which network.
+    pub network: DitVariant,
+    /// Compute only the tokens around the edit.
+    pub local: bool,
+    /// Tokens around the region that are computed with it.
+    pub halo_tokens: u32,
+    /// Fixed-point updates per inversion step.
+    pub inversion_iterations: u32,
+    /// See [`GenParams::reuse_steps`].
+    pub reuse_steps: u32,
+}
+
+impl StopKnobs {
+    /// Those of some parameters.
+    pub fn of(params: &GenParams) -> Self {
+        Self {
+            steps: params.steps,
+            solver: params.solver,
+            precision: params.precision,
+            network: params.network,
+            local: params.local,
+            halo_tokens: params.halo_tokens,
+            inversion_iterations: params.inversion_iterations,
+            reuse_steps: params.reuse_steps,
+        }
+    }
+
+    /// The parameters with these knobs.
+    pub fn on(&self, params: GenParams) -> GenParams {
+        GenParams {
+            steps: self.steps,
+            solver: self.solver,
+            precision: self.precision,
+            network: self.network,
+            local: self.local,
+            halo_tokens: self.halo_tokens,
+            inversion_iterations: self.inversion_iterations,
+            reuse_steps: self.reuse_steps,
+            ..params
+        }
+    }
+}
+
+/// One stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// What users call it: `draft`.
+    pub name: String,
+    /// Its settings.
+    pub knobs: StopKnobs,
+    /// Share of the region's voxels that differ from the reference: median over edits and its interval.
+    pub error: Interval,
+    /// The share that nine of ten single edits lie between.
+    pub error_of_one: [f64; 2],
+    /// Wall time of an edit whose source is ready.
+    pub cost: Cost,
+    /// Wall time of inverting the source first, s.
+    pub invert_s: f64,
+    /// Names of the results on the edits of the first held-out world (`label_hash`): a machine that gives the same has
+    /// the same errors.
+    pub probe: Vec<u64>,
+}
+
+/// All stops, from the fastest to the reference.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stops {
+    /// Which weights they were measured with: [`ModelCard::hashes`](crate::generation::model::ModelCard).
+    pub weights: [u64; 2],
+    /// The machine on which the times were taken.
+    pub machine: String,
+    /// The build of the program that took them; empty for those that ship.
+    #[serde(default)]
+    pub build: String,
+    /// Running processes per core then.
+    #[serde(default)]
+    pub load_per_core: Option<f64>,
+    /// What the errors are measured against.
+    pub reference: String,
+    /// The stops.
+    pub stops: Vec<Stop>,
+}
+
+impl Stops {
+    /// Those measured for the shipped weights; times are of the machine named in them until the user calibrates.
+    pub fn bundled() -> Self {
+        let text = include_str!("../../../assets/trade/stops.json");
+        serde_json::from_str(text).unwrap_or_else(|_| Self {
+            weights: [0; 2],
+            machine: String::new(),
+            build: String::new(),
+            load_per_core: None,
+            reference: String::new(),
+            stops: Vec::new(),
+        })
+    }
+
+    /// From what a user's machine was measured to take; refuses other weights and what makes no sense, in one line.
+    pub fn parse(text: &str, weights: [u64; 2]) -> Result<Self, String> {
+        let read: Self = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        if read.weights != weights {
+            return Err("measured with other weights".into());
+        }
+        let sound = |s: &Stop| {
+            let ends = [s.error.low, s.error.median, s.error.high, s.invert_s, s.cost.fixed_s, s.cost.per_token_s];
+            ends.iter().chain(&s.error_of_one).all(|v| v.is_finite() && *v >= 0.0)
+                && s.knobs.on(GenParams::default()).check().is_ok()
+        };
+        match read.stops.iter().find(|s| !sound(s)) {
+            _ if read.stops.is_empty() => Err("no stops".into()),
+            Some(bad) => Err(format!("stop {:?}: a figure is out of range", bad.name)),
+            None => Ok(read),
+        }
+    }
+
+    /// The stop of that name.
+    pub fn named(&self, name: &str) -> Option<&Stop> {
+        self.stops.iter().find(|s| s.name == name)
+    }
+
+    /// The stop whose knobs these parameters have.
+    pub fn index_of(&self, params: &GenParams) -> Option<usize> {
+        let knobs = StopKnobs::of(params);
+        self.stops.iter().position(|s| s.knobs == knobs)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::model::OccModels;
+
+    /// Row 64: from the fastest stop to the slowest, time rises and the error falls; every stop can be run.
+    #[test]
+    fn row_64_the_shipped_stops_are_a_front() {
+        let stops = Stops::bundled();
+        assert!(stops.stops.len() >= 5);
+        for pair in stops.stops.windows(2) {
+            assert!(pair[0].error.median > pair[1].error.median, "{} {}", pair[0].name, pair[1].name);
+            for tokens in [20.0, 60.0] {
+                assert!(pair[0].cost.wall_s(tokens) < pair[1].cost.wall_s(tokens));
+            }
+        }
+        for name in ["draft", "balanced", "accurate", "reference"] {
+            assert!(stops.named(name).is_some(), "{name}");
+        }
+        for (i, stop) in stops.stops.iter().enumerate() {
+            let params = stop.knobs.on(GenParams::default());
+            assert_eq!((params.check(), stops.index_of(&params)), (Ok(()), Some(i)));
+            assert!(stop.error_of_one[0] <= stop.error.median && stop.error.median <= stop.error_of_one[1]);
+        }
+        assert!(stops.stops[0].cost.wall_s(40.0) <= 0.15, "the fastest stop");
+    }
+
+    #[test]
+    fn the_shipped_stops_were_measured_with_the_shipped_weights() {
+        let models = OccModels::bundled().expect("weights");
+        assert_eq!(Stops::bundled().weights, models.card.hashes, "run `sceneloom trade --stops`");
+    }
+
+    #[test]
+    fn foreign_files_are_refused_in_one_line() {
+        let stops = Stops::bundled();
+        let text = serde_json::to_string(&stops).expect("plain values");
+        assert_eq!(Stops::parse(&text, stops.weights), Ok(stops.clone()));
+        assert!(Stops::parse(&text, [1, 2]).is_err());
+        let mut bad = stops.clone();
+        bad.stops[0].knobs.steps = 0;
+        let refused = |s: &str| {
+            let error = Stops::parse(s, stops.weights).expect_err("refused");
+            assert_eq!(error.lines().count(), 1, "{error}");
+        };
+        refused(&serde_json::to_string(&bad).expect("plain values"));
+        refused(&text[..text.len() / 2]);
+        refused(&text.replace("\"steps\"", "\"stepps\""));
+        bad.stops.clear();
+        refused(&serde_json::to_string(&bad).expect("plain values"));
+    }
+}
