@@ -400,6 +400,9 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Views, "sensors", "Sensors of the vehicle", "", |_| {
         Some(Command::ToggleSensors)
     }),
+    action(Views, "performance", "Performance overlay", "F10", |_| {
+        Some(Command::TogglePerformance)
+    }),
     action(Views, "log", "Log", "", |_| Some(Command::ToggleLog)),
     action(
         Generation,

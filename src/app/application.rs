@@ -32,6 +32,7 @@ use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
+use super::panels::performance::performance_ui;
 use super::panels::prompt::PromptPane;
 use super::panels::sensors::sensors_ui;
 use super::panels::settings::settings_ui;
@@ -40,6 +41,7 @@ use super::panels::start::start_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
+use super::perf::Perf;
 use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
@@ -132,6 +134,8 @@ pub struct SceneloomApp {
     pub checking: Checking,
     /// Copies of unsaved work; none in tests.
     pub recovery: Option<Recovery>,
+    /// How fast the window is.
+    pub perf: Perf,
     pub(super) exporting: Exporting,
     pub(super) path: Option<PathBuf>,
     pub(super) worker: GenWorker,
@@ -213,6 +217,7 @@ impl SceneloomApp {
             toasts,
             checking: Checking::spawn(wake.clone())?,
             recovery: None,
+            perf: Perf::default(),
             exporting: Exporting::default(),
             path: config.path,
             worker,
@@ -287,6 +292,9 @@ impl SceneloomApp {
     /// Everything that happens without drawing: news of the worker, of sensing, of files.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.sensing.drain();
+        if self.document.history_limit() != self.settings.history_bytes() {
+            self.document.set_history_limit(self.settings.history_bytes());
+        }
         let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
         for event in events {
             if self.gate.admit(&event) {
@@ -372,6 +380,7 @@ impl SceneloomApp {
         let job = Job { scene, params };
         let key = job.key();
         let id = self.worker.submit(job);
+        self.perf.job_begins();
         self.live.submitted(id, key, now_s);
     }
 
@@ -380,6 +389,7 @@ impl SceneloomApp {
             JobUpdate::Progress { stage, step, steps } => {
                 if let Some(running) = self.live.running.as_mut().filter(|r| r.id == event.id) {
                     running.progress = Some((stage, step, steps));
+                    self.perf.stage(stage, self.clock.elapsed().as_secs_f64());
                 }
             }
             JobUpdate::Preview(result) => {
@@ -393,6 +403,8 @@ impl SceneloomApp {
             JobUpdate::Finished(result) => {
                 let now_s = self.now_s();
                 if let Some(running) = self.live.ended(event.id) {
+                    let settled_s = (running.purpose == Purpose::Edit).then(|| now_s - running.edited_s);
+                    self.perf.job_ended(now_s, settled_s, "finished");
                     let full = running.purpose == Purpose::Full;
                     if running.purpose == Purpose::WarmUp {
                         let calls = result.report.network_calls;
@@ -420,6 +432,7 @@ impl SceneloomApp {
                 self.live.ended(event.id);
                 self.preview = None;
                 let now_s = self.now_s();
+                self.perf.job_ended(now_s, None, "failed");
                 let paused = if std::mem::replace(&mut self.live.on, false) {
                     " Live is off now."
                 } else {
@@ -432,7 +445,9 @@ impl SceneloomApp {
                 );
             }
             JobUpdate::Superseded => {
-                self.live.ended(event.id);
+                if self.live.ended(event.id).is_some() {
+                    self.perf.job_ended(self.now_s(), None, "cancelled");
+                }
                 self.preview = None;
             }
         }
@@ -533,7 +548,8 @@ impl SceneloomApp {
             || self.asks_to_recover()
             || self.state.tools.row_open;
         self.overlays(ui, &scene, &mut commands);
-        if !dialog {
+        // What is shown is not what a key would change.
+        if !dialog && !self.state.holding_before {
             let flying =
                 ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
             keys::commands(ui.ctx(), &self.keymap, &mut self.state, flying, &mut commands);
@@ -541,9 +557,11 @@ impl SceneloomApp {
         if !commands.is_empty() || self.passes < 3 {
             ui.ctx().request_repaint();
         }
+        let before = self.document.scene().rev;
         for command in commands {
             self.execute(command, ui.ctx());
         }
+        self.frame_drawn(ui.ctx(), self.document.scene().rev != before);
     }
 
     fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
@@ -626,6 +644,7 @@ impl SceneloomApp {
             };
             checks_window(ui, &input, &mut self.state.checks_open, commands);
         }
+        performance_ui(ui, self.center, &mut self.perf);
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
@@ -708,8 +727,10 @@ pub(super) fn one_line(error: &anyhow::Error) -> String {
 }
 
 impl eframe::App for SceneloomApp {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        self.frame_begins(frame.info().cpu_usage);
         self.update(ctx);
+        self.perf.logic_done(self.now_s());
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
@@ -720,6 +741,7 @@ impl eframe::App for SceneloomApp {
         self.kept.2 = f64::NEG_INFINITY;
         let ctx = self.ctx.clone();
         self.write_settings(&ctx);
+        self.perf.finish(None);
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

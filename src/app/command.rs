@@ -131,6 +131,8 @@ pub enum Command {
     ToggleGrid,
     /// Shows or hides the log.
     ToggleLog,
+    /// Shows or hides the performance overlay.
+    TogglePerformance,
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
     /// Starts from what words describe, drawn from a seed.

@@ -164,6 +164,7 @@ impl SceneloomApp {
                 let suggestion = self.suggested("json");
                 self.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
             }
+            Command::TogglePerformance => self.perf.open = !self.perf.open,
             Command::ToggleLog => self.state.log_open = !self.state.log_open,
             Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
         }

@@ -23,11 +23,13 @@ mod icons;
 pub mod keymap;
 mod keys;
 pub mod live;
+mod measuring;
 pub mod memory;
 pub mod open;
 mod pane_views;
 pub mod panels;
 pub mod picture;
+pub mod perf;
 mod pipeline;
 mod pointer;
 mod recovering;
@@ -39,6 +41,7 @@ pub mod state;
 pub mod text;
 pub mod theme;
 pub mod tools;
+pub mod trace;
 pub mod versions;
 pub mod view3d;
 mod view3d_tools;
@@ -54,9 +57,9 @@ use crate::generation::job::GenParams;
 use crate::scene::Scene;
 
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
-/// `.loom` is saved back. Errors as [`run_window_with`].
-pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
-    run_window_with(AppConfig {
+/// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
+pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
+    let config = AppConfig {
         scene,
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
         build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
@@ -71,7 +74,8 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
         new_scene: Arc::new(new_scene),
         native_dialogs: true,
         settings_file: settings::Settings::file(),
-    })
+    };
+    run_window_with(config, trace)
 }
 
 /// A random world, another one each time.
@@ -87,8 +91,8 @@ fn new_scene() -> anyhow::Result<Scene> {
 }
 
 /// Opens the window and returns when it is closed. Errors in one line if there is no display or no
-/// graphics adapter (a software one will do).
-pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
+/// graphics adapter (a software one will do), or if the file that measurements go to cannot be written.
+pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("sceneloom")
         .with_title(format!("{} – Sceneloom", config.scene.name))
@@ -106,6 +110,9 @@ pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
         app.keep_copies(&cc.egui_ctx);
+        if let Some(path) = trace {
+            app.trace_to(&path)?;
+        }
         Ok(Box::new(app))
     };
     eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {

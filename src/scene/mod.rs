@@ -5,6 +5,7 @@ pub mod classes;
 pub mod density;
 pub mod distance;
 pub mod draft;
+pub mod footprint;
 pub mod graph;
 pub mod grid;
 pub mod infer;

@@ -11,6 +11,7 @@ pub mod layers;
 pub mod lidar_sweep;
 pub mod objects;
 pub mod palette;
+pub mod performance;
 pub mod panes;
 pub mod prompt;
 pub mod recovery;

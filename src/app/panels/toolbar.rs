@@ -177,6 +177,10 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
         on(item(ui, "Checks…", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
+        on(
+            item(ui, "Performance", "F10", true),
+            Command::TogglePerformance,
+        );
     });
     ui.menu_button("Generate", |ui| {
         on(
