@@ -554,14 +554,17 @@ impl SceneloomApp {
                 ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
             keys::commands(ui.ctx(), &self.keymap, &mut self.state, flying, &mut commands);
         }
-        if !commands.is_empty() || self.passes < 3 {
-            ui.ctx().request_repaint();
-        }
+        let any = !commands.is_empty();
         let before = self.document.scene().rev;
         for command in commands {
             self.execute(command, ui.ctx());
         }
-        self.frame_drawn(ui.ctx(), self.document.scene().rev != before);
+        let edited = self.document.scene().rev != before;
+        self.frame_drawn(ui.ctx(), edited);
+        let at_once = edited && self.show_at_once(ui.ctx());
+        if any && !at_once || self.passes < 3 {
+            ui.ctx().request_repaint();
+        }
     }
 
     fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {

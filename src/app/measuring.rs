@@ -37,6 +37,22 @@ impl SceneloomApp {
         self.perf.frame_begins(now_s, before_s.map(f64::from), wait);
     }
 
+    /// What was edited in this frame is shown by this frame: the panels are laid out again, and only that is painted.
+    /// False if the window does not lay them out again (it has done so already).
+    pub(super) fn show_at_once(&mut self, ctx: &egui::Context) -> bool {
+        if ctx.current_pass_index() > 0 {
+            return false;
+        }
+        ctx.request_discard("the scene was edited");
+        if !ctx.will_discard() {
+            return false;
+        }
+        self.perf.shown_at_once();
+        // What comes with a new frame otherwise: generation, sensors and checks learn of the edit.
+        self.update(ctx);
+        true
+    }
+
     /// A frame was drawn, and the commands of the user were carried out.
     pub(super) fn frame_drawn(&mut self, ctx: &egui::Context, edited: bool) {
         let events = ctx.input(|i| i.raw.events.len());

@@ -37,6 +37,7 @@ pub mod recovery;
 pub mod roads;
 pub mod sensing;
 pub mod settings;
+mod software_ui;
 pub mod state;
 pub mod text;
 pub mod theme;
@@ -110,6 +111,9 @@ pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Res
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
         app.keep_copies(&cc.egui_ctx);
+        if let Some(state) = &cc.wgpu_render_state {
+            software_ui::install(&cc.egui_ctx, state);
+        }
         if let Some(path) = trace {
             app.trace_to(&path)?;
         }

@@ -4,6 +4,7 @@ mod bench;
 mod day;
 mod editing;
 mod files;
+mod overdraw;
 mod recovery;
 mod sensors;
 mod shell;
