@@ -416,7 +416,7 @@ impl SceneloomApp {
                         return;
                     }
                     if !full {
-                        self.live.took(now_s - running.submitted_s);
+                        self.live.took(running.share, now_s - running.submitted_s);
                     }
                     if running.key.rev == self.document.settled_scene().rev {
                         self.receipt = Some(Receipt::new(&result.report, now_s - running.edited_s, full));
@@ -584,7 +584,9 @@ impl SceneloomApp {
             redo: self.document.redo_label(),
             live: self.live.on,
             busy: self.live.running.is_some(),
-            has_paint: scene.frame().painted.count_set() > 0,
+            waiting: self.live.has_waiting(self.document.settled_scene().rev),
+            bookmarks: self.settings.bookmarks.keys().copied().collect(),
+            has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
         };
         egui::Panel::top("toolbar")
@@ -605,6 +607,10 @@ impl SceneloomApp {
             unsettled,
             busy_with: self.opening.as_ref().map(|o| o.what.as_str()),
             unread: self.toasts.unread(),
+            paused: self.live.paused.as_ref(),
+            waiting: self.live.has_waiting(settled.rev),
+            dragging: self.document.is_dragging(),
+            hint: &super::hints::hint(&self.state),
         };
         egui::Panel::bottom("status")
             .exact_size(28.0)
@@ -644,6 +650,7 @@ impl SceneloomApp {
                 findings: self.checking.findings().map(|f| f.as_slice()),
                 stale: self.checking.is_stale(self.document.settled_scene().rev),
                 selected: self.state.selected,
+                frame: self.document.settled_scene().frame(),
             };
             checks_window(ui, &input, &mut self.state.checks_open, commands);
         }

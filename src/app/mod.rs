@@ -3,6 +3,7 @@
 pub mod actions;
 pub mod application;
 mod bev_image;
+pub mod bookmarks;
 pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
@@ -19,6 +20,8 @@ pub mod export;
 mod exporting;
 mod file_dialogs;
 pub mod graphics;
+pub mod guard;
+mod hints;
 mod icons;
 pub mod keymap;
 mod keys;

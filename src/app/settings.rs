@@ -1,5 +1,6 @@
 //! What is kept between sessions: looks, keys, panes, recent files. Never part of a scene.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -7,6 +8,7 @@ use anyhow::Context;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
+use super::bookmarks::Bookmark;
 use super::dock::Workspace;
 use super::keymap::Chords;
 use super::state::Pane;
@@ -37,6 +39,8 @@ pub struct Settings {
     pub workspace: Workspace,
     /// Where the panes stand.
     pub dock: Option<Tree<Pane>>,
+    /// Views that were kept, by number.
+    pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Memory that the history may take, MB.
     pub history_mb: u32,
     /// Files opened or saved, the newest first.
@@ -54,6 +58,7 @@ impl Default for Settings {
             keys: Chords::new(),
             workspace: Workspace::default(),
             dock: None,
+            bookmarks: BTreeMap::new(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             recent: Vec::new(),
         }

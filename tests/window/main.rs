@@ -2,6 +2,7 @@
 
 mod bench;
 mod day;
+mod desk;
 mod editing;
 mod files;
 mod overdraw;

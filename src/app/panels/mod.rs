@@ -9,6 +9,7 @@ pub mod export;
 pub mod fields;
 pub mod layers;
 pub mod lidar_sweep;
+pub mod lit;
 pub mod objects;
 pub mod palette;
 pub mod performance;

@@ -116,7 +116,7 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
 /// Shapes of the brush and what belongs to them.
 pub fn brush(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     let mut shape = state.tools.shape;
-    for part in PaintShape::ALL.chunks(4) {
+    for part in PaintShape::ALL.chunks(3) {
         if icons::segments(ui, &mut shape, part) {
             commands.push(Command::Tools(ToolCommand::Shape(shape)));
         }
