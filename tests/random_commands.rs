@@ -237,9 +237,12 @@ impl Model {
         self.states.truncate(self.at + 1);
         self.states.push(now.clone());
         self.at += 1;
-        if self.states.len() > Document::MAX_STEPS {
-            self.states.remove(0);
-            self.at -= 1;
+        // Memory bounds the history: the oldest states go, and only as many as it takes.
+        let gone = self.states.len().saturating_sub(document.history().len());
+        if gone > 0 {
+            assert!(document.position() >= Document::LEAST_UNDO);
+            self.states.drain(..gone);
+            self.at -= gone;
         }
     }
 }

@@ -110,6 +110,40 @@ impl ActionDef {
 
 use Group::{File, Generation, Selection, Tools, Views};
 
+macro_rules! bookmarks {
+    ($($slot:literal),*) => {
+        /// Goes to a kept view.
+        const fn go(slot: u8) -> ActionDef {
+            match slot {
+                $($slot => action(
+                    Views,
+                    concat!("bookmark_go_", $slot),
+                    concat!("Go to kept view ", $slot),
+                    concat!("F", $slot),
+                    |_| Some(Command::GoToBookmark($slot)),
+                ),)*
+                _ => panic!("there are nine"),
+            }
+        }
+
+        /// Keeps a view.
+        const fn keep(slot: u8) -> ActionDef {
+            match slot {
+                $($slot => action(
+                    Views,
+                    concat!("bookmark_keep_", $slot),
+                    concat!("Keep this view as ", $slot),
+                    concat!("Ctrl+F", $slot),
+                    |_| Some(Command::KeepBookmark($slot)),
+                ),)*
+                _ => panic!("there are nine"),
+            }
+        }
+    };
+}
+
+bookmarks!(1, 2, 3, 4, 5, 6, 7, 8, 9);
+
 /// Every action.
 pub const ACTIONS: &[ActionDef] = &[
     action(Tools, "select_tool", "Select", "V", |_| {
@@ -381,6 +415,24 @@ pub const ACTIONS: &[ActionDef] = &[
         "Shift+Space",
         |_| Some(Command::MaximizePane),
     ),
+    go(1),
+    go(2),
+    go(3),
+    go(4),
+    go(5),
+    go(6),
+    go(7),
+    go(8),
+    go(9),
+    keep(1),
+    keep(2),
+    keep(3),
+    keep(4),
+    keep(5),
+    keep(6),
+    keep(7),
+    keep(8),
+    keep(9),
     action(Views, "grid", "Grid", "G", |_| Some(Command::ToggleGrid)),
     action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", |_| {
         Some(Command::Workspace(Workspace::Edit))
@@ -409,6 +461,9 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Views, "sensors", "Sensors of the vehicle", "", |_| {
         Some(Command::ToggleSensors)
     }),
+    action(Views, "performance", "Performance overlay", "F10", |_| {
+        Some(Command::TogglePerformance)
+    }),
     action(Views, "log", "Log", "", |_| Some(Command::ToggleLog)),
     action(
         Generation,
@@ -430,6 +485,16 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
         Some(Command::CancelGeneration)
     }),
+    action(Generation, "cancel_waiting", "Drop the edit that waits", "", |_| {
+        Some(Command::CancelWaiting)
+    }),
+    action(
+        Generation,
+        "cancel_all",
+        "Cancel what runs and what waits",
+        "Ctrl+Shift+Backspace",
+        |_| Some(Command::CancelAll),
+    ),
     action(
         Generation,
         "compare",
@@ -490,7 +555,7 @@ pub const ACTIONS: &[ActionDef] = &[
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
         Some(Command::TogglePalette)
     }),
-    action(File, "keys", "Sheet of keys", "F1 ?", |_| {
+    action(File, "keys", "Sheet of keys", "?", |_| {
         Some(Command::ToggleKeys)
     }),
     action(File, "settings", "Settings", "Ctrl+,", |_| {

@@ -32,6 +32,7 @@ use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
+use super::panels::performance::performance_ui;
 use super::panels::prompt::PromptPane;
 use super::panels::sensors::sensors_ui;
 use super::panels::settings::settings_ui;
@@ -40,6 +41,7 @@ use super::panels::start::start_ui;
 use super::panels::status::{Receipt, StatusInput, status_ui};
 use super::panels::toasts::{Level, Toasts};
 use super::panels::toolbar::{ToolbarInput, toolbar_ui};
+use super::perf::Perf;
 use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
@@ -133,6 +135,8 @@ pub struct SceneloomApp {
     pub checking: Checking,
     /// Copies of unsaved work; none in tests.
     pub recovery: Option<Recovery>,
+    /// How fast the window is.
+    pub perf: Perf,
     pub(super) exporting: Exporting,
     /// The quality slider.
     pub tuning: Tuning,
@@ -221,6 +225,7 @@ impl SceneloomApp {
             toasts,
             checking: Checking::spawn(wake.clone())?,
             recovery: None,
+            perf: Perf::default(),
             exporting: Exporting::default(),
             path: config.path,
             worker,
@@ -296,6 +301,9 @@ impl SceneloomApp {
     pub fn update(&mut self, ctx: &egui::Context) {
         self.sensing.drain();
         self.tuning.update();
+        if self.document.history_limit() != self.settings.history_bytes() {
+            self.document.set_history_limit(self.settings.history_bytes());
+        }
         let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
         for event in events {
             if self.gate.admit(&event) {
@@ -381,6 +389,7 @@ impl SceneloomApp {
         let job = Job { scene, params };
         let key = job.key();
         let id = self.worker.submit(job);
+        self.perf.job_begins();
         self.live.submitted(id, key, now_s);
     }
 
@@ -389,6 +398,7 @@ impl SceneloomApp {
             JobUpdate::Progress { stage, step, steps } => {
                 if let Some(running) = self.live.running.as_mut().filter(|r| r.id == event.id) {
                     running.progress = Some((stage, step, steps));
+                    self.perf.stage(stage, self.clock.elapsed().as_secs_f64());
                 }
             }
             JobUpdate::Preview(result) => {
@@ -402,6 +412,8 @@ impl SceneloomApp {
             JobUpdate::Finished(result) => {
                 let now_s = self.now_s();
                 if let Some(running) = self.live.ended(event.id) {
+                    let settled_s = (running.purpose == Purpose::Edit).then(|| now_s - running.edited_s);
+                    self.perf.job_ended(now_s, settled_s, "finished");
                     let full = running.purpose == Purpose::Full;
                     if running.purpose == Purpose::WarmUp {
                         let calls = result.report.network_calls;
@@ -413,7 +425,7 @@ impl SceneloomApp {
                         return;
                     }
                     if !full {
-                        self.live.took(now_s - running.submitted_s);
+                        self.live.took(running.share, now_s - running.submitted_s);
                     }
                     if !full && running.key.rev == self.document.settled_scene().rev {
                         let edited = self.document.settled_scene().clone();
@@ -434,6 +446,7 @@ impl SceneloomApp {
                 self.preview = None;
                 self.tuning.note_failure(&error.to_string());
                 let now_s = self.now_s();
+                self.perf.job_ended(now_s, None, "failed");
                 let paused = if std::mem::replace(&mut self.live.on, false) {
                     " Live is off now."
                 } else {
@@ -446,7 +459,9 @@ impl SceneloomApp {
                 );
             }
             JobUpdate::Superseded => {
-                self.live.ended(event.id);
+                if self.live.ended(event.id).is_some() {
+                    self.perf.job_ended(self.now_s(), None, "cancelled");
+                }
                 self.preview = None;
             }
         }
@@ -548,16 +563,22 @@ impl SceneloomApp {
             || self.asks_to_recover()
             || self.state.tools.row_open;
         self.overlays(ui, &scene, &mut commands);
-        if !dialog {
+        // What is shown is not what a key would change.
+        if !dialog && !self.state.holding_before {
             let flying =
                 ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
             keys::commands(ui.ctx(), &self.keymap, &mut self.state, flying, &mut commands);
         }
-        if !commands.is_empty() || self.passes < 3 {
-            ui.ctx().request_repaint();
-        }
+        let any = !commands.is_empty();
+        let before = self.document.scene().rev;
         for command in commands {
             self.execute(command, ui.ctx());
+        }
+        let edited = self.document.scene().rev != before;
+        self.frame_drawn(ui.ctx(), edited);
+        let at_once = edited && self.show_at_once(ui.ctx());
+        if any && !at_once || self.passes < 3 {
+            ui.ctx().request_repaint();
         }
     }
 
@@ -578,7 +599,9 @@ impl SceneloomApp {
             redo: self.document.redo_label(),
             live: self.live.on,
             busy: self.live.running.is_some(),
-            has_paint: scene.frame().painted.count_set() > 0,
+            waiting: self.live.has_waiting(self.document.settled_scene().rev),
+            bookmarks: self.settings.bookmarks.keys().copied().collect(),
+            has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
         };
         egui::Panel::top("toolbar")
@@ -599,6 +622,10 @@ impl SceneloomApp {
             unsettled,
             busy_with: self.opening.as_ref().map(|o| o.what.as_str()),
             unread: self.toasts.unread(),
+            paused: self.live.paused.as_ref(),
+            waiting: self.live.has_waiting(settled.rev),
+            dragging: self.document.is_dragging(),
+            hint: &super::hints::hint(&self.state),
         };
         egui::Panel::bottom("status")
             .exact_size(28.0)
@@ -638,9 +665,11 @@ impl SceneloomApp {
                 findings: self.checking.findings().map(|f| f.as_slice()),
                 stale: self.checking.is_stale(self.document.settled_scene().rev),
                 selected: self.state.selected,
+                frame: self.document.settled_scene().frame(),
             };
             checks_window(ui, &input, &mut self.state.checks_open, commands);
         }
+        performance_ui(ui, self.center, &mut self.perf);
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);
@@ -723,8 +752,10 @@ pub(super) fn one_line(error: &anyhow::Error) -> String {
 }
 
 impl eframe::App for SceneloomApp {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        self.frame_begins(frame.info().cpu_usage);
         self.update(ctx);
+        self.perf.logic_done(self.now_s());
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
@@ -735,6 +766,7 @@ impl eframe::App for SceneloomApp {
         self.kept.2 = f64::NEG_INFINITY;
         let ctx = self.ctx.clone();
         self.write_settings(&ctx);
+        self.perf.finish(None);
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

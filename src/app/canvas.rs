@@ -163,6 +163,19 @@ impl Canvas {
         self.scale = self.scale.max(14.0);
     }
 
+    /// Point in the middle, ego frame, m, and points per metre; 0 before the first picture.
+    pub fn place(&self) -> (DVec2, f64) {
+        (self.center_m, self.scale)
+    }
+
+    /// Shows a place again; numbers that cannot be are made usable.
+    pub fn go_to(&mut self, center_m: DVec2, scale: f64) {
+        if center_m.is_finite() && scale.is_finite() && scale > 0.0 {
+            self.center_m = center_m;
+            self.scale = scale.clamp(*SCALE.start(), *SCALE.end());
+        }
+    }
+
     /// Forgets pictures made with other colours.
     pub fn forget_pictures(&mut self) {
         (self.layers, self.occupancy, self.unobserved) = (None, None, None);

@@ -65,6 +65,14 @@ pub enum Command {
     },
     /// Stops the generation that runs.
     CancelGeneration,
+    /// Lets an edit that waits for its generation go.
+    CancelWaiting,
+    /// Both.
+    CancelAll,
+    /// Keeps where the large views stand under a number.
+    KeepBookmark(u8),
+    /// Goes where the views stood when that number was kept.
+    GoToBookmark(u8),
     /// Compares with the version of that state.
     CompareWith(SceneRev),
     /// Goes back (or forward) to the version of that state, as an undo step.
@@ -139,6 +147,8 @@ pub enum Command {
     ToggleGrid,
     /// Shows or hides the log.
     ToggleLog,
+    /// Shows or hides the performance overlay.
+    TogglePerformance,
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
     /// Starts from what words describe, drawn from a seed.

@@ -69,6 +69,13 @@ impl SceneloomApp {
                     self.toasts.push(Level::Info, "Generation cancelled", now_s);
                 }
             }
+            Command::CancelWaiting => self.live.drop_waiting(self.document.settled_scene()),
+            Command::CancelAll => {
+                self.live.drop_waiting(self.document.settled_scene());
+                self.execute(Command::CancelGeneration, ctx);
+            }
+            Command::KeepBookmark(slot) => self.keep_bookmark(slot),
+            Command::GoToBookmark(slot) => self.go_to_bookmark(slot),
             Command::CompareWith(rev) => {
                 let version = self.versions.of(rev).map(|i| &self.versions.list()[i]);
                 self.compare.chosen = version.map(|v| v.scene.clone());
@@ -174,6 +181,7 @@ impl SceneloomApp {
                 let suggestion = self.suggested("json");
                 self.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
             }
+            Command::TogglePerformance => self.perf.open = !self.perf.open,
             Command::ToggleLog => self.state.log_open = !self.state.log_open,
             Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
         }

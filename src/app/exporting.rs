@@ -9,7 +9,7 @@ use super::application::{SceneloomApp, one_line};
 use super::export::{ExportOptions, Format, export};
 use super::panels::export::{ExportInput, ExportPanel, export_window};
 use super::panels::toasts::Level;
-use crate::editor::checks::Severity;
+use crate::editor::checks::{Severity, waive};
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 
@@ -38,7 +38,10 @@ impl SceneloomApp {
         let findings = self.checking.findings();
         let input = ExportInput {
             busy: self.exporting.running.is_some(),
-            errors: findings.map_or(0, |f| f.iter().filter(|f| f.severity == Severity::Error).count()),
+            errors: findings.map_or(0, |f| {
+                let open = waive::open(self.document.settled_scene().frame(), f);
+                open.filter(|f| f.severity == Severity::Error).count()
+            }),
         };
         let mut open = true;
         let wanted = export_window(ui, &input, &mut panel, &mut open);

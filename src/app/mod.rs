@@ -3,6 +3,7 @@
 pub mod actions;
 pub mod application;
 mod bev_image;
+pub mod bookmarks;
 pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
@@ -19,10 +20,13 @@ pub mod export;
 mod exporting;
 mod file_dialogs;
 pub mod graphics;
+pub mod guard;
+mod hints;
 mod icons;
 pub mod keymap;
 mod keys;
 pub mod live;
+mod measuring;
 pub mod memory;
 mod modelled;
 pub mod open;
@@ -30,6 +34,7 @@ mod pane_views;
 pub mod panels;
 pub mod picture;
 pub mod paint;
+pub mod perf;
 mod pipeline;
 mod pointer;
 mod recovering;
@@ -37,11 +42,13 @@ pub mod recovery;
 pub mod roads;
 pub mod sensing;
 pub mod settings;
+mod software_ui;
 pub mod state;
 pub mod text;
 pub mod theme;
 pub mod tools;
 pub mod tuning;
+pub mod trace;
 pub mod versions;
 pub mod trade;
 pub mod view3d;
@@ -58,9 +65,9 @@ use crate::generation::job::GenParams;
 use crate::scene::Scene;
 
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
-/// `.loom` is saved back. Errors as [`run_window_with`].
-pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
-    run_window_with(AppConfig {
+/// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
+pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
+    let config = AppConfig {
         scene,
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
         build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
@@ -75,7 +82,8 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>) -> anyhow::Result<()> {
         new_scene: Arc::new(new_scene),
         native_dialogs: true,
         settings_file: settings::Settings::file(),
-    })
+    };
+    run_window_with(config, trace)
 }
 
 /// A random world, another one each time.
@@ -91,8 +99,8 @@ fn new_scene() -> anyhow::Result<Scene> {
 }
 
 /// Opens the window and returns when it is closed. Errors in one line if there is no display or no
-/// graphics adapter (a software one will do).
-pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
+/// graphics adapter (a software one will do), or if the file that measurements go to cannot be written.
+pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("sceneloom")
         .with_title(format!("{} – Sceneloom", config.scene.name))
@@ -110,6 +118,12 @@ pub fn run_window_with(config: AppConfig) -> anyhow::Result<()> {
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
         app.keep_copies(&cc.egui_ctx);
+        if let Some(state) = &cc.wgpu_render_state {
+            software_ui::install(&cc.egui_ctx, state);
+        }
+        if let Some(path) = trace {
+            app.trace_to(&path)?;
+        }
         Ok(Box::new(app))
     };
     eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {

@@ -92,8 +92,12 @@ impl SceneloomApp {
 
     /// Decides what the present state is compared with, in this frame.
     pub(super) fn prepare_compare(&mut self, ui: &Ui) {
+        // Not in the middle of a drag: the pointer answers to nothing while the state before is shown.
         let held = !ui.ctx().text_edit_focused()
-            && ui.input(|i| i.modifiers.is_none() && i.key_down(egui::Key::Backslash));
+            && ui.input(|i| {
+                let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
+                down && (self.state.holding_before || !i.pointer.any_down())
+            });
         self.state.holding_before = held;
         let rev = self.document.settled_scene().rev;
         let active = held || self.state.compare != CompareMode::Off;
@@ -108,6 +112,11 @@ impl SceneloomApp {
             .prepare(before, Wanted::of(&self.state), senses, move || {
                 ctx.request_repaint()
             });
+    }
+
+    /// The state before is shown alone: its key is held.
+    fn shows_before(&self, scene: &Arc<Scene>) -> bool {
+        self.state.holding_before && state_holds(&self.compare.before, scene)
     }
 
     /// The way to compare, if there is something to compare with and no key is held that shows it alone.
@@ -128,6 +137,14 @@ impl SceneloomApp {
             unsettled: self.unsettled,
             generating: self.live.running.is_some(),
         };
+        if self.shows_before(scene)
+            && let Some(map) = self.canvas.map
+        {
+            clipped(ui, area, |ui| {
+                self.compare.canvas.still(ui, area, &map, scene, &self.state);
+            });
+            return;
+        }
         let (canvas, state) = (&mut self.canvas, &mut self.state);
         in_rect(ui, rect, |ui| {
             canvas.show(ui, &input, state, commands);
@@ -171,21 +188,24 @@ impl SceneloomApp {
         let mode = self.comparing();
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
+        let shows_before = self.shows_before(scene);
         let marked = match mode {
-            CompareMode::Difference => self
-                .compare
-                .difference(ui, scene)
-                .map_or_else(Vec::new, |(d, _)| d.cells.clone()),
-            _ => Vec::new(),
+            CompareMode::Difference => self.compare.difference(ui, scene).map(|(d, _)| d.cells.as_slice()),
+            _ => None,
         };
         let input = View3dInput {
             scene,
             settled: self.document.settled_scene(),
             lidar: self.sensing.lidar(),
             dragging: self.document.is_dragging(),
-            marked: &marked,
+            marked: marked.unwrap_or_default(),
         };
         let (view, state) = (&mut self.view3d, &mut self.state);
+        if shows_before {
+            let (camera, options) = (view.camera, view.options.clone());
+            clipped(ui, area, |ui| view.still(ui, area, (&camera, &options), &input, state));
+            return;
+        }
         in_rect(ui, rect, |ui| {
             view.show(ui, &input, state, commands);
         });

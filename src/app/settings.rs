@@ -1,5 +1,6 @@
 //! What is kept between sessions: looks, keys, panes, recent files. Never part of a scene.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -7,10 +8,12 @@ use anyhow::Context;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
+use super::bookmarks::Bookmark;
 use super::dock::Workspace;
 use super::keymap::Chords;
 use super::state::Pane;
 use super::theme::Look;
+use crate::editor::Document;
 use crate::scene::classes::Palette;
 
 /// Files that are remembered.
@@ -38,6 +41,10 @@ pub struct Settings {
     pub quality: String,
     /// Where the panes stand.
     pub dock: Option<Tree<Pane>>,
+    /// Views that were kept, by number.
+    pub bookmarks: BTreeMap<u8, Bookmark>,
+    /// Memory that the history may take, MB.
+    pub history_mb: u32,
     /// Files opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
 }
@@ -54,6 +61,8 @@ impl Default for Settings {
             workspace: Workspace::default(),
             quality: "balanced".into(),
             dock: None,
+            bookmarks: BTreeMap::new(),
+            history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             recent: Vec::new(),
         }
     }
@@ -86,6 +95,9 @@ impl Settings {
         } else {
             1.0
         };
+        read.history_mb = read
+            .history_mb
+            .clamp(*Self::HISTORY_MB.start(), *Self::HISTORY_MB.end());
         Ok(read)
     }
 
@@ -101,6 +113,14 @@ impl Settings {
             Ok(())
         };
         write().with_context(|| format!("settings {}", path.display()))
+    }
+
+    /// Limits of [`Self::history_mb`].
+    pub const HISTORY_MB: std::ops::RangeInclusive<u32> = 16..=8192;
+
+    /// Memory that the history may take, bytes.
+    pub fn history_bytes(&self) -> usize {
+        (self.history_mb as usize) << 20
     }
 
     /// Puts a file in front of those remembered.
@@ -138,8 +158,9 @@ mod tests {
         );
         settings.save(&path).expect("written");
         assert!(Settings::load(&path).expect("read") == settings);
-        std::fs::write(&path, "{\"ui_scale\": 1e9, \"of_a_newer_version\": 3}").expect("written");
-        assert_eq!(Settings::load(&path).expect("read").ui_scale, 3.0);
+        std::fs::write(&path, "{\"ui_scale\": 1e9, \"history_mb\": 1, \"of_a_newer_version\": 3}").expect("written");
+        let read = Settings::load(&path).expect("read");
+        assert_eq!((read.ui_scale, read.history_mb), (3.0, 16));
         std::fs::write(&path, "{ \"ui_scale\": ").expect("written");
         let error = format!("{:#}", Settings::load(&path).err().expect("cut off"));
         assert!(error.contains("settings.json"), "{error}");

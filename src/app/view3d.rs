@@ -8,7 +8,7 @@ use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, Widg
 use glam::{DVec2, DVec3};
 
 use crate::editor::pick::{self, Hit, Ray};
-use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
+use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev};
 use crate::viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
@@ -53,6 +53,7 @@ pub struct View3d {
     pub rect: Rect,
     colors: Option<(Arc<LidarSweep>, LidarColorMode, Vec<[u8; 4]>)>,
     last_motion_s: f64,
+    painted: Option<SceneRev>,
     frame_s: f32,
     frames: u32,
     pixels_per_point: f32,
@@ -103,6 +104,7 @@ impl View3d {
             rect: Rect::NOTHING,
             colors: None,
             last_motion_s: f64::NEG_INFINITY,
+            painted: None,
             frame_s: 0.0,
             frames: 0,
             pixels_per_point: 1.0,
@@ -299,6 +301,10 @@ impl View3d {
             hint(ui, rect, "Preparing the 3D view…", "");
             ui.ctx().request_repaint();
             return;
+        }
+        // A change is seen at once, coarse, and fine a moment later.
+        if self.painted.replace(input.scene.rev).is_some_and(|rev| rev != input.scene.rev) && self.is_software() {
+            self.last_motion_s = now_s;
         }
         let moving = now_s - self.last_motion_s < SETTLE_S;
         if moving {

@@ -14,12 +14,14 @@ pub struct Document {
     at: usize,        // step being shown
     drag: Option<Arc<Scene>>,
     saved: SceneRev,
+    limit_bytes: usize,
 }
 
 #[derive(Debug)]
 struct Step {
     label: &'static str, // of the edit that led here
     scene: Arc<Scene>,
+    bytes: usize, // beside the step before; 0 for the first
 }
 
 /// A result came too late: the document shows another state by now.
@@ -28,8 +30,12 @@ struct Step {
 pub struct Stale;
 
 impl Document {
-    /// States kept, the current one included; older ones can no longer be undone to.
-    pub const MAX_STEPS: usize = 256;
+    /// States kept at most, the current one included, however small they are.
+    pub const MAX_STEPS: usize = 4096;
+    /// Memory that the history may take unless the user wants otherwise.
+    pub const LIMIT_BYTES: usize = 256 << 20;
+    /// Steps that can always be undone, however large they are.
+    pub const LEAST_UNDO: usize = 8;
 
     /// A document that was just opened or made: nothing to undo, nothing unsaved.
     pub fn new(scene: Scene) -> Self {
@@ -37,12 +43,14 @@ impl Document {
         let first = Step {
             label: "Open",
             scene: Arc::new(scene),
+            bytes: 0,
         };
         Self {
             steps: vec![first],
             at: 0,
             drag: None,
             saved,
+            limit_bytes: Self::LIMIT_BYTES,
         }
     }
 
@@ -144,6 +152,23 @@ impl Document {
         self.steps.iter().map(|s| s.label)
     }
 
+    /// Memory that the history takes beside its oldest state: what each step does not share with the one before.
+    pub fn history_bytes(&self) -> usize {
+        self.steps.iter().map(|s| s.bytes).sum()
+    }
+
+    /// What the history may take; see [`Self::set_history_limit`].
+    pub fn history_limit(&self) -> usize {
+        self.limit_bytes
+    }
+
+    /// Bounds the memory of the history. The oldest states go first; the one shown and [`Self::LEAST_UNDO`] before it
+    /// stay.
+    pub fn set_history_limit(&mut self, bytes: usize) {
+        self.limit_bytes = bytes;
+        self.forget_oldest();
+    }
+
     /// Index into [`Self::history`] of the state shown.
     pub fn position(&self) -> usize {
         self.at
@@ -184,7 +209,11 @@ impl Document {
         }
         let scene = Arc::make_mut(&mut step.scene);
         edit::adopt(scene.frame_mut(), occupancy);
-        Ok(scene.rev)
+        let rev = scene.rev;
+        self.weigh(self.at);
+        self.weigh(self.at + 1);
+        self.forget_oldest();
+        Ok(rev)
     }
 
     /// Shows a state that was kept elsewhere (a version), as an undo step; nothing if it is the one shown.
@@ -225,14 +254,36 @@ impl Document {
             return;
         }
         self.steps.truncate(self.at + 1);
+        let bytes = scene.bytes_beside(self.settled_scene());
         self.steps.push(Step {
             label,
             scene: Arc::new(scene),
+            bytes,
         });
-        if self.steps.len() > Self::MAX_STEPS {
-            self.steps.remove(0);
-        }
         self.at = self.steps.len() - 1;
+        self.forget_oldest();
+    }
+
+    /// Counts again what a step holds beside the one before it.
+    fn weigh(&mut self, index: usize) {
+        if let Some([before, step]) = index.checked_sub(1).and_then(|i| self.steps.get_mut(i..=index)) {
+            step.bytes = step.scene.bytes_beside(&before.scene);
+        }
+    }
+
+    fn forget_oldest(&mut self) {
+        let (mut bytes, mut gone) = (self.history_bytes(), 0);
+        let too_much = |bytes: usize, left: usize| bytes > self.limit_bytes || left > Self::MAX_STEPS;
+        while gone + Self::LEAST_UNDO < self.at && too_much(bytes, self.steps.len() - gone) {
+            // The next one becomes the oldest, which counts nothing.
+            bytes -= self.steps[gone + 1].bytes;
+            gone += 1;
+        }
+        if gone > 0 {
+            self.steps.drain(..gone);
+            self.steps[0].bytes = 0;
+            self.at -= gone;
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::editor::Shape;
 use crate::scene::draft::draft;
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, Frame, SceneBox, SensorRig};
+use crate::scene::{BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, SceneBox, SensorRig};
 
 fn start() -> Scene {
     let mut layout = BevLayout::default();
@@ -226,8 +226,7 @@ proptest! {
     }
 }
 
-/// Row 27 of the extremes table to the letter: many edits, undo all, the initial scene. The history
-/// keeps [`Document::MAX_STEPS`] states, so it is undone in rounds.
+/// Row 27 of the extremes table to the letter: many edits, undo all, the initial scene, in rounds.
 #[test]
 fn row_27_a_thousand_edits_undone() {
     use proptest::strategy::ValueTree;
@@ -235,10 +234,11 @@ fn row_27_a_thousand_edits_undone() {
     let mut runner = TestRunner::deterministic();
     let strategy = any_edit();
     let mut document = Document::new(start());
+    document.set_history_limit(usize::MAX);
     let initial = document.scene().clone();
     let mut applied = 0;
     while applied < 1000 {
-        for _ in 0..Document::MAX_STEPS - 1 {
+        for _ in 0..255 {
             let edit = strategy.new_tree(&mut runner).expect("a value").current();
             let _ = document.apply("edit", &edit); // some are refused; that is part of the test
         }
@@ -384,17 +384,70 @@ fn frames_are_edited_one_at_a_time_and_history_is_bounded() {
             )
             .expect("always");
     }
-    assert_eq!(document.history().len(), Document::MAX_STEPS);
-    let mut undone = 0;
-    while document.undo().is_some() {
-        undone += 1;
-    }
-    assert_eq!(undone, Document::MAX_STEPS - 1);
-    assert_eq!(document.scene().prompt.as_ref(), "344"); // 599 - 255
+    while document.undo().is_some() {}
     // A new edit drops what could be redone.
     document
         .apply("Prompt", &Edit::SetPrompt { prompt: "x".into() })
         .expect("always");
     assert!(!document.can_redo());
     assert_eq!(document.history().len(), 2);
+}
+
+/// Memory bounds the history, not the number of steps: many small ones stay, few large ones.
+#[test]
+fn the_history_is_bounded_by_bytes() {
+    let paint = |i: usize, all: bool| Edit::PaintVoxels {
+        cells: match all {
+            true => (0..GridSpec::NX)
+                .flat_map(|x| (0..GridSpec::NY).map(move |y| [x, y, 3]))
+                .collect(),
+            false => vec![[i % GridSpec::NX, 7, 9]],
+        },
+        class: [Class::Car, Class::Bus][i % 2],
+    };
+    let limit = 6 << 20;
+    let run = |all: bool, steps: usize| {
+        let mut document = Document::new(start());
+        document.set_history_limit(limit);
+        for i in 0..steps {
+            document.apply("Paint", &paint(i, all)).expect("sound");
+            assert!(
+                document.history_bytes() <= limit || document.position() <= Document::LEAST_UNDO,
+                "step {i}: {} bytes",
+                document.history_bytes()
+            );
+            // The count follows the steps that are left.
+            let counted: usize = document.steps[1..]
+                .iter()
+                .zip(&document.steps)
+                .map(|(step, before)| step.scene.bytes_beside(&before.scene))
+                .sum();
+            assert_eq!(counted, document.history_bytes());
+        }
+        document
+    };
+    let small = run(false, 200);
+    assert_eq!(small.history().len(), 201, "nothing had to go");
+    // Every brick twice, occupancy and paint: 1.4 MB a step.
+    let mut large = run(true, 40);
+    assert_eq!(large.position(), Document::LEAST_UNDO, "the last ones can be undone in any case");
+    let mut undone = 0;
+    while large.undo().is_some() {
+        undone += 1;
+    }
+    assert_eq!(undone, Document::LEAST_UNDO);
+    // Room for more is of use to what comes; less lets go of the oldest at once.
+    large.set_history_limit(usize::MAX);
+    for i in 0..20 {
+        large.apply("Paint", &paint(i, true)).expect("sound");
+    }
+    assert_eq!(large.position(), 20);
+    large.set_history_limit(16 << 20);
+    assert!(large.history_bytes() <= 16 << 20 && (9..15).contains(&large.position()), "{}", large.position());
+    // A result that is adopted counts with its step, and what comes after it too.
+    let mut grid = large.scene().frame().occupancy.clone();
+    (0..GridSpec::NX).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));
+    let before = large.history_bytes();
+    large.adopt(large.scene().rev, grid).expect("shown");
+    assert_ne!(large.history_bytes(), before);
 }

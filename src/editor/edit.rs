@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
     BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, Polyline, Scene, SceneBox, SensorRig, SourceFrame,
-    VoxelGrid, VoxelPaint, raster,
+    VoxelGrid, VoxelPaint, Waiver, raster,
 };
 
 use super::Shape;
+use super::checks::waive;
 use super::immediate;
 use super::shape::at_least;
 
@@ -100,6 +101,28 @@ pub enum Edit {
     },
     /// Confirms what was inferred when the frame was imported: it is marked as a guess no more.
     ConfirmInferred {},
+    /// Lets a finding of the checks stand, with the reason. One that was waived before gets the new reason.
+    Waive {
+        /// Name of the check.
+        check: String,
+        /// The box it is about, if it is about one.
+        #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+        box_id: Option<BoxId>,
+        /// Where it was found, ego frame, m.
+        where_m: DVec3,
+        /// Why it may stay; not empty.
+        reason: String,
+    },
+    /// Takes a waiver back: the finding counts again. Nothing if there is none.
+    Unwaive {
+        /// Name of the check.
+        check: String,
+        /// The box it is about, if it is about one.
+        #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+        box_id: Option<BoxId>,
+        /// Where it was found, ego frame, m.
+        where_m: DVec3,
+    },
     /// Replaces the text that describes the style.
     SetPrompt {
         /// The text; empty means none.
@@ -185,6 +208,9 @@ pub enum EditError {
     /// A shape that misses the grid or every cell centre.
     #[error("the shape covers no cell of the grid")]
     NoCell,
+    /// A waiver of no check, without a place or without a reason.
+    #[error("{0}")]
+    BadWaiver(String),
     /// A move that names no change.
     #[error("move_box needs at least one of center_m, yaw_deg and size_m")]
     NothingToMove,
@@ -306,12 +332,33 @@ impl Edit {
                 frame.inferred.layout = false;
                 frame.inferred.boxes.clear();
             }
+            Self::Waive {
+                check,
+                box_id,
+                where_m,
+                reason,
+            } => {
+                let new = waive::checked(check, *box_id, *where_m, reason)?;
+                let list = Arc::make_mut(&mut frame.waivers);
+                list.retain(|w| !same_finding(w, check, *box_id, *where_m));
+                list.push(new);
+            }
+            Self::Unwaive {
+                check,
+                box_id,
+                where_m,
+            } => Arc::make_mut(&mut frame.waivers).retain(|w| !same_finding(w, check, *box_id, *where_m)),
             Self::ClearPaint {} => frame.painted = VoxelPaint::new(),
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
             Self::SetPrompt { .. } | Self::SetRig { .. } => {} // concern the scene, see `apply`
         }
         Ok(())
     }
+}
+
+/// True if the waiver names that finding, to the millimetre where it has no box.
+fn same_finding(w: &Waiver, check: &str, box_id: Option<BoxId>, where_m: DVec3) -> bool {
+    &*w.check == check && w.box_id == box_id && (box_id.is_some() || w.where_m.distance(where_m) < 1e-3)
 }
 
 /// Makes a generated occupancy the frame's own and its source. Painted voxels keep what was painted.

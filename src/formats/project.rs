@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
     BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Scene, SceneBox, SceneRev, SensorRig,
-    SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
+    SourceFrame, Unobserved, VoxelGrid, VoxelPaint, Waiver,
 };
 
 use super::atomic;
@@ -78,6 +78,8 @@ struct FrameHeader {
     painted: bool,
     #[serde(default, skip_serializing_if = "InferredHeader::is_empty")]
     inferred: InferredHeader,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    waivers: Vec<Waiver>,
     source: SourceHeader,
 }
 
@@ -188,6 +190,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
             boxes: frame.inferred.boxes.clone(),
             unobserved: frame.inferred.unobserved.is_some(),
         },
+        waivers: frame.waivers.to_vec(),
         source: SourceHeader {
             boxes: (source.boxes != frame.boxes).then(|| list(&source.boxes)),
             polylines: (source.layout.polylines != frame.layout.polylines)
@@ -304,6 +307,7 @@ fn read_frame<R: Read + Seek>(
             boxes: header.inferred.boxes,
             unobserved,
         },
+        waivers: Arc::new(header.waivers),
         source: Arc::new(source),
     })
 }

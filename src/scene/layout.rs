@@ -65,6 +65,11 @@ impl BevLayout {
         })
     }
 
+    /// True if both hold their cells in the same memory.
+    pub fn shares_cells(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.cells, &other.cells)
+    }
+
     /// Bits of every cell, `[x][y]`.
     pub fn cells(&self) -> &[u32] {
         &self.cells

@@ -5,6 +5,7 @@ pub mod classes;
 pub mod density;
 pub mod distance;
 pub mod draft;
+pub mod footprint;
 pub mod graph;
 pub mod grid;
 pub mod infer;
@@ -20,6 +21,7 @@ pub mod road_map;
 pub mod sensor_data;
 pub mod splats;
 pub mod variants;
+pub mod waiver;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,6 +35,7 @@ pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use pose::Pose;
 pub use rig::{Camera, LidarPattern, SensorRig};
+pub use waiver::Waiver;
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 
 /// Names one state of a scene: two scenes with the same `SceneRev` are equal.
@@ -77,6 +80,8 @@ pub struct Frame {
     pub painted: VoxelPaint,
     /// What of layout and boxes is a guess.
     pub inferred: Inferred,
+    /// Findings of the checks that the user lives with.
+    pub waivers: Arc<Vec<Waiver>>,
     /// See [`SourceFrame`].
     pub source: Arc<SourceFrame>,
 }
@@ -97,6 +102,7 @@ impl Frame {
             occupancy,
             painted: VoxelPaint::new(),
             inferred: Inferred::default(),
+            waivers: Arc::default(),
             source,
         }
     }

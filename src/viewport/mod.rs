@@ -18,6 +18,7 @@ pub mod light;
 mod lines;
 mod marks;
 pub mod meshing;
+pub mod panels;
 mod points;
 pub mod shaders;
 mod shared;

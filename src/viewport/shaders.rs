@@ -31,6 +31,10 @@ pub const SHADERS: &[Shader] = &[
     shader!("faces"),
     shader!("ground"),
     shader!("lines"),
+    Shader {
+        name: "panels",
+        source: include_str!("../../shaders/panels.wgsl"),
+    },
     shader!("points"),
     shader!("voxels"),
 ];

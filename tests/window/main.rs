@@ -2,8 +2,10 @@
 
 mod bench;
 mod day;
+mod desk;
 mod editing;
 mod files;
+mod overdraw;
 mod recovery;
 mod sensors;
 mod shell;

@@ -77,7 +77,7 @@ fn the_palette_finds_and_runs() {
 fn keys_are_changed_in_the_sheet() {
     let mut bench = Bench::new();
     bench.off();
-    bench.key(Modifiers::NONE, Key::F1);
+    bench.key(Modifiers::NONE, Key::Questionmark);
     bench.click("M");
     bench.key(Modifiers::CTRL, Key::G);
     assert_eq!(bench.app().keymap.text("measure_tool"), "Ctrl+G");

@@ -44,7 +44,7 @@ fn views_and_layers_answer_their_controls() {
     assert!(bench.harness.query_by_label("Look through in 3D").is_some());
     bench.key(Modifiers::NONE, Key::Escape);
     assert!(bench.harness.query_by_label("Look through in 3D").is_none());
-    bench.key(Modifiers::NONE, Key::F1);
+    bench.key(Modifiers::NONE, Key::Questionmark);
     assert!(bench.harness.query_by_label("Ctrl+Backspace").is_some());
 }
 

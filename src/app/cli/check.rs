@@ -8,8 +8,9 @@ use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
 use crate::app::{checking, open, panels};
-use crate::editor::checks::{self, Finding, Severity};
+use crate::editor::checks::{self, Finding, Severity, waive};
 use crate::formats::project;
+use crate::scene::Scene;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -29,7 +30,7 @@ pub struct Check {
     common: Common,
 }
 
-fn report_of(finding: &Finding) -> Value {
+fn report_of(scene: &Scene, finding: &Finding) -> Value {
     let tidy = |v: f64| (v * 1000.0).round() / 1000.0 + 0.0;
     json!({
         "check": finding.check,
@@ -37,12 +38,13 @@ fn report_of(finding: &Finding) -> Value {
         "where_m": finding.where_m.to_array().map(tidy),
         "box": finding.box_id,
         "text": finding.text,
+        "waived": waive::of(scene.frame(), finding).map(|w| w.reason.to_string()),
         "fixes": finding.fixes.iter().map(|f| f.label).collect::<Vec<_>>(),
     })
 }
 
 impl Check {
-    fn findings(&self, scene: &crate::scene::Scene) -> Vec<Finding> {
+    fn findings(&self, scene: &Scene) -> Vec<Finding> {
         match self.no_sensors {
             true => checks::run_checks(scene, None),
             false => checking::check(scene),
@@ -74,21 +76,24 @@ impl Check {
             files.push(path);
         }
         let wall_s = start.elapsed().as_secs_f64();
-        let errors = findings.iter().filter(|f| f.severity == Severity::Error).count();
+        let open: Vec<Finding> = waive::open(scene.frame(), &findings).cloned().collect();
+        let errors = open.iter().filter(|f| f.severity == Severity::Error).count();
         let report = json!({
-            "findings": findings.iter().map(report_of).collect::<Vec<_>>(),
+            "findings": findings.iter().map(|f| report_of(&scene, f)).collect::<Vec<_>>(),
             "errors": errors,
-            "warnings": findings.len() - errors,
+            "warnings": open.len() - errors,
+            "waived": findings.len() - open.len(),
             "fixed": fixed,
             "files": files,
             "wall_s": wall_s,
         });
-        let summary = panels::checks::summary(&findings);
+        let summary = panels::checks::summary(&open);
         output::report(&self.common, &report, || {
             let line = |f: &Finding| {
                 let p = f.where_m;
+                let waived = waive::of(scene.frame(), f).map_or_else(String::new, |w| format!(" (waived: {})", w.reason));
                 format!(
-                    "{}: {} [{}] at {:.1}, {:.1}, {:.1} m",
+                    "{}: {} [{}] at {:.1}, {:.1}, {:.1} m{waived}",
                     f.severity.name(),
                     f.text,
                     f.check,

@@ -41,6 +41,9 @@ struct Cli {
     command: Option<Command>,
     /// Scene to open in the editor (.loom or .xodr); without one the bundled scene opens.
     scene: Option<PathBuf>,
+    /// Write how fast the editor is (frames, edits, the worker's stages, processor time) as JSON lines, with a summary.
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
 }
 
 #[derive(Subcommand)]
@@ -237,7 +240,7 @@ pub fn main() -> ExitCode {
         Some(Command::Eval(c)) => c.run(),
         Some(Command::Trade(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
-        None => editor(cli.scene),
+        None => editor(cli.scene, cli.trace),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -252,7 +255,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn editor(path: Option<PathBuf>) -> Outcome {
+fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
     let scene = match &path {
         Some(path) => open::scene(path)?,
         None => open::bundled()?,
@@ -261,6 +264,6 @@ fn editor(path: Option<PathBuf>) -> Outcome {
         eprintln!("no display: running the demo without a window");
         return demo::Demo::default().run();
     }
-    crate::app::run_window(scene, path)?;
+    crate::app::run_window(scene, path, trace)?;
     Ok(())
 }

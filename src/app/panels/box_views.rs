@@ -10,6 +10,7 @@ use crate::app::state::UiState;
 use crate::app::theme;
 use crate::editor::Edit;
 use crate::scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
+use crate::viewport::GROUND_TOP_M;
 
 /// What is shown around the box, m.
 const MARGIN_M: f64 = 1.6;
@@ -17,6 +18,8 @@ const MARGIN_M: f64 = 1.6;
 const MIN_SIZE_M: f64 = 0.2;
 /// How far from a face the pointer takes hold of it, points.
 const REACH: f32 = 7.0;
+/// The ground of labels lies this far below the physical one, on which boxes stand, m: voxels are shown lifted by it.
+const LIFT_M: f64 = -GROUND_TOP_M;
 
 /// A view: its name, and the box axes (0 along the heading, 1 left, 2 up) that run right and up on the screen.
 struct View {
@@ -141,11 +144,19 @@ impl BoxViewsPane {
                 StrokeKind::Inside,
             );
         }
+        let physical = sweep.is_some_and(|s| s.physical);
         for point in sweep.map_or(&[][..], |s| &s.points) {
-            let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)));
+            // The exact sweep hits voxels where labels have them; the learned one knows the physical ground.
+            let lift = DVec3::Z * if physical { 0.0 } else { LIFT_M };
+            let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)) + lift);
             if local.abs().cmple(reach).all() {
                 painter.circle_filled(to_screen(local), 1.3, Color32::WHITE);
             }
+        }
+        if view.up.0 == 2 {
+            // The physical ground.
+            let y = to_screen(DVec3::Z * -frame.center_m.z).y;
+            painter.hline(rect.x_range(), y, Stroke::new(1.0, theme::text_weak().gamma_multiply(0.6)));
         }
         let (center, half) = (frame.to_local(b.center_m), b.size_m / 2.0);
         let outline = Rect::from_two_pos(to_screen(center - half), to_screen(center + half));
@@ -267,7 +278,7 @@ fn face_at(outline: Rect, p: Pos2, view: &View) -> Option<(usize, f64)> {
     }
 }
 
-/// Occupied voxels around a box: centre in box coordinates, class.
+/// Occupied voxels around a box, lifted to the physical ground: centre in box coordinates, class.
 fn voxels<'a>(
     scene: &'a Scene,
     b: &SceneBox,
@@ -290,7 +301,7 @@ fn voxels<'a>(
         .filter_map(move |(x, y, z)| {
             let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
             let center = |i: usize, axis: usize| GridSpec::MIN_M[axis] + (i as f64 + 0.5) * GridSpec::VOXEL_M;
-            let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2)));
+            let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2) + LIFT_M));
             local.abs().cmple(reach).all().then_some((local, class))
         })
 }
@@ -310,6 +321,34 @@ fn hint(ui: &Ui, rect: Rect, text: &str) {
 mod tests {
     use super::*;
     use crate::scene::BoxId;
+
+    /// The voxels of a car drawn by the draft fill its box: they begin at its underside and end at its roof.
+    #[test]
+    fn voxels_lie_in_their_box() {
+        use crate::scene::{BevLayout, Frame, draft::draft};
+        let b = SceneBox {
+            id: BoxId(1),
+            class: Class::Car,
+            center_m: DVec3::new(5.0, 2.0, 0.85),
+            size_m: DVec3::new(4.6, 2.0, 1.7),
+            yaw_rad: 0.3,
+            velocity_mps: glam::DVec2::ZERO,
+        };
+        let layout = BevLayout::default();
+        let occupancy = draft(&layout, [b].iter());
+        let frame = Frame::new(layout, [(b.id, b)].into(), occupancy);
+        let scene = Scene::single("test", frame, std::sync::Arc::default(), 0);
+        let heights: Vec<f64> = voxels(&scene, &b, b.size_m)
+            .filter(|(_, class)| *class == Class::Car)
+            .map(|(local, _)| local.z)
+            .collect();
+        assert!(!heights.is_empty());
+        let half = GridSpec::VOXEL_M / 2.0;
+        let low = heights.iter().copied().fold(f64::MAX, f64::min) - half;
+        let high = heights.iter().copied().fold(f64::MIN, f64::max) + half;
+        assert!((low + 0.85).abs() <= GridSpec::VOXEL_M, "{low}");
+        assert!((high - 0.85).abs() <= GridSpec::VOXEL_M, "{high}");
+    }
 
     #[test]
     fn a_face_moves_and_the_opposite_one_stays() {

@@ -10,11 +10,12 @@ use egui::{
 use glam::DVec3;
 
 use super::camera_header::header;
+use super::lit;
 use crate::app::camera_views::{CameraView, march};
 use crate::app::command::Command;
 use crate::app::state::{CameraMode, UiState};
 use crate::app::theme;
-use crate::generation::sensors::march::MarchScene;
+use crate::generation::sensors::march::{MarchHit, MarchScene};
 use crate::scene::{Camera, Class, Scene, SceneRev};
 
 /// Textures of the pictures.
@@ -69,7 +70,7 @@ impl CameraStrip {
         for (place, &i) in shown.iter().enumerate() {
             let at = pos2(left + place as f32 * (width + gap), top);
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
-            let hovered = self.picture(ui, rect, i, &cameras[i].name, state, commands);
+            let hovered = self.picture(ui, rect, i, input.scene, state, commands);
             if let Some(part) = hovered {
                 state.readout = self.pixel_text(input.scene, &cameras[i], part);
             }
@@ -127,7 +128,7 @@ impl CameraStrip {
         let aspect = camera.width as f32 / camera.height.max(1) as f32;
         let width = area.width().min(area.height() * aspect).max(40.0);
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
-        if let Some(part) = self.picture(ui, rect, index, &camera.name, state, commands) {
+        if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
             state.readout = self.pixel_text(input.scene, camera, part);
         }
     }
@@ -171,21 +172,23 @@ impl CameraStrip {
         self.made_from = Some((views.clone(), mode, plane_m));
     }
 
-    /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
-    /// across the picture.
-    fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
+    fn hit(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> Option<MarchHit> {
         if self.probe.as_ref().is_none_or(|(rev, _)| *rev != scene.rev) {
             self.probe = Some((scene.rev, march(scene, true)));
         }
-        let (_, march) = self.probe.as_ref().expect("just made");
-        let size = [camera.width, camera.height].map(f64::from);
-        let at = |i: usize, part: f32| (f64::from(part) * size[i] - camera.center_px[i]) / camera.focal_px[i];
-        let pose = camera.ego_from_camera();
-        let ray = (pose.rotation * DVec3::new(at(0, part.x), at(1, part.y), 1.0)).normalize_or(DVec3::X);
+        let (_, march) = self.probe.as_ref()?;
+        march.cast(camera.ego_from_camera().translation_m, ray_of(camera, part))
+    }
+
+    /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
+    /// across the picture.
+    fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
         let label = camera_label(&camera.name);
-        let Some(hit) = march.cast(pose.translation_m, ray) else {
+        let Some(hit) = self.hit(scene, camera, part) else {
             return format!("{label}  ·  sky");
         };
+        let pose = camera.ego_from_camera();
+        let ray = ray_of(camera, part);
         let name = match hit.id {
             17 => "crossing".to_owned(),
             18 => "road divider".to_owned(),
@@ -206,11 +209,12 @@ impl CameraStrip {
         ui: &Ui,
         rect: Rect,
         index: usize,
-        name: &str,
+        scene: &Scene,
         state: &UiState,
         commands: &mut Vec<Command>,
     ) -> Option<egui::Vec2> {
-        let label = camera_label(name);
+        let camera = scene.rig.cameras.get(index)?;
+        let label = camera_label(&camera.name);
         let response = ui.interact(rect, ui.scope_id().with(("camera", index)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Camera {label}")));
         let painter = ui.painter_at(rect.expand(1.0));
@@ -243,6 +247,7 @@ impl CameraStrip {
             painter.image(texture.id(), left, uv, Color32::WHITE);
             painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
+        lit::draw(&painter, rect, camera, scene, state);
         let chosen = state.inspected == Some(index);
         let edge = match (chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, theme::accent()),
@@ -296,13 +301,20 @@ impl CameraStrip {
         let mut open = true;
         window.open(&mut open).show(ui.ctx(), |ui| {
             let size = vec2(width, width / aspect);
-            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+            response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Enlarged camera"));
             ui.painter().image(texture.id(), rect, unit(), Color32::WHITE);
+            lit::draw(ui.painter(), rect, camera, input.scene, state);
+            if let (true, Some(p)) = (response.clicked(), response.interact_pointer_pos()) {
+                let part = (p - rect.min) / rect.size();
+                let hit = self.hit(input.scene, camera, part).and_then(|hit| hit.box_id);
+                commands.push(Command::Select(hit));
+            }
             ui.horizontal(|ui| {
                 let text = response
                     .hover_pos()
                     .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
-                ui.label(text.unwrap_or_else(|| "Move over the picture to read a pixel".into()));
+                ui.label(text.unwrap_or_else(|| "Move over the picture to read a pixel; a click chooses the box there".into()));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if ui.button("Look through in 3D").clicked() {
                         commands.push(Command::LookThrough(index));
@@ -315,6 +327,14 @@ impl CameraStrip {
             state.inspected = None;
         }
     }
+}
+
+/// The way a place of a picture looks, ego frame; `part` runs from 0 to 1 across it.
+fn ray_of(camera: &Camera, part: egui::Vec2) -> DVec3 {
+    let size = [camera.width, camera.height].map(f64::from);
+    let at = |i: usize, part: f32| (f64::from(part) * size[i] - camera.center_px[i]) / camera.focal_px[i];
+    let ray = DVec3::new(at(0, part.x), at(1, part.y), 1.0);
+    (camera.ego_from_camera().rotation * ray).normalize_or(DVec3::X)
 }
 
 fn unit() -> Rect {

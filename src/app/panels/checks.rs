@@ -5,8 +5,9 @@ use egui::{Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::command::Command;
 use crate::app::theme;
-use crate::editor::checks::{Finding, Severity};
-use crate::scene::BoxId;
+use crate::editor::Edit;
+use crate::editor::checks::{Finding, Severity, waive};
+use crate::scene::{BoxId, Frame};
 
 /// What the panel shows.
 pub struct ChecksInput<'a> {
@@ -16,7 +17,12 @@ pub struct ChecksInput<'a> {
     pub stale: bool,
     /// The chosen box.
     pub selected: Option<BoxId>,
+    /// What the findings are about; it holds the waivers.
+    pub frame: &'a Frame,
 }
+
+/// What waived findings and their title take at the bottom, points.
+const WAIVED_HEIGHT: f32 = 130.0;
 
 /// Draws the panel in a window of its own.
 pub fn checks_window(ui: &Ui, input: &ChecksInput<'_>, open: &mut bool, commands: &mut Vec<Command>) {
@@ -37,22 +43,29 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
         });
         return;
     };
-    if findings.is_empty() {
+    let (open, waived): (Vec<&Finding>, Vec<&Finding>) = findings
+        .iter()
+        .partition(|f| waive::of(input.frame, f).is_none());
+    if open.is_empty() {
         ui.horizontal(|ui| {
             let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
             ui.painter()
                 .circle_filled(dot.center(), 4.0, crate::app::theme::good());
-            ui.label("All is well: no check found anything.");
+            ui.label(match waived.len() {
+                0 => "All is well: no check found anything.",
+                _ => "All is well, but for what was waived.",
+            });
         });
         ui.weak("Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.");
+        waived_ui(ui, &waived, input, commands);
         return;
     }
     ui.horizontal(|ui| {
-        ui.label(summary(findings));
+        ui.label(summary(open.iter().copied()));
         if input.stale {
             ui.spinner();
         }
-        let fixable = findings.iter().filter(|f| !f.fixes.is_empty()).count();
+        let fixable = open.iter().filter(|f| !f.fixes.is_empty()).count();
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let button = egui::Button::new(format!("Fix all ({fixable})"));
             let response = ui.add_enabled(fixable > 0 && !input.stale, button);
@@ -65,21 +78,27 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
         });
     });
     ui.separator();
+    reason_ui(ui, &open, commands);
     let row_height = theme::ROW;
+    let below = if waived.is_empty() { 0.0 } else { WAIVED_HEIGHT };
+    let height = (ui.available_height() - below).max(3.0 * row_height);
     egui::ScrollArea::vertical()
         .auto_shrink([false, false])
-        .show_rows(ui, row_height, findings.len(), |ui, range| {
-            for (i, finding) in range.clone().zip(&findings[range]) {
+        .max_height(height)
+        .show_rows(ui, row_height, open.len(), |ui, range| {
+            for (i, finding) in range.clone().zip(&open[range]) {
                 ui.push_id(i, |ui| row(ui, finding, input, commands));
             }
         });
+    waived_ui(ui, &waived, input, commands);
 }
 
 /// `2 errors, 1 warning`
-pub fn summary(findings: &[Finding]) -> String {
-    let errors = findings.iter().filter(|f| f.severity == Severity::Error).count();
+pub fn summary<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
+    let severities: Vec<Severity> = findings.into_iter().map(|f| f.severity).collect();
+    let errors = severities.iter().filter(|s| **s == Severity::Error).count();
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    match (errors, findings.len() - errors) {
+    match (errors, severities.len() - errors) {
         (0, warnings) => count(warnings, "warning"),
         (errors, 0) => count(errors, "error"),
         (errors, warnings) => format!("{}, {}", count(errors, "error"), count(warnings, "warning")),
@@ -91,6 +110,7 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
         vec2(ui.available_width(), theme::ROW),
         egui::Layout::right_to_left(egui::Align::Center),
         |ui| {
+            waive_button(ui, finding);
             if let Some(first) = finding.fixes.first() {
                 if finding.fixes.len() > 1 {
                     ui.menu_button("…", |ui| {
@@ -133,6 +153,112 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
             });
         },
     );
+}
+
+/// Where the reason is kept while it is typed: check and box or place, and the text.
+fn typing() -> egui::Id {
+    egui::Id::unique("reason of a waiver")
+}
+
+type Typing = Option<(String, String)>;
+
+/// Tells findings apart.
+fn key(finding: &Finding) -> String {
+    format!("{} {:?} {:.1}", finding.check, finding.box_id, finding.where_m)
+}
+
+/// The button that begins a waiver.
+fn waive_button(ui: &mut Ui, finding: &Finding) {
+    let button = ui.add(egui::Button::new("Waive").small());
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Waive: {}", finding.text)));
+    if button.on_hover_text("Let it stand, with a reason").clicked() {
+        let begun: Typing = Some((key(finding), String::new()));
+        ui.data_mut(|d| d.insert_temp(typing(), begun));
+    }
+}
+
+/// The field for the reason of the finding that is being waived.
+fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Command>) {
+    let Some((of, mut text)) = ui.data(|d| d.get_temp::<Typing>(typing())).flatten() else {
+        return;
+    };
+    let Some(finding) = open.iter().find(|f| key(f) == of) else {
+        return;
+    };
+    let mut done = false;
+    ui.add(egui::Label::new(&finding.text).truncate());
+    ui.horizontal(|ui| {
+        let field = egui::TextEdit::singleline(&mut text)
+            .hint_text("Why it may stay")
+            .desired_width((ui.available_width() - 150.0).max(120.0));
+        let field = ui.add(field).accessible_name("Reason of the waiver");
+        if text.is_empty() && !field.has_focus() && !field.lost_focus() {
+            field.request_focus();
+        }
+        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let ready = !text.trim().is_empty();
+        let clicked = ui.add_enabled(ready, egui::Button::new("Let it stand")).clicked();
+        if ready && (clicked || entered) {
+            commands.push(Command::Apply(
+                "Waive a finding",
+                vec![Edit::Waive {
+                    check: finding.check.into(),
+                    box_id: finding.box_id,
+                    where_m: finding.where_m,
+                    reason: text.clone(),
+                }],
+            ));
+            done = true;
+        }
+        done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
+    });
+    let left: Typing = (!done).then_some((of, text));
+    ui.data_mut(|d| d.insert_temp(typing(), left));
+}
+
+/// What was waived, with the reasons, and the way back.
+fn waived_ui(ui: &mut Ui, waived: &[&Finding], input: &ChecksInput<'_>, commands: &mut Vec<Command>) {
+    if waived.is_empty() {
+        return;
+    }
+    ui.add_space(4.0);
+    let title = format!("{} waived", waived.len());
+    egui::CollapsingHeader::new(title)
+        .id_salt("waived findings")
+        .default_open(true)
+        .show(ui, |ui| {
+            egui::ScrollArea::vertical()
+                .id_salt("waived")
+                .max_height(WAIVED_HEIGHT - 36.0)
+                .show(ui, |ui| {
+            for finding in waived {
+                let Some(waiver) = waive::of(input.frame, finding) else {
+                    continue;
+                };
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    let back = ui.add(egui::Button::new("Take back").small());
+                    back.widget_info(|| {
+                        WidgetInfo::labeled(Role::Button, true, format!("Take back: {}", finding.text))
+                    });
+                    if back.clicked() {
+                        commands.push(Command::Apply(
+                            "Take a waiver back",
+                            vec![Edit::Unwaive {
+                                check: waiver.check.to_string(),
+                                box_id: waiver.box_id,
+                                where_m: waiver.where_m,
+                            }],
+                        ));
+                    }
+                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                        let text = format!("{}  ·  {}", finding.text, waiver.reason);
+                        let label = egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
+                        ui.add(label.truncate()).on_hover_text(&text);
+                    });
+                });
+            }
+                });
+        });
 }
 
 /// A disc with a bar through it for errors, a triangle for warnings: told apart by shape, not only by colour.

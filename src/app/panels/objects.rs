@@ -50,7 +50,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         }
     });
     ui.add_space(theme::GAP);
-    section(ui, "History");
+    section(ui, &history_title(document));
     history(ui, document, commands);
 }
 
@@ -217,6 +217,13 @@ fn speed(ui: &mut Ui, b: &SceneBox) {
         ui.label(text);
         ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::text_weak()));
     });
+}
+
+/// What the history takes of the memory that it may.
+fn history_title(document: &Document) -> String {
+    let mb = |bytes: usize| bytes as f64 / f64::from(1 << 20);
+    let (used, limit) = (mb(document.history_bytes()), mb(document.history_limit()));
+    format!("History   {used:.1} of {limit:.0} MB")
 }
 
 fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {

@@ -49,6 +49,15 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
                         ui.ctx().set_zoom_factor(settings.ui_scale);
                     }
                     ui.end_row();
+                    ui.label("Memory for undo");
+                    let field = egui::DragValue::new(&mut settings.history_mb)
+                        .range(Settings::HISTORY_MB)
+                        .speed(4.0)
+                        .suffix(" MB");
+                    ui.add(field)
+                        .on_hover_text("Older steps go when the history takes more")
+                        .accessible_name("Memory for undo");
+                    ui.end_row();
                     ui.label("At the start");
                     ui.checkbox(&mut settings.start_screen, "Show the start screen");
                     ui.end_row();

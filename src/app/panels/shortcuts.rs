@@ -52,8 +52,7 @@ impl Shortcuts {
                     });
                 });
         });
-        let toggled = self.awaiting.is_none() && ui.input(|i| i.key_pressed(Key::F1));
-        if self.awaiting.is_none() && (shown.should_close() || toggled) {
+        if self.awaiting.is_none() && shown.should_close() {
             *open = false;
         }
     }

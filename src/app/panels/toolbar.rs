@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Align2, Sense, Ui, WidgetInfo, vec2};
 
+use crate::app::bookmarks::SLOTS;
 use crate::app::command::Command;
 use crate::app::dock::Workspace;
 use crate::app::icons::{self, Icon};
@@ -24,6 +25,10 @@ pub struct ToolbarInput<'a> {
     pub live: bool,
     /// A job is on its way.
     pub busy: bool,
+    /// An edit waits for its generation.
+    pub waiting: bool,
+    /// Numbers of views that are kept.
+    pub bookmarks: Vec<u8>,
     /// Voxels that the user painted.
     pub has_paint: bool,
     /// The workspace chosen last.
@@ -172,11 +177,27 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
                 on(item(ui, &pane.name(), "", true), Command::ShowPane(pane));
             }
         });
+        ui.menu_button("Kept views", |ui| {
+            for slot in SLOTS {
+                let kept = input.bookmarks.contains(&slot);
+                let (name, keys) = (format!("Go to view {slot}"), format!("F{slot}"));
+                on(item(ui, &name, &keys, kept), Command::GoToBookmark(slot));
+            }
+            ui.separator();
+            for slot in SLOTS {
+                let (name, keys) = (format!("Keep as view {slot}"), format!("Ctrl+F{slot}"));
+                on(item(ui, &name, &keys, true), Command::KeepBookmark(slot));
+            }
+        });
         on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
         on(item(ui, "Grid", "G", true), Command::ToggleGrid);
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
         on(item(ui, "Checks…", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
+        on(
+            item(ui, "Performance", "F10", true),
+            Command::TogglePerformance,
+        );
     });
     ui.menu_button("Generate", |ui| {
         on(
@@ -191,6 +212,19 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             item(ui, "Cancel", "Ctrl+Backspace", input.busy),
             Command::CancelGeneration,
         );
+        on(
+            item(ui, "Drop the edit that waits", "", input.waiting),
+            Command::CancelWaiting,
+        );
+        on(
+            item(
+                ui,
+                "Cancel all",
+                "Ctrl+Shift+Backspace",
+                input.busy || input.waiting,
+            ),
+            Command::CancelAll,
+        );
         ui.separator();
         let live = if input.live {
             "Switch live off"
@@ -204,7 +238,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             item(ui, "Find a command…", "Ctrl+K", true),
             Command::TogglePalette,
         );
-        on(item(ui, "Keys", "F1", true), Command::ToggleKeys);
+        on(item(ui, "Keys", "?", true), Command::ToggleKeys);
         on(item(ui, "Start screen", "", true), Command::ToggleStart);
         ui.separator();
         on(item(ui, "Settings…", "Ctrl+,", true), Command::ToggleSettings);

@@ -297,6 +297,15 @@ pub(in crate::app) fn drag(
                 pointer::preview(commands, vec![edit]);
             }
         }
+        BevGesture::Region { from_m, to_m, on } if state.tools.region_brush => {
+            commands.push(Command::Tools(ToolCommand::RegionStroke(
+                *from_m,
+                at_m,
+                state.brush_m,
+                *on,
+            )));
+            (*from_m, *to_m) = (at_m, at_m);
+        }
         BevGesture::Marquee { to_m, .. } | BevGesture::Region { to_m, .. } => *to_m = at_m,
         BevGesture::Lasso { points_m, .. } => {
             let apart_m = 2.0 / map.scale;
@@ -402,6 +411,8 @@ pub(in crate::app) fn end(
                 commands.push(Command::Select(None));
             }
         }
+        // A brush has marked on its way.
+        BevGesture::Region { .. } if state.tools.region_brush => {}
         BevGesture::Region { from_m, to_m, on } => {
             // A click marks the cell under it.
             let around = DVec2::splat(GridSpec::VOXEL_M / 2.0);

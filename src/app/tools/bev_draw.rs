@@ -7,7 +7,7 @@ use crate::app::canvas::ScreenMap;
 use crate::app::canvas_tools::Gesture;
 use crate::app::state::{Tool, UiState};
 use crate::app::theme;
-use crate::editor::measure;
+use crate::editor::{Shape as Area, measure};
 use crate::editor::transform::{Axis, Kind};
 use crate::scene::{GridSpec, Scene};
 
@@ -38,6 +38,7 @@ pub(in crate::app) fn draw(
         region(painter, map, state);
     }
     match gesture {
+        Gesture::Tool(BevGesture::Region { .. }) if state.tools.region_brush => {}
         Gesture::Tool(BevGesture::Marquee { from_m, to_m, .. } | BevGesture::Region { from_m, to_m, .. }) => {
             let rect = Rect::from_two_pos(map.to_screen(*from_m), map.to_screen(*to_m));
             marquee(painter, rect);
@@ -72,6 +73,11 @@ pub(in crate::app) fn draw(
     }
     if state.tool == Tool::Brush {
         outline(painter, map, state, pointer);
+    }
+    if let (Tool::Region, true, Some(at)) = (state.tool, state.tools.region_brush, pointer) {
+        let radius = (state.brush_m / 2.0 * map.scale) as f32;
+        painter.circle_stroke(at, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));
+        painter.circle_stroke(at, radius, Stroke::new(1.5, theme::accent()));
     }
     if state.tool == Tool::Measure {
         let next = pointer.map(|p| measure::snapped(frame, map.to_ego(p), 8.0 / map.scale));
@@ -142,6 +148,17 @@ fn outline(painter: &Painter, map: &ScreenMap, state: &UiState, pointer: Option<
             Stroke::new(width, color.gamma_multiply(0.35)),
         ));
     } else if points.len() >= 3 {
+        let corners_m: Vec<DVec2> = state
+            .tools
+            .points_m
+            .iter()
+            .copied()
+            .chain(pointer.map(|p| map.to_ego(p)))
+            .collect();
+        let area = Area::Polygon { points_m: corners_m };
+        for [low_m, high_m] in runs(&area.cells().unwrap_or_default()) {
+            painter.rect_filled(map.rect_of(low_m, high_m), 0.0, color.gamma_multiply(0.4));
+        }
         let mut closed = points.clone();
         closed.push(points[0]);
         painter.extend(Shape::dashed_line(&closed, Stroke::new(1.5, color), 5.0, 4.0));
@@ -152,6 +169,22 @@ fn outline(painter: &Painter, map: &ScreenMap, state: &UiState, pointer: Option<
     for p in &points[..drawn] {
         painter.circle(*p, 3.5, color, Stroke::new(1.2, theme::ON_CANVAS));
     }
+}
+
+/// Sorted cells as few rectangles, corner to corner, ego frame, m.
+fn runs(cells: &[[usize; 2]]) -> Vec<[DVec2; 2]> {
+    let corner = |x: usize, y: usize| {
+        DVec2::new(
+            GridSpec::MIN_M[0] + x as f64 * GridSpec::VOXEL_M,
+            GridSpec::MIN_M[1] + y as f64 * GridSpec::VOXEL_M,
+        )
+    };
+    let joined = cells.chunk_by(|a, b| a[0] == b[0] && a[1] + 1 == b[1]);
+    let run = |cells: &[[usize; 2]]| {
+        let ([x, from], [_, to]) = (cells[0], cells[cells.len() - 1]);
+        [corner(x, from), corner(x + 1, to + 1)]
+    };
+    joined.map(run).collect()
 }
 
 fn measured(painter: &Painter, map: &ScreenMap, state: &UiState, next_m: Option<DVec2>) {
@@ -195,5 +228,21 @@ pub(in crate::app) fn held_part(axis: Option<Axis>, kind: Kind) -> Option<Part> 
     match (kind, axis) {
         (Kind::Turn, _) => Some(Part::Ring),
         (_, axis) => axis.map(Part::Axis),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_become_rectangles_that_cover_them() {
+        let cells = [[3, 5], [3, 6], [3, 8], [4, 5]];
+        let rects = runs(&cells);
+        assert_eq!(rects.len(), 3);
+        let area: f64 = rects.iter().map(|[a, b]| (*b - *a).element_product()).sum();
+        assert!((area - 4.0 * 0.16).abs() < 1e-9);
+        assert!((rects[0][0] - DVec2::new(-38.8, -38.0)).length() < 1e-9, "{rects:?}");
+        assert!(runs(&[]).is_empty());
     }
 }

@@ -142,6 +142,15 @@ impl SceneloomApp {
                     self.state.tools.region.set(i, j, on);
                 }
             }
+            ToolCommand::RegionStroke(a_m, b_m, width_m, on) => {
+                let stroke = Shape::Line {
+                    points_m: vec![a_m, b_m],
+                    width_m,
+                };
+                // A stroke beside the grid marks nothing.
+                let columns = stroke.cells().unwrap_or_default();
+                self.state.tools.region.set_columns(&columns, on);
+            }
             ToolCommand::Note(text) => self.note(&text),
         }
     }

@@ -125,6 +125,8 @@ pub struct ToolState {
     pub voxels: Vec<Cell>,
     /// Cells to be drawn anew although nothing was edited there.
     pub region: RedrawMask,
+    /// They are marked by a brush of the brush's size; false: by rectangles.
+    pub region_brush: bool,
     /// How far they leave what is there, 0 to 1.
     pub region_strength: f64,
     /// How often cells were drawn anew: each time other noise.
@@ -168,6 +170,7 @@ impl Default for ToolState {
             symmetry: false,
             voxels: Vec::new(),
             region: RedrawMask::default(),
+            region_brush: false,
             region_strength: 0.8,
             region_draws: 0,
             variants: BTreeMap::new(),

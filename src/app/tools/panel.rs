@@ -116,7 +116,7 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
 /// Shapes of the brush and what belongs to them.
 pub fn brush(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     let mut shape = state.tools.shape;
-    for part in PaintShape::ALL.chunks(4) {
+    for part in PaintShape::ALL.chunks(3) {
         if icons::segments(ui, &mut shape, part) {
             commands.push(Command::Tools(ToolCommand::Shape(shape)));
         }
@@ -233,8 +233,16 @@ pub fn region(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     section(ui, "Region to draw anew");
     caption(
         ui,
-        "Drag a rectangle in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
+        "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
     );
+    let ways = [
+        (false, "Rectangle", "drag from corner to corner"),
+        (true, "Brush", "paint the mark; [ and ] change the size"),
+    ];
+    icons::segments(ui, &mut state.tools.region_brush, &ways);
+    if state.tools.region_brush {
+        slider(ui, "Brush, m", &mut state.brush_m, UiState::BRUSH_M);
+    }
     let n = state.tools.region.count();
     let area_m2 = n as f64 * 2.56;
     caption(ui, &format!("{area_m2:.0} m² marked"));

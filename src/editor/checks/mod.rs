@@ -13,6 +13,7 @@ mod out_of_range;
 mod overlapping_boxes;
 mod unseen;
 mod unsound;
+pub mod waive;
 
 use std::collections::BTreeMap;
 
@@ -139,11 +140,11 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
 }
 
 /// The first fix of every finding that has one, as edits to be applied together. A fix that no longer applies after
-/// those before it (the box is gone already) is left out.
+/// those before it (the box is gone already) is left out, and so is that of a finding that is waived.
 pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
     let mut scratch = scene.clone();
     let mut edits = Vec::new();
-    for fix in findings.iter().filter_map(|f| f.fixes.first()) {
+    for fix in waive::open(scene.frame(), findings).filter_map(|f| f.fixes.first()) {
         let mut next = scratch.clone();
         if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
             scratch = next;

@@ -447,3 +447,62 @@ fn names_are_unique_and_results_repeat() {
     let scene = street(&objects);
     assert_eq!(run_checks(&scene, None), run_checks(&scene, None));
 }
+
+#[test]
+fn waived_findings_stay_until_they_are_taken_back() {
+    let mut scene = street(&[
+        object(1, Class::Car, 10.0, -1.7, 1.0),
+        object(2, Class::Car, 11.0, -1.7, 1.0),
+    ]);
+    let findings = run_checks(&scene, None);
+    let open = |scene: &Scene| waive::open(scene.frame(), &run_checks(scene, None)).count();
+    assert!(!findings.is_empty() && open(&scene) == findings.len());
+    assert!(!fix_all(&scene, &findings).is_empty());
+    let waive_edit = |f: &Finding, reason: &str| Edit::Waive {
+        check: f.check.into(),
+        box_id: f.box_id,
+        where_m: f.where_m,
+        reason: reason.into(),
+    };
+    for finding in &findings {
+        waive_edit(finding, "seen").apply(&mut scene).expect("sound");
+    }
+    assert_eq!((open(&scene), scene.frame().waivers.len()), (0, findings.len()));
+    assert!(fix_all(&scene, &findings).is_empty(), "what is waived is not repaired");
+    // A new reason takes the place of the old one.
+    waive_edit(&findings[0], "  looked again ").apply(&mut scene).expect("sound");
+    assert_eq!(scene.frame().waivers.len(), findings.len());
+    let waiver = waive::of(scene.frame(), &findings[0]).expect("waived");
+    assert_eq!(&*waiver.reason, "looked again");
+    // It goes through a file and through JSON.
+    let bytes = crate::formats::project::to_bytes(&scene).expect("written");
+    let again = crate::formats::project::from_bytes(&bytes).expect("read");
+    assert_eq!(again.frame().waivers, scene.frame().waivers);
+    let edit = waive_edit(&findings[0], "x");
+    let json = serde_json::to_string(&edit).expect("JSON");
+    assert_eq!(serde_json::from_str::<Edit>(&json).expect("read"), edit);
+    let f = &findings[0];
+    let back = Edit::Unwaive {
+        check: f.check.into(),
+        box_id: f.box_id,
+        where_m: f.where_m,
+    };
+    back.apply(&mut scene).expect("sound");
+    assert_eq!(open(&scene), 1);
+    let rev = scene.rev;
+    back.apply(&mut scene).expect("nothing to take back");
+    assert_eq!(scene.rev, rev);
+    for (check, reason, where_m) in [
+        ("no_such_check", "x", DVec3::ZERO),
+        (findings[0].check, "  ", DVec3::ZERO),
+        (findings[0].check, "x", DVec3::NAN),
+    ] {
+        let edit = Edit::Waive {
+            check: check.into(),
+            box_id: None,
+            where_m,
+            reason: reason.into(),
+        };
+        assert!(matches!(edit.apply(&mut scene), Err(EditError::BadWaiver(_))));
+    }
+}

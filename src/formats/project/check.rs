@@ -41,6 +41,9 @@ fn frame_problem(frame: &Frame) -> Option<String> {
             pose.translation_m
         ));
     }
+    if let Some(i) = frame.waivers.iter().position(|w| !w.where_m.is_finite()) {
+        return Some(format!("waiver {i}: where_m is not finite"));
+    }
     let norm = pose.rotation.length();
     if norm.is_nan() || (norm - 1.0).abs() > 1e-3 {
         return Some(format!(

@@ -1,0 +1,114 @@
+//! What the pointer does with the tool in hand, for the status bar.
+
+use super::state::{Pane, Tool, UiState, VoxelVerb};
+use super::tools::{PaintShape, VoxelMode};
+use crate::editor::transform::Kind;
+
+/// One line: buttons and held keys, as they count in the view under the pointer.
+pub fn hint(state: &UiState) -> String {
+    if state.holding_before {
+        return "The state before; nothing can be changed while the key is held".into();
+    }
+    let over_3d = state.hovered_pane == Some(Pane::View3d);
+    let mut parts: Vec<&str> = match state.tool {
+        Tool::Select => select(state, over_3d),
+        Tool::Brush => brush(state),
+        Tool::AddBox => vec!["Click places a box", "drag sets its heading"],
+        Tool::Voxel if over_3d => voxels(state),
+        Tool::Voxel => vec!["The voxel tool works in the 3D view"],
+        Tool::Measure if over_3d => vec!["Measures in the bird's-eye view"],
+        Tool::Measure => vec!["Click sets a point", "Esc clears"],
+        Tool::Region if over_3d => vec!["The region is marked in the bird's-eye view"],
+        Tool::Region => vec![
+            if state.tools.region_brush {
+                "Drag paints the mark"
+            } else {
+                "Drag marks a rectangle"
+            },
+            "Shift takes away",
+        ],
+    };
+    parts.extend(match state.hovered_pane {
+        Some(Pane::View3d) => &["Middle orbits", "Right flies", "Wheel zooms"][..],
+        Some(Pane::Bev) => &["Middle pans", "Wheel zooms"],
+        _ => &[],
+    });
+    parts.join("  ·  ")
+}
+
+fn select(state: &UiState, over_3d: bool) -> Vec<&'static str> {
+    let mut parts = match state.tools.lasso {
+        true => vec!["Drag draws around boxes", "Shift adds"],
+        false => vec!["Click chooses", "Shift adds", "drag over ground marks"],
+    };
+    if state.selected.is_some() {
+        parts.push(match state.tools.gizmo {
+            Kind::Move => "Drag moves, X Y Z keep an axis, digits type",
+            Kind::Turn => "Drag turns, Shift in steps",
+            Kind::Scale => "Drag scales",
+        });
+        if !over_3d {
+            parts.push("Ctrl snaps to the grid");
+        }
+    }
+    parts
+}
+
+fn brush(state: &UiState) -> Vec<&'static str> {
+    let erase = if state.erase { "Drag erases" } else { "Drag paints" };
+    match state.tools.shape {
+        PaintShape::Stroke => vec![erase, "Shift erases", "Ctrl straight", "Alt picks", "[ ] size"],
+        PaintShape::Line => vec![erase, "Shift in steps of 15°", "[ ] size"],
+        PaintShape::Rectangle => vec![erase, "Shift erases", "Alt picks"],
+        PaintShape::Polygon => vec!["Click sets corners", "Enter closes", "Backspace takes back"],
+        PaintShape::Street => vec!["Click sets points", "Enter builds", "Backspace takes back"],
+        PaintShape::Fill => vec!["Click fills what is alike", "Shift erases", "Alt picks"],
+        PaintShape::Pick => vec!["Click takes the layer"],
+    }
+}
+
+fn voxels(state: &UiState) -> Vec<&'static str> {
+    let verb = match state.verb {
+        VoxelVerb::Attach => "Drag attaches",
+        VoxelVerb::Remove => "Drag removes",
+        VoxelVerb::Recolour => "Drag recolours",
+    };
+    match state.tools.voxel_mode {
+        VoxelMode::Brush => vec![verb, "Shift removes", "Alt picks", "[ ] size"],
+        VoxelMode::Block => vec![verb, "wheel sets the height"],
+        VoxelMode::Row => vec![verb, "Shift removes"],
+        VoxelMode::Fill => vec!["Click floods one class", "Shift removes"],
+        VoxelMode::Wand => vec!["Click chooses what is connected", "Shift adds", "Del removes"],
+        VoxelMode::Extrude => vec!["Drag pulls a face out or in"],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tool_says_what_the_buttons_do() {
+        let mut state = UiState::default();
+        let mut seen = std::collections::BTreeSet::new();
+        for pane in [Pane::Bev, Pane::View3d] {
+            state.hovered_pane = Some(pane);
+            for (tool, ..) in Tool::ALL {
+                state.tool = tool;
+                let text = hint(&state);
+                assert!(text.len() > 20 && text.len() < 130, "{text}");
+                assert!(seen.insert(text), "two tools say the same");
+            }
+        }
+        state.tool = Tool::Brush;
+        for (shape, ..) in PaintShape::ALL {
+            state.tools.shape = shape;
+            assert!(seen.insert(hint(&state)) || shape == PaintShape::Stroke);
+        }
+        state.tool = Tool::Voxel;
+        for (mode, ..) in VoxelMode::ALL {
+            state.tools.voxel_mode = mode;
+            assert!(seen.insert(hint(&state)) || mode == VoxelMode::Brush);
+        }
+    }
+}
