@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sceneloom::editor::{Document, Edit};
 use sceneloom::generation::dataset::occupancy_frame;
-use sceneloom::generation::job::{GenParams, Job, JobCtx, Pipeline};
+use sceneloom::generation::job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use sceneloom::generation::model::layout::net::LayoutNet;
 use sceneloom::generation::model::lidar::LidarNet;
 use sceneloom::generation::model::{OccModels, fine_vae};
@@ -73,7 +73,8 @@ fn scene() -> Scene {
 
 #[test]
 fn edit_by_inversion() {
-    for (solver, guidance) in [(SolverKind::Ddim, 1.0), (SolverKind::DpmPp2M, 2.0)] {
+    let (auto, full) = (RegionMode::Auto, RegionMode::Full);
+    for (solver, guidance, region) in [(SolverKind::Ddim, 1.0, auto), (SolverKind::DpmPp2M, 2.0, full)] {
         same_bits("edit", || {
             let mut document = Document::new(scene());
             let boxes = &document.scene().frame().boxes;
@@ -84,6 +85,8 @@ fn edit_by_inversion() {
                 steps: 3,
                 solver,
                 guidance,
+                region,
+                keep_objects: region == auto,
                 strength: 0.5,
                 ..GenParams::default()
             };
