@@ -128,8 +128,12 @@ impl Dock {
         }
     }
 
-    /// From what was kept of an earlier session; none if it is not sound: empty, or a pane twice.
+    /// From what was kept of an earlier session; none if it is not sound: empty, a pane twice, or no tree (a tile
+    /// within itself would be walked without end), or a share that is no number.
     pub fn from_kept(tree: Tree<Pane>) -> Option<Self> {
+        if !is_tree(&tree) {
+            return None;
+        }
         let dock = Self {
             tree,
             maximized: None,
@@ -267,6 +271,27 @@ fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     join(tiles, LinearDir::Horizontal, &parts)
 }
 
+/// True if every tile is reached from the root once at most, and every child is there.
+fn is_tree(tree: &Tree<Pane>) -> bool {
+    let (mut seen, mut open) = (HashSet::new(), Vec::from_iter(tree.root));
+    while let Some(id) = open.pop() {
+        match tree.tiles.get(id) {
+            _ if !seen.insert(id) => return false,
+            None => return false,
+            Some(Tile::Pane(_)) => {}
+            Some(Tile::Container(c)) => {
+                if let Container::Linear(linear) = c
+                    && linear.shares.iter().any(|(_, s)| !(s.is_finite() && *s >= 0.0))
+                {
+                    return false;
+                }
+                open.extend(c.children());
+            }
+        }
+    }
+    true
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -283,6 +308,20 @@ mod tests {
         let tile = twice.find(Pane::Bev).expect("there");
         twice.tree.tiles.insert(tile, Tile::Pane(Pane::View3d));
         assert!(Dock::from_kept(twice.tree).is_none());
+    }
+
+    #[test]
+    fn a_tile_within_itself_is_refused() {
+        let mut dock = Dock::default();
+        let root = dock.tree.root.expect("there");
+        let Some(Tile::Container(c)) = dock.tree.tiles.get_mut(root) else {
+            panic!("a container");
+        };
+        c.add_child(root);
+        assert!(Dock::from_kept(dock.tree).is_none());
+        let mut dock = Dock::default();
+        dock.tree.tiles.remove(dock.find(Pane::Bev).expect("there"));
+        assert!(Dock::from_kept(dock.tree).is_none(), "a child is missing");
     }
 
     #[test]

@@ -49,8 +49,9 @@ impl Shape {
     /// off (explicit cells outside are an error). Errors: numbers that are not finite or negative,
     /// too few points, or no cell at all.
     pub fn cells(&self) -> Result<Vec<[usize; 2]>, EditError> {
-        let mut cells = Vec::new();
-        let mut visit = |x, y| cells.push([x, y]);
+        // One bit a cell: a wide stroke of many points visits the same cells again and again.
+        let mut covered = vec![false; GridSpec::COLUMNS];
+        let mut visit = |x: usize, y: usize| covered[x * GridSpec::NY + y] = true;
         match self {
             Self::Disc { center_m, radius_m } => {
                 finite("center_m", &[*center_m])?;
@@ -87,12 +88,12 @@ impl Shape {
                 }
             }
         }
-        if cells.is_empty() {
-            return Err(EditError::NoCell);
+        let cells = covered.iter().enumerate().filter(|(_, c)| **c);
+        let cells: Vec<[usize; 2]> = cells.map(|(i, _)| [i / GridSpec::NY, i % GridSpec::NY]).collect();
+        match cells.is_empty() {
+            true => Err(EditError::NoCell),
+            false => Ok(cells),
         }
-        cells.sort_unstable();
-        cells.dedup();
-        Ok(cells)
     }
 }
 

@@ -16,6 +16,10 @@ use crate::scene::{Class, GridSpec, VoxelGrid};
 const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];
 /// Largest array that is unpacked: eight bytes a voxel and a header.
 const LARGEST: u64 = 8 * GridSpec::VOXELS as u64 + 65_536;
+/// Longest header of an array, bytes, and most brackets in it: its parser calls itself for each, and a file of nothing
+/// but brackets would end the program.
+const LONGEST_HEADER: usize = 4096;
+const MOST_BRACKETS: usize = 64;
 
 /// A labelled frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,9 +126,10 @@ pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
 
 /// One array of the grid's shape, whatever its integer type.
 fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Occ3dError> {
+    // What a parser says may be a drawing of several lines, and holds what the file holds.
     let problem = |problem: String| Occ3dError::Array {
         name: name.into(),
-        problem,
+        problem: problem.split_whitespace().take(40).collect::<Vec<_>>().join(" "),
     };
     let file = npyz::npz::file_name_from_array_name(name);
     let entry = zip.by_name(&file).map_err(|e| problem(e.to_string()))?;
@@ -137,6 +142,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Oc
     if bytes.len() as u64 > LARGEST {
         return Err(problem(format!("more than {LARGEST} bytes")));
     }
+    check_header(&bytes).map_err(problem)?;
     let npy = NpyFile::new(&bytes[..]).map_err(|e| problem(e.to_string()))?;
     let expected = [GridSpec::NX as u64, GridSpec::NY as u64, GridSpec::NZ as u64];
     if npy.shape() != expected {
@@ -161,6 +167,29 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Oc
     }
     read_as!(npy, u8, bool, i8, i64, i32, u16, i16, u32);
     Err(problem(format!("type {dtype}, expected integers")))
+}
+
+/// Errors on a header that numpy would not write: too long, or nested too deeply.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    // Magic (6), version (2), length (2 bytes in version 1, 4 later), text.
+    let (length, start) = match bytes {
+        [_, _, _, _, _, _, 1, _, a, b, ..] => (usize::from(u16::from_le_bytes([*a, *b])), 10),
+        [_, _, _, _, _, _, _, _, a, b, c, d, ..] => (u32::from_le_bytes([*a, *b, *c, *d]) as usize, 12),
+        _ => return Err(format!("{} bytes, expected an npy file", bytes.len())),
+    };
+    if length > LONGEST_HEADER {
+        return Err(format!(
+            "a header of {length} bytes, expected at most {LONGEST_HEADER}"
+        ));
+    }
+    let text = bytes[start..].iter().take(length);
+    let brackets = text.filter(|b| matches!(b, b'(' | b'[' | b'{')).count();
+    match brackets > MOST_BRACKETS {
+        true => Err(format!(
+            "a header with {brackets} brackets, expected at most {MOST_BRACKETS}"
+        )),
+        false => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -257,5 +286,14 @@ mod tests {
         assert!(message(&short).starts_with("array semantics: "));
         let huge = npz(&[("semantics", "|u1", SHAPE, vec![0; LARGEST as usize + 500])]);
         assert!(message(&huge).contains("more than"));
+        // Headers that numpy would not write: a nest, one that is too long, one that is no Python.
+        for (shape, expected) in [
+            (format!("{}200{}", "(".repeat(70), ")".repeat(70)), "brackets"),
+            (" ".repeat(5000), "a header of"),
+            ("((200,".to_owned(), "could not parse"),
+        ] {
+            let line = message(&npz(&[("semantics", "|u1", &shape, labels())]));
+            assert!(line.contains(expected) && !line.contains('\n'), "{line}");
+        }
     }
 }

@@ -225,8 +225,21 @@ pub struct SensorRig {
 }
 
 impl SensorRig {
-    /// What is wrong with this rig, if anything: finite numbers, sizes, focal lengths, angles.
+    /// Most cameras, and most LiDARs.
+    pub const MOST_SENSORS: usize = 64;
+    /// Most rays of a LiDAR: several times those of the densest there are.
+    pub const MOST_RAYS: usize = 4 << 20;
+
+    /// What is wrong with this rig, if anything: finite numbers, sizes, focal lengths, angles, how many sensors and rays.
     pub fn problem(&self) -> Option<String> {
+        if self.cameras.len().max(self.lidars.len()) > Self::MOST_SENSORS {
+            return Some(format!(
+                "{} cameras and {} lidars, expected at most {} each",
+                self.cameras.len(),
+                self.lidars.len(),
+                Self::MOST_SENSORS
+            ));
+        }
         for c in &self.cameras {
             let numbers = [&c.focal_px[..], &c.center_px, &c.rotation_wxyz, &c.translation_m].concat();
             if numbers.iter().any(|v| !v.is_finite()) {
@@ -244,8 +257,8 @@ impl SensorRig {
                     c.name, c.focal_px
                 ));
             }
-            if norm(&c.rotation_wxyz) < 1e-6 {
-                return Some(format!("camera {}: rotation_wxyz is zero", c.name));
+            if !is_rotation(&c.rotation_wxyz) {
+                return Some(format!("camera {}: rotation_wxyz is zero or huge", c.name));
             }
         }
         for l in &self.lidars {
@@ -277,8 +290,16 @@ impl SensorRig {
                     l.name, l.sector_deg, l.spin_hz
                 ));
             }
-            if norm(&l.rotation_wxyz) < 1e-6 {
-                return Some(format!("lidar {}: rotation_wxyz is zero", l.name));
+            if !is_rotation(&l.rotation_wxyz) {
+                return Some(format!("lidar {}: rotation_wxyz is zero or huge", l.name));
+            }
+            if l.rays() > Self::MOST_RAYS {
+                return Some(format!(
+                    "lidar {}: {} rays, expected at most {}",
+                    l.name,
+                    l.rays(),
+                    Self::MOST_RAYS
+                ));
             }
         }
         let ego = [&self.ego_size_m[..], &self.ego_center_m, &[self.ego_speed_mps]].concat();
@@ -291,8 +312,10 @@ impl SensorRig {
     }
 }
 
-fn norm(q: &[f64; 4]) -> f64 {
-    q.iter().map(|v| v * v).sum::<f64>().sqrt()
+/// True if a quaternion can be brought to length 1.
+fn is_rotation(q: &[f64; 4]) -> bool {
+    let norm = q.iter().map(|v| v * v).sum::<f64>().sqrt();
+    (1e-6..1e6).contains(&norm)
 }
 
 impl Default for SensorRig {

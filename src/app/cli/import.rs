@@ -37,9 +37,9 @@ pub struct Import {
 
 /// `X,Y` as finite metres.
 fn point(text: &str) -> Result<DVec2, String> {
-    let numbers: Vec<f64> = text.split(',').filter_map(|v| v.trim().parse().ok()).collect();
-    match numbers[..] {
-        [x, y] if x.is_finite() && y.is_finite() => Ok(DVec2::new(x, y)),
+    let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y]) if x.is_finite() && y.is_finite() => Ok(DVec2::new(x, y)),
         _ => Err("expected two finite numbers X,Y in metres".into()),
     }
 }

@@ -214,6 +214,12 @@ impl<E: Into<anyhow::Error>> From<E> for Stop {
 
 type Outcome = Result<(), Stop>;
 
+/// Whether a command line can be parsed, program name first; the message that a user would see if not. Runs nothing.
+pub fn accepts(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<(), String> {
+    let parsed = Cli::try_parse_from(arguments);
+    parsed.map(|_| ()).map_err(|e| e.to_string())
+}
+
 /// Parses the arguments, runs the command or the editor, prints an error once; the exit code of the process.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {

@@ -1,9 +1,14 @@
 //! What a project may not hold, whether it comes from a file or goes into one.
 
+use glam::DVec2;
+
 use crate::scene::{Frame, Scene};
 
 use super::archive::within;
 use super::{MAX_FRAMES, ProjectError};
+
+/// Largest coordinate of a polyline's point, m.
+const LARGEST_M: f64 = 1e5;
 
 /// Errors on the first thing that is not sound; JSON could not even hold a NaN.
 pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
@@ -64,8 +69,12 @@ fn frame_problem(frame: &Frame) -> Option<String> {
         }
         let lines = layout.polylines.iter().enumerate();
         for (i, line) in lines {
-            if line.points_m.iter().any(|p| !p.is_finite()) {
-                return Some(format!("{of}polyline {i}: a point is not finite"));
+            // Written so that NaN fails too. Lines are walked in steps of metres: one of 1e300 m would have no end.
+            let within = |p: &DVec2| p.abs().cmple(DVec2::splat(LARGEST_M)).all();
+            if !line.points_m.iter().all(within) {
+                return Some(format!(
+                    "{of}polyline {i}: a point is not finite or beyond {LARGEST_M} m"
+                ));
             }
         }
     }

@@ -74,9 +74,9 @@ pub struct Render {
 
 /// `WxH`, each 1 to 8192.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides: Vec<u32> = text.split('x').filter_map(|v| v.parse().ok()).collect();
-    match sides[..] {
-        [w, h] if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok([w, h]),
+    let sides: Option<Vec<u32>> = text.split('x').map(|v| v.parse().ok()).collect();
+    match sides.as_deref() {
+        Some(&[w, h]) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok([w, h]),
         _ => Err("expected WxH, each 1 to 8192 pixels".into()),
     }
 }

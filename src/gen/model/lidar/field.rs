@@ -221,17 +221,17 @@ impl Field {
         class
     }
 
-    /// What a ray meets whose samples lie at `t` (m, rising) with signed distances `f` and `logs` of what NeuS makes of
-    /// them, ln sigmoid(s f). Twin of `Lidar.render`.
+    /// What a ray meets whose samples lie at `t` (m, rising) with signed distances `f` and [`neus::tail`] of s f, s being
+    /// the steepness. Twin of `Lidar.render`.
     #[inline(always)]
     pub fn render(
         &self,
-        origin: [f32; 3],
-        direction: [f32; 3],
-        [t, f, logs]: [&[f32]; 3],
+        s: f32,
+        [origin, direction]: [[f32; 3]; 2],
+        [t, f, tails]: [&[f32]; 3],
         weights: &mut Vec<f32>,
     ) -> Met {
-        let log_pass = neus::weights_of_logs(logs, weights);
+        let log_pass = neus::weights(s, f, tails, weights);
         let total: f32 = weights.iter().sum();
         let at = |i: usize| neus::crossing(t[i], t[i + 1], f[i], f[i + 1]);
         let mut met = Met {
@@ -271,8 +271,8 @@ impl Field {
     fn shoot(&self, head: &SdfHead, ray: &Ray, sampling: Sampling, room: &mut Room) -> Met {
         room.t.clear();
         room.f.clear();
-        room.logs.clear();
-        let line @ [origin, direction] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
+        room.tails.clear();
+        let line = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
         let (mut log_pass, mut reach_m) = (0.0f32, f32::INFINITY);
         match sampling {
             Sampling::Prior => {
@@ -282,7 +282,7 @@ impl Field {
                         break;
                     }
                 }
-                self.refine(head, origin, direction, room);
+                self.refine(head, line, room);
             }
             Sampling::Uniform(n) => {
                 let [near, far] = ray.range_m.map(|v| v as f32);
@@ -292,8 +292,8 @@ impl Field {
                 }
             }
         }
-        let samples = [&room.t[..], &room.f, &room.logs];
-        let mut met = self.render(origin, direction, samples, &mut room.weights);
+        let samples = [&room.t[..], &room.f, &room.tails];
+        let mut met = self.render(head.s, line, samples, &mut room.weights);
         met.reach_m = reach_m;
         met
     }
@@ -309,22 +309,22 @@ impl Field {
         room: &mut Room,
     ) -> bool {
         let value = self.sdf(head, along(origin, direction, position));
-        let log = neus::log_sigmoid(head.s * value);
-        if let Some(before) = room.logs.last() {
-            *log_pass += (log - before).min(0.0);
+        let tail = neus::tail(head.s * value);
+        if let (Some(f), Some(before)) = (room.f.last(), room.tails.last()) {
+            *log_pass += neus::log_pass(head.s, [*f, value], [*before, tail]);
         }
         room.t.push(position);
         room.f.push(value);
-        room.logs.push(log);
+        room.tails.push(tail);
         *log_pass > OPAQUE && room.t.len() < MOST_SAMPLES
     }
 
     /// Divides the heaviest interval where it is crossed, twice: the importance step of NeuS, at the one place where it
     /// matters.
     #[inline(always)]
-    fn refine(&self, head: &SdfHead, origin: [f32; 3], direction: [f32; 3], room: &mut Room) {
+    fn refine(&self, head: &SdfHead, [origin, direction]: [[f32; 3]; 2], room: &mut Room) {
         for _ in 0..2 {
-            neus::weights_of_logs(&room.logs, &mut room.weights);
+            neus::weights(head.s, &room.f, &room.tails, &mut room.weights);
             let (mut heaviest, mut weight) = (0, 0.1);
             for (i, w) in room.weights.iter().enumerate() {
                 if *w > weight {
@@ -341,7 +341,7 @@ impl Field {
             let value = self.sdf(head, along(origin, direction, position));
             room.t.insert(heaviest + 1, position);
             room.f.insert(heaviest + 1, value);
-            room.logs.insert(heaviest + 1, neus::log_sigmoid(head.s * value));
+            room.tails.insert(heaviest + 1, neus::tail(head.s * value));
         }
     }
 }
@@ -362,7 +362,7 @@ pub struct Ray {
 pub struct Room {
     t: Vec<f32>,
     f: Vec<f32>,
-    logs: Vec<f32>,
+    tails: Vec<f32>,
     weights: Vec<f32>,
 }
 

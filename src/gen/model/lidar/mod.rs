@@ -156,6 +156,13 @@ impl LidarNet {
             second_bias: w.take("sdf2.bias", &[1])?[0],
             s: w.take("log_s", &[1])?[0].exp(),
         };
+        if !(head.s > 0.0 && head.s.is_finite()) {
+            let reason = format!(
+                "the steepness exp(log_s) is {}, expected finite and above 0",
+                head.s
+            );
+            return Err(w.config_error("log_s", reason));
+        }
         let net = Self {
             class_table: w.take("class_table", &[CLASSES, w0])?,
             height_table: w.take("height_table", &[GridSpec::NZ, w0])?,
@@ -292,8 +299,8 @@ impl LidarNet {
             .iter()
             .map(|t| field.sdf(&self.head, std::array::from_fn(|a| o[a] + d[a] * t)))
             .collect();
-        let logs: Vec<f32> = f.iter().map(|f| neus::log_sigmoid(self.head.s * f)).collect();
-        let met = field.render(o, d, [t, &f, &logs], &mut Vec::new());
+        let tails: Vec<f32> = f.iter().map(|f| neus::tail(self.head.s * f)).collect();
+        let met = field.render(self.head.s, [o, d], [t, &f, &tails], &mut Vec::new());
         (f, self.heads(&[met])[0])
     }
 

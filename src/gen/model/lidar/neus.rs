@@ -3,17 +3,16 @@
 
 use crate::generation::model::kernels::exp;
 
-/// ln sigmoid(x).
+/// ln(1 + e^-|x|): what ln sigmoid(x) lies below the smaller of x and 0.
 #[inline(always)]
-pub fn log_sigmoid(x: f32) -> f32 {
+pub fn tail(x: f32) -> f32 {
     let small = exp(-x.abs());
     // Most samples are far from any surface: two terms of the series are exact there.
-    let tail = if small < 1e-3 {
+    if small < 1e-3 {
         small * (1.0 - 0.5 * small)
     } else {
         ln_1p(small)
-    };
-    x.min(0.0) - tail
+    }
 }
 
 /// ln(1 + x) for x from 0 to 1, within 2e-7 relative: 2 artanh(x / (2 + x)) as a series.
@@ -46,38 +45,41 @@ fn one_minus_exp(x: f32) -> f32 {
     -(x + x * x * p)
 }
 
-/// ln(1 - alpha) of an interval from signed distance `f0` to `f1`, never above 0; NaN inputs give 0, an interval that
-/// nothing stops in.
+/// ln(1 - alpha) of an interval from signed distance `f0` to `f1`, given [`tail`] of both, never above 0; NaN inputs give
+/// 0, an interval that nothing stops in.
 #[inline(always)]
-pub fn log_pass(s: f32, f0: f32, f1: f32) -> f32 {
-    let change = log_sigmoid(s * f1) - log_sigmoid(s * f0);
+pub fn log_pass(s: f32, [f0, f1]: [f32; 2], [tail0, tail1]: [f32; 2]) -> f32 {
+    // Inside, both products are large and nearly equal: their difference is formed before it is multiplied.
+    let whole = if f0 <= 0.0 {
+        s * (f1 - f0)
+    } else {
+        (s * f1).min(0.0)
+    };
+    let change = whole - (tail1 - tail0);
     // Written so that NaN and -0 end as 0.
-    if change < 0.0 { change } else { 0.0 }
+    if change < 0.0 && f1 < f0 { change } else { 0.0 }
 }
 
-/// alpha = max((Phi(f0) - Phi(f1)) / Phi(f0), 0) with Phi(x) = 1 / (1 + e^(-s x)), 0 to 1.
+/// alpha = max((Phi(f0) - Phi(f1)) / Phi(f0), 0) with Phi(x) = 1 / (1 + e^(-s x)), 0 to 1, given [`tail`] of s `f1`.
+/// As sigmoid(-s f1) (1 - e^(-s (f0 - f1))) nothing cancels, however close the distances; NaN gives 0.
 #[inline(always)]
-pub fn alpha(s: f32, f0: f32, f1: f32) -> f32 {
-    one_minus_exp(log_pass(s, f0, f1))
+pub fn alpha(s: f32, [f0, f1]: [f32; 2], tail1: f32) -> f32 {
+    let fall = s * (f0 - f1);
+    let stopped = one_minus_exp((s * f1).min(0.0) - tail1) * one_minus_exp(-fall);
+    if fall > 0.0 && stopped > 0.0 { stopped } else { 0.0 }
 }
 
-/// Weight of each interval between consecutive samples; returns the logarithm of what passes them all.
-pub fn weights(s: f32, f: &[f32], out: &mut Vec<f32>) -> f32 {
-    let logs: Vec<f32> = f.iter().map(|f| log_sigmoid(s * f)).collect();
-    weights_of_logs(&logs, out)
-}
-
-/// The same from ln sigmoid(s f) of each sample, which a ray computes once.
+/// Weight of each interval between consecutive samples with signed distances `f`, given [`tail`] of each s f, which a
+/// ray computes once; returns the logarithm of what passes them all.
 #[inline(always)]
-pub fn weights_of_logs(logs: &[f32], out: &mut Vec<f32>) -> f32 {
+pub fn weights(s: f32, f: &[f32], tails: &[f32], out: &mut Vec<f32>) -> f32 {
     out.clear();
     let mut passed = 0.0f32;
-    for pair in logs.windows(2) {
-        let change = pair[1] - pair[0];
+    for (f, tails) in f.windows(2).zip(tails.windows(2)) {
         // Most intervals stop nothing; NaN stops nothing either.
-        if change < 0.0 {
-            out.push(one_minus_exp(change) * exp(passed));
-            passed += change;
+        if f[1] < f[0] {
+            out.push(alpha(s, [f[0], f[1]], tails[1]) * exp(passed));
+            passed += log_pass(s, [f[0], f[1]], [tails[0], tails[1]]);
         } else {
             out.push(0.0);
         }
@@ -116,27 +118,82 @@ mod tests {
         numbers(value).into_iter().map(|v| v as f32).collect()
     }
 
-    /// Row 48: mpmath 1.3.0 at 60 digits; 1e-7 absolute + 2e-4 relative, or 4 eps |s f0| / |s (f0 - f1)| where the
-    /// inputs are nearly equal (reference/neus.json).
+    fn tails(s: f32, f: &[f32]) -> Vec<f32> {
+        f.iter().map(|f| tail(s * f)).collect()
+    }
+
+    fn alpha_of(s: f32, f0: f32, f1: f32) -> f32 {
+        alpha(s, [f0, f1], tail(s * f1))
+    }
+
+    /// The same in f64, in the form that does not cancel.
+    fn exact(s: f64, f0: f64, f1: f64) -> f64 {
+        let fall = s * (f0 - f1);
+        if fall > 0.0 {
+            -(-fall).exp_m1() / (1.0 + (s * f1).exp())
+        } else {
+            0.0
+        }
+    }
+
+    /// Row 48: 1e-4 relative or 1e-7 absolute against f64 on the same f32 inputs, and that f64 form against mpmath 1.3.0
+    /// at 60 digits (reference/neus.json).
     #[test]
     fn row_48_alpha() {
+        let (mut worst, mut inputs) = (0.0f64, Vec::new());
         for case in reference()["alphas"].as_array().expect("cases") {
             let [s, f0, f1, truth] = numbers(case)[..] else {
                 panic!("four numbers")
             };
-            let found = f64::from(alpha(s as f32, f0 as f32, f1 as f32));
-            let close = 4.0 * f64::from(f32::EPSILON) * (s * f0).abs() / (s * (f0 - f1)).abs();
-            let relative = if close.is_finite() { close.max(2e-4) } else { 2e-4 };
-            assert!((0.0..=1.0).contains(&found));
+            let form = exact(s, f0, f1);
+            // The reference's inputs are f64: their own rounding is all that may part the two.
+            let close = 4.0 * f64::EPSILON * (s * f0).abs() / (s * (f0 - f1)).abs().max(1e-300);
             assert!(
-                (found - truth).abs() <= 1e-7 + relative * truth,
+                (form - truth).abs() <= 1e-300 + (1e-9 + close) * truth,
+                "{form} {truth}"
+            );
+            inputs.push([s as f32, f0 as f32, f1 as f32]);
+        }
+        // Every steepness with distances far apart, close, and one bit apart, inside, outside and across.
+        for e in -12..=20 {
+            let s = 10f32.powf(e as f32 / 4.0);
+            for k in -40..=40 {
+                let f0 = k as f32 * 0.013 / s.sqrt().max(0.05);
+                for step in [1e-7f32, 1e-5, 1e-3, 0.05, 0.4, 3.0] {
+                    inputs.push([s, f0, f0 - step]);
+                    inputs.push([s, f0, f0 + step]);
+                }
+                inputs.push([s, f0, f0.next_down()]);
+            }
+        }
+        for [s, f0, f1] in inputs {
+            let found = f64::from(alpha_of(s, f0, f1));
+            let truth = exact(s.into(), f0.into(), f1.into());
+            assert!((0.0..=1.0).contains(&found));
+            let gap = (found - truth).abs();
+            assert!(
+                gap <= 1e-7 || gap <= 1e-4 * truth,
                 "alpha({s}, {f0}, {f1}) = {found}, expected {truth}"
             );
+            if truth > 1e-30 {
+                worst = worst.max(gap / truth);
+            }
         }
+        println!("alpha: largest relative error {worst:.1e}");
         for s in [1e-3f32, 1.0, 1e5, f32::INFINITY] {
-            for f in [0.0f32, -0.0, 0.1, -0.1, 1e30, f32::NAN] {
-                assert_eq!(alpha(s, f, f), 0.0);
-                assert!((0.0..=1.0).contains(&alpha(s, 0.3, f)), "{s} {f}");
+            for f in [
+                0.0f32,
+                -0.0,
+                0.1,
+                -0.1,
+                1e30,
+                f32::INFINITY,
+                f32::NEG_INFINITY,
+                f32::NAN,
+            ] {
+                assert_eq!(alpha_of(s, f, f), 0.0);
+                assert!((0.0..=1.0).contains(&alpha_of(s, 0.3, f)), "{s} {f}");
+                assert!((0.0..=1.0).contains(&alpha_of(s, f, -0.3)), "{s} {f}");
             }
         }
     }
@@ -147,7 +204,7 @@ mod tests {
         for case in reference()["rays"].as_array().expect("cases") {
             let (s, f) = (case["s"].as_f64().expect("s") as f32, f32s(&case["sdf_m"]));
             let mut found = Vec::new();
-            let passed = weights(s, &f, &mut found);
+            let passed = weights(s, &f, &tails(s, &f), &mut found);
             let sum: f64 = found.iter().map(|w| f64::from(*w)).sum();
             assert!(sum <= 1.0 + 1e-6, "{}: {sum}", case["name"]);
             assert!((sum - (1.0 - f64::from(passed).exp())).abs() < 1e-5);
@@ -170,6 +227,25 @@ mod tests {
         }
     }
 
+    /// Row 49: one crossing takes all of the light, however steep and however many samples stand about it.
+    #[test]
+    fn row_49_one_crossing_takes_all() {
+        let mut w = Vec::new();
+        for s in [100.0f32, 1e3, 1e5] {
+            for n in [2usize, 3, 50, 768] {
+                let f: Vec<f32> = (0..n).map(|i| 1.0 - 2.0 * i as f32 / (n - 1) as f32).collect();
+                weights(s, &f, &tails(s, &f), &mut w);
+                let sum: f64 = w.iter().map(|w| f64::from(*w)).sum();
+                assert!((sum - 1.0).abs() <= 1e-6, "s {s}, {n} samples: {sum}");
+            }
+        }
+        // Wholly inside from the start, in small steps: what is stopped adds up to what does not pass.
+        let f: Vec<f32> = (0..768).map(|i| -0.1 - i as f32 * 1e-6).collect();
+        let passed = weights(1e5, &f, &tails(1e5, &f), &mut w);
+        let sum: f64 = w.iter().map(|w| f64::from(*w)).sum();
+        assert!(sum <= 1.0 + 1e-6 && (sum - 1.0 + f64::from(passed).exp()).abs() <= 1e-5);
+    }
+
     /// Row 50: the depth of a known plane is off by half a step at most and the error halves with the step; the
     /// straight line between samples finds it.
     #[test]
@@ -185,7 +261,7 @@ mod tests {
                     .collect();
                 let f: Vec<f32> = t.iter().map(|t| plane - t).collect();
                 let mut w = Vec::new();
-                weights(2e5, &f, &mut w);
+                weights(2e5, &f, &tails(2e5, &f), &mut w);
                 let depth =
                     |at: &dyn Fn(usize) -> f32| -> f32 { w.iter().enumerate().map(|(i, w)| w * at(i)).sum() };
                 let middle = depth(&|i| (t[i] + t[i + 1]) / 2.0);
