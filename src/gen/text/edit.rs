@@ -492,10 +492,19 @@ impl Editor<'_> {
         let moved = match &c.destination {
             Some(Destination::By { direction, metres }) => {
                 let metres = metres.unwrap_or_else(|| {
+                    let free = [3.5, 7.0, 5.0, 10.5, 2.0].into_iter().find(|m| {
+                        let new = SceneBox {
+                            center_m: b.center_m + (*direction * *m).extend(0.0),
+                            ..b
+                        };
+                        let apart = |o: &SceneBox| super::holds::overlap_m(&new, o, 0.2) <= 0.0;
+                        apart(&ego()) && self.boxes.values().all(|o| o.id == id || apart(o))
+                    });
+                    let metres = free.unwrap_or(3.5);
                     self.out
                         .notes
-                        .push("no distance was said: moved by one lane, 3.5 m".into());
-                    3.5
+                        .push(format!("no distance was said: moved by {metres} m"));
+                    metres
                 });
                 b.center_m + (*direction * metres).extend(0.0)
             }

@@ -447,7 +447,7 @@ fn metres_at(items: &[Item], i: usize) -> Option<(f64, usize)> {
         Some(Tag::Is(Sense::Unit(m))) => Some(m),
         _ => None,
     };
-    match items[i].tag {
+    match items.get(i)?.tag {
         Tag::Number(v) => unit(i + 1).map(|m| (v * m, 2)),
         Tag::Is(Sense::Count(count)) => unit(i + 1).map(|m| (f64::from(count.n) * m, 2)),
         Tag::Is(Sense::Fraction(share)) => unit(i + 1).map(|m| (share * m, 2)),
@@ -476,6 +476,13 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             }
             i += n;
             continue;
+        }
+        let side = w.ends_with(" side") && metres.is_none() && metres_at(items, i + 1).is_none();
+        if side && direction(w).is_some() {
+            // "to the left side" is a place
+            cut = cut.min(i);
+            place_from = Some(i);
+            break;
         }
         if let Some(d) = direction(w) {
             let ends = items[i + 1..].iter().all(|x| {

@@ -247,6 +247,7 @@ impl<'a> Parser<'a> {
                     return false;
                 }
                 if self.edits
+                    && !matches!(self.sense(self.at + 1), Some(Sense::Unit(_)))
                     && let (Some(&i), Some(Sense::Noun(..))) =
                         (self.history_last(), self.sense(self.at.wrapping_sub(1)))
                 {
