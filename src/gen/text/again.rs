@@ -27,6 +27,64 @@ impl Parser<'_> {
         number && self.ends(i + 1) && self.mentions.iter().any(|m| !m.gone && !m.is_anchor)
     }
 
+    /// True if "and" and a comma stand right before.
+    pub(super) fn after_and(&self) -> bool {
+        let word = |k: usize| self.at.checked_sub(k).and_then(|i| self.item(i));
+        word(1).is_some_and(|n| n.tag == Tag::Comma) && word(2).is_some_and(|n| n.tag == Tag::Is(Sense::And))
+    }
+
+    /// "cones block the lane, four in total": the number of what was named last. True if it was that.
+    pub(super) fn numbers_last(&mut self, count: Count, span: Span) -> bool {
+        let mut end = self.at + 1;
+        let mut total = false;
+        while let Some(n) = self.item(end)
+            && matches!(n.words.as_str(), "in total" | "total" | "altogether" | "in all" | "all told" | "of them")
+        {
+            total = true;
+            end += 1;
+        }
+        let lead = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|n| matches!(n.tag, Tag::Comma | Tag::Mark) || n.words == "of");
+        if !self.ends(end) || !(total || lead) || !self.fronted.is_empty() {
+            return false;
+        }
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let Some(m) = last.map(|i| &mut self.mentions[i]) else {
+            return false;
+        };
+        let many = m.plural || m.spec.count.n > 1;
+        if !m.uncounted || !many {
+            return false;
+        }
+        m.spec.count = count;
+        m.spec.span = m.spec.span.to(span);
+        m.uncounted = false;
+        self.pre = Pre::default();
+        self.at = end - 1;
+        true
+    }
+
+    /// "a roadblock of five barriers": only what it is made of is counted. True if it was that.
+    pub(super) fn holds_others(&mut self, noun: &'static Noun, pre: &Pre) -> bool {
+        let of = self.item(self.at + 1).is_some_and(|n| n.words == "of");
+        let counted = matches!(
+            self.item(self.at + 2).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Count(_)))
+        );
+        let same = self.items[self.at..]
+            .iter()
+            .skip(3)
+            .take(3)
+            .find_map(|n| match n.tag {
+                Tag::Is(Sense::Noun(other, _)) => Some(other.classes[0] == noun.classes[0]),
+                _ => None,
+            });
+        of && counted && pre.count.is_none_or(|c| c.n == 1) && same == Some(true) && self.noun_ahead(self.at + 2)
+    }
+
     /// As many more of what was named last, elsewhere.
     pub(super) fn again(&mut self, count: Count, span: Span) {
         let last = (0..self.mentions.len())

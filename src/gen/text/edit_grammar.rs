@@ -353,7 +353,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to"
+                && (matches!(verb, Verb::Keep | Verb::Make) && matches!(to.words.as_str(), "to" | "up to" | "down to" | "back to")
                     || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
@@ -598,6 +598,14 @@ fn destination(
     Some(Destination::Place(Box::new(spec)))
 }
 
+/// "face the other way"
+fn turned_back(list: &[&str]) -> bool {
+    let said = list.join(" ");
+    ["other way", "opposite way", "other direction", "opposite direction", "wrong way", "reverse direction"]
+        .iter()
+        .any(|w| said.contains(w))
+}
+
 fn is_turn_word(w: &str) -> bool {
     matches!(
         w,
@@ -616,6 +624,12 @@ fn is_turn_word(w: &str) -> bool {
             | "about"
             | "backwards"
             | "counter"
+            | "look"
+            | "point"
+            | "the other way"
+            | "opposite direction"
+            | "in the opposite direction"
+            | "in the other direction"
     )
 }
 
@@ -654,7 +668,8 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         _ if ego => Some(Turn::ToEgo),
         _ if rest
             .iter()
-            .any(|w| matches!(*w, "around" | "round" | "about" | "backwards")) =>
+            .any(|w| matches!(*w, "around" | "round" | "about" | "backwards"))
+            || turned_back(&list) =>
         {
             Some(Turn::By(PI))
         }

@@ -26,6 +26,7 @@ pub(super) struct Pending {
     span: Span,
     first: Option<Anchor>,
     fresh: bool,
+    anded: bool,
     pub(super) not: bool,
     distance_m: Option<f64>,
 }
@@ -729,6 +730,9 @@ impl<'a> Parser<'a> {
             self.again(count, span);
             return;
         }
+        if next_is_part && !self.edits && self.pending.is_none() && self.numbers_last(count, span) {
+            return;
+        }
         if next_is_part && self.group_behind().is_some() {
             self.part(false, count, span);
             return;
@@ -864,6 +868,7 @@ impl<'a> Parser<'a> {
                 used = true;
             }
         }
+        self.chain &= !used; // what comes next is no longer of one list with these
         if !used && targets.is_empty() {
             if let Some(f) = self.fronted.iter_mut().rev().find(|f| f.distance_m.is_none()) {
                 f.distance_m = Some(metres);
@@ -891,6 +896,7 @@ impl<'a> Parser<'a> {
             span,
             first: None,
             fresh: self.fresh,
+            anded: self.anded || self.after_and(),
             not,
             distance_m,
         });
@@ -928,7 +934,16 @@ impl<'a> Parser<'a> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
-        let new_noun = self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
+        // "a motorbike and, behind it, a truck"
+        let set_off = p.fresh
+            && p.anded
+            && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+            && matches!(
+                self.item(self.at + 2).map(|n| n.tag),
+                Some(Tag::Is(Sense::Article(false) | Sense::Count(_)) | Tag::Number(_))
+            )
+            && self.noun_ahead(self.at + 2);
+        let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         if self.head.is_empty() || (p.fresh && new_noun) {
             if !self.head.is_empty() || !self.chain {
                 self.new_clause();
@@ -1173,7 +1188,7 @@ impl<'a> Parser<'a> {
         }
         self.not_goes_on = false;
         self.denied = false;
-        if self.rides(noun, word, &pre) || self.says_which(noun, word, plural, &pre) {
+        if self.holds_others(noun, &pre) || self.rides(noun, word, &pre) || self.says_which(noun, word, plural, &pre) {
             return;
         }
         if self.mentions.len() >= MOST_MENTIONS {
@@ -1408,10 +1423,14 @@ impl<'a> Parser<'a> {
                 && !self.mentions[i].is_anchor
                 && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
         });
+        if matches!(self.item(self.at + 1).map(|i| i.words.as_str()), Some("one" | "ones")) {
+            self.at += 1; // "the first one"
+        }
         let Some(parent) = parent else {
             if self.pending.is_none()
                 && !self.last.is_empty()
-                && self.item(self.at).is_some_and(|i| i.words.starts_with("another"))
+                && (span.of(self.prompt).to_lowercase().starts_with("another")
+                    || span.of(self.prompt).to_lowercase().starts_with("a "))
             {
                 // "a car on the left and another on the right"
                 let mut twin = self.mentions[self.last[0]].clone();

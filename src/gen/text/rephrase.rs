@@ -176,7 +176,7 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
             Some((last, body)) if last.kind == TokenKind::Stop => (body, Some(last)),
             _ => (sentence, None),
         };
-        let body = take_ordinals(body, &mut out);
+        let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
         if let Some(first) = body.first() {
             let (new, change) = one(&body);
             if let Some(change) = change {
@@ -186,6 +186,52 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         }
         out.tokens.extend(stop.cloned());
     }
+    out
+}
+
+/// "everyone on the pavement" is "all people on the pavement".
+fn name_people(body: &[Token]) -> Vec<Token> {
+    let mut out = Vec::with_capacity(body.len() + 1);
+    for (i, t) in body.iter().enumerate() {
+        let person = matches!(t.text.as_str(), "everyone" | "everybody" | "anyone" | "anybody");
+        if person && i > 0 {
+            out.push(word("all", t));
+            out.push(word("people", t));
+        } else {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+/// "take the barrier and put it behind me" is "put the barrier behind me"; "it" after a second verb is what was named.
+fn take_and_put(body: &[Token]) -> Vec<Token> {
+    let Some(first) = body.first() else {
+        return Vec::new();
+    };
+    let verbs: Vec<usize> = (1..body.len())
+        .filter(|i| is_verb(&body[*i]) && matches!(body[*i - 1].text.as_str(), "and" | "then" | ","))
+        .collect();
+    let (Some(&second), true) = (verbs.first(), is_verb(first)) else {
+        return body.to_vec();
+    };
+    let pronoun = body.get(second + 1).is_some_and(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her"));
+    if !pronoun {
+        return body.to_vec();
+    }
+    let mut np_end = second;
+    while np_end > 1 && (matches!(body[np_end - 1].text.as_str(), "and" | "then") || body[np_end - 1].kind == TokenKind::Comma) {
+        np_end -= 1;
+    }
+    let noun = body[1..np_end].iter().position(is_noun).map(|i| i + 1);
+    let Some(noun) = noun else {
+        return body.to_vec();
+    };
+    let lift = matches!(first.text.as_str(), "take" | "grab" | "pick" | "lift");
+    let mut out: Vec<Token> = if lift { Vec::new() } else { body[..second].to_vec() };
+    out.push(body[second].clone());
+    out.extend_from_slice(&body[1..=noun]);
+    out.extend_from_slice(&body[second + 2..]);
     out
 }
 
@@ -324,11 +370,25 @@ fn wished(wish: &[Token], first: &Token) -> Vec<Token> {
     if let Some(new) = stated_with(wish, first) {
         return new;
     }
+    // "four people rather than three"
+    let than = (0..wish.len()).find(|i| starts_with(&wish[*i..], &["rather", "than"]) || starts_with(&wish[*i..], &["instead", "of"]) || wish[*i].text == "not");
+    if let Some(than) = than
+        && wish.first().and_then(number).is_some()
+        && wish.get(than + 1..).is_some_and(|t| t.iter().take(2).any(|t| number(t).is_some()))
+    {
+        return with_verb("keep exactly", first, &wish[..than]);
+    }
     with_verb("add", first, wish)
 }
 
 fn stated(rest: &[Token]) -> Option<Vec<Token>> {
     let first = rest.first()?;
+    // "one cyclist is enough"
+    let last = rest.last()?;
+    if number(first).is_some() && matches!(last.text.as_str(), "enough" | "suffices" | "suffice" | "plenty" | "do" | "sufficient" | "only") {
+        let end = rest.iter().position(|t| matches!(t.text.as_str(), "is" | "are" | "will" | "would" | "suffices" | "suffice"))?;
+        return Some(with_verb("keep only", first, &rest[..end]));
+    }
     let m = rest.iter().position(|t| MODALS.contains(&t.text.as_str()))?;
     let named = rest[..m].iter().any(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"));
     if !named || m == 0 {

@@ -105,5 +105,5 @@ pub const PICKS: &[(Pick, &str)] = &[
         Pick::Any,
         "any|any one|some random|a random|random|any of the|one of the|any one of the|whichever",
     ),
-    (Pick::More, "more|extra|additional|further|another|one more"),
+    (Pick::More, "more|extra|additional|further|another"),
 ];

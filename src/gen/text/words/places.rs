@@ -134,7 +134,7 @@ pub const RELATIONS: &[(R, &str)] = &[
     ),
     (
         R::Facing,
-        "facing|faces|face|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards",
+        "facing|faces|face|towards|toward|in the direction towards|rushing towards|rush towards|rushes towards|speeding towards|speeds towards|come towards|heads for|racing towards|races towards|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards",
     ),
     (
         R::FacingAway,
@@ -270,7 +270,7 @@ pub const EGO: &str = "me|us|ego|my car|our car|my vehicle|our vehicle|the ego v
 /// Words that point back.
 pub const PRONOUNS: &str = "it|them|they|that|this|those|these|its|their|him|her|he|she|same one|that one|this one|itself|the latter|theirs|each other|one another";
 /// Part of a group.
-pub const PARTS: &str = "another|another one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the remaining three";
+pub const PARTS: &str = "another|another one|a second one|a third one|a second|a third|a further one|one other|the first one|the second one|the third one|the last one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the remaining three";
 
 /// Words that turn around what follows.
 pub const NOT: &str = "no|not|without|without any|no more|never|free of|devoid of|lacking|isnt|arent|aint|zero|none|neither|nor|not a single|no single|there are no|there is no|there isnt|there arent|not any|empty of|clear of|absolutely no|absent|minus|except|except for|excluding|nary a|doesnt|dont|wont|dont want|dont include|do not include|with no|having no|avoid|omit|not a|not one|hardly any|is not|are not|but no|no other|sans|rather than|instead of|do not want";
