@@ -11,6 +11,7 @@ use super::edit_grammar::{Command, Destination, commands};
 use super::holds::{ego, in_role};
 use super::lanes::LaneMap;
 use super::place::place_with;
+use super::rephrase::Change;
 use super::select::{Candidate, Chosen, choose, where_is};
 use super::to_graph::to_graph;
 use super::words::edits::Verb;
@@ -299,7 +300,11 @@ impl Editor<'_> {
             if k > 0 && !removing {
                 break;
             }
-            match choose(&self.map, &self.boxes, mention, &c.mentions) {
+            let chosen = match c.nth {
+                Some(nth) => super::select::in_order(&self.map, &self.boxes, mention, &c.mentions, nth),
+                None => choose(&self.map, &self.boxes, mention, &c.mentions),
+            };
+            match chosen {
                 Chosen::These(ids) => all.extend(ids),
                 Chosen::None(what) => self.note(format!("no {what} is in the scene")),
                 Chosen::TooFew { what, found, wanted } => {
@@ -428,22 +433,33 @@ impl Editor<'_> {
         }
     }
 
+    fn keep_only(&mut self, ids: &[BoxId]) {
+        let others: Vec<BoxId> = self.boxes.keys().filter(|id| !ids.contains(id)).copied().collect();
+        others
+            .iter()
+            .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+    }
+
     /// "only two cars": removes the farthest or adds.
     fn keep(&mut self, c: &Command) {
         for m in &c.targets {
             let fitting = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
-            let wanted = m.spec.count.n as usize;
-            if m.uncounted && m.plural {
+            let wanted = match c.change {
+                Some(Change::Times(f)) => (fitting.len() as f64 * f).round() as usize,
+                Some(Change::Plus(n)) => (fitting.len() as i64 + n).max(0) as usize,
+                None => m.spec.count.n as usize,
+            };
+            if c.change.is_none() && m.definite && !m.plural {
+                // "keep only the bus"
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => self.keep_only(&ids),
+                    _ => self.note(format!("{:?}: which is to stay was not clear", c.text)),
+                }
+                continue;
+            }
+            if c.change.is_none() && m.uncounted && m.plural {
                 // "only cars", "keep the cars": everything else of its kind goes.
-                let others: Vec<BoxId> = self
-                    .boxes
-                    .values()
-                    .filter(|b| !fitting.contains(&b.id))
-                    .map(|b| b.id)
-                    .collect();
-                others
-                    .iter()
-                    .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+                self.keep_only(&fitting);
                 continue;
             }
             if fitting.len() > wanted {
@@ -476,10 +492,19 @@ impl Editor<'_> {
         let moved = match &c.destination {
             Some(Destination::By { direction, metres }) => {
                 let metres = metres.unwrap_or_else(|| {
+                    let free = [3.5, 7.0, 5.0, 10.5, 2.0].into_iter().find(|m| {
+                        let new = SceneBox {
+                            center_m: b.center_m + (*direction * *m).extend(0.0),
+                            ..b
+                        };
+                        let apart = |o: &SceneBox| super::holds::overlap_m(&new, o, 0.2) <= 0.0;
+                        apart(&ego()) && self.boxes.values().all(|o| o.id == id || apart(o))
+                    });
+                    let metres = free.unwrap_or(3.5);
                     self.out
                         .notes
-                        .push("no distance was said: moved by one lane, 3.5 m".into());
-                    3.5
+                        .push(format!("no distance was said: moved by {metres} m"));
+                    metres
                 });
                 b.center_m + (*direction * metres).extend(0.0)
             }

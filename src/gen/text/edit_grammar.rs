@@ -8,6 +8,7 @@ use super::description::{Anchor, Count, ObjectSpec, Reading};
 use super::lexicon::{Sense, look_up};
 use super::mention::Mention;
 use super::parse::Parser;
+use super::rephrase::{Change, rephrase};
 use super::tag::{Item, Tag, tag};
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::words::edits::{VERBS, Verb};
@@ -79,6 +80,10 @@ pub struct Command {
     pub color: bool,
     /// A lane or strip that was named alone.
     pub place: Option<LaneRole>,
+    /// By how much a number changes.
+    pub change: Option<Change>,
+    /// Which of several in order of distance, from 1; 0 is the last.
+    pub nth: Option<usize>,
 }
 
 impl Command {
@@ -170,7 +175,8 @@ fn begins(tokens: &[Token], i: usize) -> bool {
 
 /// The commands of a text; a text without a verb adds, keeps so many ("only two cars") or sets the style.
 pub fn commands(text: &str) -> Vec<Command> {
-    let all = tokens(text);
+    let rephrased = rephrase(&tokens(text));
+    let all = &rephrased.tokens;
     let mut starts: Vec<(usize, usize, Option<Verb>)> = Vec::new(); // first token, words of the verb, verb
     let mut i = 0;
     let mut open = false;
@@ -181,7 +187,7 @@ pub fn commands(text: &str) -> Vec<Command> {
             continue;
         }
         // "stop the bus", "park the van"
-        let stop = begins(&all, i)
+        let stop = begins(all, i)
             && matches!(all[i].text.as_str(), "stop" | "halt" | "park" | "start")
             && matches!(
                 all.get(i + 1).map(|t| t.text.as_str()),
@@ -193,7 +199,7 @@ pub fn commands(text: &str) -> Vec<Command> {
             i += 2;
             continue;
         }
-        match verb_at(&all, i).filter(|_| begins(&all, i)) {
+        match verb_at(all, i).filter(|_| begins(all, i)) {
             Some((verb, n)) => {
                 starts.push((i, n, Some(verb)));
                 open = true;
@@ -226,7 +232,15 @@ pub fn commands(text: &str) -> Vec<Command> {
         {
             to -= 1;
         }
-        out.push(command(text, &all[*from..to], *n, *verb));
+        let mut c = command(text, &all[*from..to], *n, *verb);
+        let start = all[*from].span.start;
+        c.change = rephrased.changes.iter().find(|(at, _)| *at == start).map(|x| x.1);
+        c.nth = rephrased
+            .ordinals
+            .iter()
+            .find(|(at, _)| (c.span.start..=c.span.end).contains(at))
+            .map(|x| x.1);
+        out.push(c);
     }
     out
 }
@@ -243,7 +257,8 @@ fn parse(text: &str, items: &[Item]) -> (Reading, Vec<Mention>) {
 }
 
 fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) -> Command {
-    let span = tokens[0].span.to(tokens[tokens.len() - 1].span);
+    // A verb that was put in bears the span of the first word.
+    let span = tokens.iter().fold(tokens[0].span, |s, t| s.to(t.span));
     let first = tokens[0].text.as_str();
     let items = tag(&tokens[verb_words.min(tokens.len())..]);
     let list = words(&items);
@@ -267,6 +282,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         {
             Verb::Move
         }
+        // "drop the barrier" takes it away, "drop a barrier" puts one in
+        Some(Verb::Add) if definite_next && matches!(first, "drop") => Verb::Remove,
         Some(v) => v,
     };
     let mut c = Command {
@@ -292,6 +309,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             Tag::Is(Sense::Place(Anchor::Lane(role), _)) if super::edit::clears(role) => Some(role),
             _ => None,
         }),
+        change: None,
+        nth: None,
     };
     let noun_at = items
         .iter()
@@ -334,7 +353,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (matches!(verb, Verb::Keep | Verb::Make) && to.words == "to"
+                && (matches!(verb, Verb::Keep | Verb::Make) && matches!(to.words.as_str(), "to" | "up to" | "down to" | "back to")
                     || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
@@ -428,7 +447,7 @@ fn metres_at(items: &[Item], i: usize) -> Option<(f64, usize)> {
         Some(Tag::Is(Sense::Unit(m))) => Some(m),
         _ => None,
     };
-    match items[i].tag {
+    match items.get(i)?.tag {
         Tag::Number(v) => unit(i + 1).map(|m| (v * m, 2)),
         Tag::Is(Sense::Count(count)) => unit(i + 1).map(|m| (f64::from(count.n) * m, 2)),
         Tag::Is(Sense::Fraction(share)) => unit(i + 1).map(|m| (share * m, 2)),
@@ -458,6 +477,13 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             i += n;
             continue;
         }
+        let side = w.ends_with(" side") && metres.is_none() && metres_at(items, i + 1).is_none();
+        if side && direction(w).is_some() {
+            // "to the left side" is a place
+            cut = cut.min(i);
+            place_from = Some(i);
+            break;
+        }
         if let Some(d) = direction(w) {
             let ends = items[i + 1..].iter().all(|x| {
                 matches!(
@@ -484,7 +510,10 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         {
             toward = Some(false);
             cut = cut.min(i);
-        } else if matches!(w, "away from" | "away" | "farther away" | "further away") {
+        } else if matches!(
+            w,
+            "away from" | "away" | "farther away" | "further away" | "further" | "farther" | "further off" | "farther off"
+        ) {
             toward = Some(true);
             cut = cut.min(i);
         } else if matches!(w, "to" | "onto" | "into" | "on to" | "over to") && cut == items.len() {
@@ -569,6 +598,14 @@ fn destination(
     Some(Destination::Place(Box::new(spec)))
 }
 
+/// "face the other way"
+fn turned_back(list: &[&str]) -> bool {
+    let said = list.join(" ");
+    ["other way", "opposite way", "other direction", "opposite direction", "wrong way", "reverse direction"]
+        .iter()
+        .any(|w| said.contains(w))
+}
+
 fn is_turn_word(w: &str) -> bool {
     matches!(
         w,
@@ -587,6 +624,12 @@ fn is_turn_word(w: &str) -> bool {
             | "about"
             | "backwards"
             | "counter"
+            | "look"
+            | "point"
+            | "the other way"
+            | "opposite direction"
+            | "in the opposite direction"
+            | "in the other direction"
     )
 }
 
@@ -625,7 +668,8 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         _ if ego => Some(Turn::ToEgo),
         _ if rest
             .iter()
-            .any(|w| matches!(*w, "around" | "round" | "about" | "backwards")) =>
+            .any(|w| matches!(*w, "around" | "round" | "about" | "backwards"))
+            || turned_back(&list) =>
         {
             Some(Turn::By(PI))
         }

@@ -72,16 +72,16 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     split_sides(mentions);
-    // Works next to cones that were counted keep to the count.
-    let counted: Vec<Class> = mentions
-        .iter()
-        .filter(|m| !m.uncounted && !m.gone)
-        .map(|m| m.spec.class)
-        .collect();
+    // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions
         .windows(3)
         .filter(|w| w.iter().all(|m| m.spec.span == w[0].spec.span) && w[0].spec.class == Class::TrafficCone)
         .map(|w| w[0].spec.span)
+        .collect();
+    let counted: Vec<Class> = mentions
+        .iter()
+        .filter(|m| !m.gone && !works.contains(&m.spec.span))
+        .map(|m| m.spec.class)
         .collect();
     for m in mentions.iter_mut() {
         if works.contains(&m.spec.span) && counted.contains(&m.spec.class) {

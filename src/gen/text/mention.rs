@@ -274,6 +274,15 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
         },
         Prep::FarSide => far_side(spec.class, parked, &mut out),
     }
+    // The left kerb is on the left.
+    let side = match out.last() {
+        Some((R::On | R::ParkedOn, Lane(L::LeftRoadside | L::LeftSidewalk))) => Some(R::LeftOf),
+        Some((R::On | R::ParkedOn, Lane(L::RightRoadside | L::RightSidewalk))) => Some(R::RightOf),
+        _ => None,
+    };
+    if let Some(side) = side.filter(|s| !out.iter().any(|(k, _)| k == s)) {
+        out.push((side, Ego));
+    }
     for (i, (relation, anchor)) in out.into_iter().enumerate() {
         let stated = Stated {
             relation,

@@ -1,5 +1,6 @@
 //! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
 
+mod again;
 pub mod description;
 pub mod edit;
 mod edit_grammar;
@@ -11,6 +12,7 @@ mod mention;
 pub mod parse;
 pub mod place;
 pub mod road;
+mod rephrase;
 mod select;
 mod spots;
 pub mod tag;

@@ -21,42 +21,44 @@ use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 /// Most objects that one prompt may place; more are counted, not placed.
 pub const MOST_MENTIONS: usize = 200;
 
-struct Pending {
-    prep: Prep,
+pub(super) struct Pending {
+    pub(super) prep: Prep,
     span: Span,
     first: Option<Anchor>,
     fresh: bool,
-    not: bool,
+    anded: bool,
+    pub(super) not: bool,
     distance_m: Option<f64>,
 }
 
 /// The state of reading.
 pub(super) struct Parser<'a> {
     prompt: &'a str,
-    items: &'a [Item],
-    at: usize,
+    pub(super) items: &'a [Item],
+    pub(super) at: usize,
     pub(super) mentions: Vec<Mention>,
     pub(super) reading: Reading,
-    head: Vec<usize>,
-    last: Vec<usize>,
-    before: Vec<usize>, // subject of the clause before
-    fronted: Vec<Frag>,
+    pub(super) head: Vec<usize>,
+    pub(super) last: Vec<usize>,
+    pub(super) before: Vec<usize>, // subject of the clause before
+    pub(super) fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
-    chain: bool,      // only nouns so far in this clause
+    pub(super) chain: bool,      // only nouns so far in this clause
     list: Vec<usize>, // those nouns
     linked: bool,     // "and" or a comma right before
     anded: bool,      // "and" right before
     fresh: bool,      // nothing but small words since the clause began or a comma
-    pending: Option<Pending>,
-    pre: Pre,
+    pub(super) pending: Option<Pending>,
+    pub(super) pre: Pre,
     not_goes_on: bool,
     distance: Option<(f64, Span)>,
     topic: Option<(Anchor, Span)>,
     reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
     relative: bool,
     with: bool,
-    edits: bool,
+    pub(super) edits: bool,
     denied: bool, // what follows says where something is not
+    pub(super) listed: Vec<Stated>, // where what a colon introduces stands
 }
 
 /// Reads a prompt.
@@ -107,6 +109,7 @@ impl<'a> Parser<'a> {
             with: false,
             edits,
             denied: false,
+            listed: Vec::new(),
         }
     }
 
@@ -114,11 +117,11 @@ impl<'a> Parser<'a> {
         &mut self.reading.description
     }
 
-    fn item(&self, i: usize) -> Option<&'a Item> {
+    pub(super) fn item(&self, i: usize) -> Option<&'a Item> {
         self.items.get(i)
     }
 
-    fn sense(&self, i: usize) -> Option<Sense> {
+    pub(super) fn sense(&self, i: usize) -> Option<Sense> {
         match self.item(i)?.tag {
             Tag::Is(s) => Some(s),
             _ => None,
@@ -126,7 +129,7 @@ impl<'a> Parser<'a> {
     }
 
     /// True if a noun phrase begins at item `i`.
-    fn noun_ahead(&self, i: usize) -> bool {
+    pub(super) fn noun_ahead(&self, i: usize) -> bool {
         for j in i..(i + 10).min(self.items.len()) {
             let item = &self.items[j];
             match item.tag {
@@ -144,6 +147,8 @@ impl<'a> Parser<'a> {
                 ) => {}
                 Tag::Is(Sense::Weather(_) | Sense::Time(_)) if is_color(&item.words) => {}
                 Tag::Is(Sense::EgoRel(_)) if is_prenominal(&item.words) => {}
+                // "in the car park stand two cars"
+                Tag::Is(Sense::State(_, true)) if j == i => {}
                 Tag::Is(Sense::Filler)
                     if matches!(
                         item.words.as_str(),
@@ -213,6 +218,9 @@ impl<'a> Parser<'a> {
             }
             Tag::Comma | Tag::Mark => {
                 self.flush();
+                if item.words == ":" {
+                    self.introduce();
+                }
                 let not_list = self.pre.not && !self.pre.says_something();
                 self.pre = Pre {
                     not: not_list,
@@ -240,6 +248,7 @@ impl<'a> Parser<'a> {
                     return false;
                 }
                 if self.edits
+                    && !matches!(self.sense(self.at + 1), Some(Sense::Unit(_)))
                     && let (Some(&i), Some(Sense::Noun(..))) =
                         (self.history_last(), self.sense(self.at.wrapping_sub(1)))
                 {
@@ -318,6 +327,14 @@ impl<'a> Parser<'a> {
             Sense::Pick(pick) => {
                 match pick {
                     Pick::More => {}
+                    // "the cone furthest away"
+                    _ if self.edits && !self.noun_ahead(self.at + 1) && !self.last.is_empty() => {
+                        for i in self.last.clone() {
+                            self.mentions[i].pick = Some(pick);
+                        }
+                        self.pending = None;
+                        return false;
+                    }
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);
@@ -708,6 +725,14 @@ impl<'a> Parser<'a> {
             return;
         }
         let next_is_part = !self.noun_ahead(self.at + 1);
+        if next_is_part && !self.edits && self.bare_number(self.at) && !self.fronted.is_empty() {
+            // "on the left are three cars, and on the right two."
+            self.again(count, span);
+            return;
+        }
+        if next_is_part && !self.edits && self.pending.is_none() && self.numbers_last(count, span) {
+            return;
+        }
         if next_is_part && self.group_behind().is_some() {
             self.part(false, count, span);
             return;
@@ -788,6 +813,25 @@ impl<'a> Parser<'a> {
                 return;
             }
         }
+        // "15 m away on the right": how far, and on which side; "15 m to the right" is the offset itself.
+        let side_next = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::EgoRel([RelationKind::LeftOf] | [RelationKind::RightOf]))
+        );
+        let away = matches!(self.sense(self.at), Some(Sense::Away));
+        let targets = self.targets();
+        if side_next && away && self.pending.is_none() && !targets.is_empty() {
+            for t in targets {
+                self.mentions[t].spec.relations.push(Stated {
+                    relation: RelationKind::Near,
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: Some(metres),
+                    span,
+                });
+            }
+            return;
+        }
         let relation_next = matches!(self.sense(self.at + 1), Some(Sense::Rel(_) | Sense::EgoRel(_)))
             || self.item(self.at + 1).is_some_and(|i| i.words == "to");
         if relation_next {
@@ -824,6 +868,7 @@ impl<'a> Parser<'a> {
                 used = true;
             }
         }
+        self.chain &= !used; // what comes next is no longer of one list with these
         if !used && targets.is_empty() {
             if let Some(f) = self.fronted.iter_mut().rev().find(|f| f.distance_m.is_none()) {
                 f.distance_m = Some(metres);
@@ -851,6 +896,7 @@ impl<'a> Parser<'a> {
             span,
             first: None,
             fresh: self.fresh,
+            anded: self.anded || self.after_and(),
             not,
             distance_m,
         });
@@ -888,7 +934,16 @@ impl<'a> Parser<'a> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
-        let new_noun = self.noun_ahead(self.at + 1);
+        // "a motorbike and, behind it, a truck"
+        let set_off = p.fresh
+            && p.anded
+            && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+            && matches!(
+                self.item(self.at + 2).map(|n| n.tag),
+                Some(Tag::Is(Sense::Article(false) | Sense::Count(_)) | Tag::Number(_))
+            )
+            && self.noun_ahead(self.at + 2);
+        let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         if self.head.is_empty() || (p.fresh && new_noun) {
             if !self.head.is_empty() || !self.chain {
                 self.new_clause();
@@ -913,7 +968,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Ends a relation that nothing followed.
-    fn flush(&mut self) {
+    pub(super) fn flush(&mut self) {
         let Some(p) = self.pending.take() else {
             return;
         };
@@ -985,9 +1040,15 @@ impl<'a> Parser<'a> {
     /// Who a relation or a participle right here speaks of.
     fn targets(&self) -> Vec<usize> {
         if self.fresh && !self.relative {
-            self.head.clone()
-        } else {
-            self.last.clone()
+            return self.head.clone();
+        }
+        // What is said of a trailer holds for what draws it.
+        match self.last.as_slice() {
+            [i] if self.mentions[*i].spec.class == Class::Trailer => match self.mentions[*i].host {
+                Some(host) => vec![*i, host],
+                None => vec![*i],
+            },
+            last => last.to_vec(),
         }
     }
 
@@ -1127,6 +1188,9 @@ impl<'a> Parser<'a> {
         }
         self.not_goes_on = false;
         self.denied = false;
+        if self.holds_others(noun, &pre) || self.rides(noun, word, &pre) || self.says_which(noun, word, plural, &pre) {
+            return;
+        }
         if self.mentions.len() >= MOST_MENTIONS {
             self.unread(whole, Some(format!("more than {MOST_MENTIONS} things are named")));
             return;
@@ -1157,6 +1221,14 @@ impl<'a> Parser<'a> {
                 });
             }
             return;
+        }
+        let some_one = !plural
+            && noun.several == 1
+            && self
+                .item(self.at.wrapping_sub(1))
+                .is_some_and(|i| i.words == "some");
+        if some_one {
+            pre.count = None; // "some guy"
         }
         let each = pre.each;
         let mut mention = Mention::new(noun, word, plural, pre, span);
@@ -1189,6 +1261,11 @@ impl<'a> Parser<'a> {
             || self.mentions[index].spec.span != mention.spec.span;
         if old && mention.spec.color.is_some() {
             self.mentions[index].spec.color = mention.spec.color.clone();
+        }
+        if self.pending.is_some() && !old && self.is_ego_car(index) {
+            self.mentions.truncate(index);
+            self.anchor(Anchor::Ego, span);
+            return;
         }
         if self.pending.is_some() {
             if !old {
@@ -1260,6 +1337,9 @@ impl<'a> Parser<'a> {
                 apply(&mut self.mentions[index].spec, &frag);
             }
         }
+        if !old && self.mentions[index].spec.relations.is_empty() {
+            self.mentions[index].spec.relations = self.listed.clone();
+        }
         if let Some((metres, dspan)) = self.distance.take() {
             self.mentions[index].spec.relations.push(Stated {
                 relation: RelationKind::Near,
@@ -1318,7 +1398,9 @@ impl<'a> Parser<'a> {
                     | Sense::Pronoun
                     | Sense::Not
             )
-        ) || matches!(next.words.as_str(), "of them" | "of" | "is" | "are" | "to")
+        ) || (matches!(next.tag, Tag::Number(_) | Tag::Is(Sense::Count(_)))
+            && matches!(self.sense(self.at + 2), Some(Sense::Unit(_))))
+            || matches!(next.words.as_str(), "of them" | "of" | "is" | "are" | "to")
             || matches!(
                 (next.tag, is_color(&next.words)),
                 (Tag::Is(Sense::Weather(_)), true)
@@ -1341,10 +1423,14 @@ impl<'a> Parser<'a> {
                 && !self.mentions[i].is_anchor
                 && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
         });
+        if matches!(self.item(self.at + 1).map(|i| i.words.as_str()), Some("one" | "ones")) {
+            self.at += 1; // "the first one"
+        }
         let Some(parent) = parent else {
             if self.pending.is_none()
                 && !self.last.is_empty()
-                && self.item(self.at).is_some_and(|i| i.words.starts_with("another"))
+                && (span.of(self.prompt).to_lowercase().starts_with("another")
+                    || span.of(self.prompt).to_lowercase().starts_with("a "))
             {
                 // "a car on the left and another on the right"
                 let mut twin = self.mentions[self.last[0]].clone();
@@ -1363,6 +1449,24 @@ impl<'a> Parser<'a> {
         };
         self.flush();
         let left = self.mentions[parent].spec.count;
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        if of_them && self.mentions[parent].uncounted && self.ends(self.at + 2) {
+            // "cones along the edge, six of them"
+            self.mentions[parent].spec.count = count;
+            self.mentions[parent].uncounted = false;
+            return;
+        }
+        if !all
+            && !of_them
+            && !self.edits
+            && count.n > 1
+            && count.n >= left.n
+            && !self.mentions[parent].spec.relations.is_empty()
+        {
+            // "two cars on the left and two on the right"
+            self.again(count, span);
+            return;
+        }
         let n = if all { left.n } else { count.n.min(left.n) };
         let mut part = self.mentions[parent].clone();
         part.spec.count = if left.is_exact() || !all {
@@ -1439,6 +1543,13 @@ impl<'a> Parser<'a> {
     }
 
     fn pronoun(&mut self, item: &Item) -> bool {
+        if matches!(item.words.as_str(), "that" | "this" | "those" | "these")
+            && matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+        {
+            self.pre.article = Some(true); // "that car"
+            self.pre.cover(item.span);
+            return true;
+        }
         if matches!(item.words.as_str(), "that") {
             self.relative = true;
         }
@@ -1681,6 +1792,7 @@ impl<'a> Parser<'a> {
     }
 
     fn end_clause(&mut self) {
+        self.listed.clear();
         self.soft_end();
         self.linked = false;
         if let Some((_, span)) = self.distance.take() {

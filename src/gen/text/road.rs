@@ -164,6 +164,18 @@ fn judge(
                 .iter()
                 .any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
     });
+    // What drives our way on a side needs a lane there.
+    for o in &d.foreground {
+        let said = |kind: RelationKind| {
+            o.relations
+                .iter()
+                .any(|r| r.relation == kind && r.anchor == Anchor::Ego)
+        };
+        if said(RelationKind::SameDirection) {
+            wishes += usize::from(said(RelationKind::LeftOf) && role(LaneRole::Left) < 8);
+            wishes += usize::from(said(RelationKind::RightOf) && role(LaneRole::Right) < 8);
+        }
+    }
     wishes += usize::from(right && role(LaneRole::Right) < 8 && strip < 300);
     wishes += usize::from(parked && strip < 300);
     (missing, wishes)

@@ -165,6 +165,29 @@ fn fitting_deep(
     fit.into_iter().map(|b| b.id).collect()
 }
 
+/// The `nth` box that fits, counted from the ego vehicle outwards; 0 is the last.
+pub fn in_order(
+    map: &LaneMap<'_>,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    m: &Mention,
+    all: &[Mention],
+    nth: usize,
+) -> Chosen {
+    let mut fit = fitting(map, boxes, m, all);
+    let range = |id: &BoxId| boxes[id].center_m.truncate().length();
+    fit.sort_by(|a, b| range(a).total_cmp(&range(b)));
+    let index = if nth == 0 { fit.len().wrapping_sub(1) } else { nth - 1 };
+    match fit.get(index) {
+        Some(id) => Chosen::These(vec![*id]),
+        None if fit.is_empty() => Chosen::None(m.spec.noun.clone()),
+        None => Chosen::TooFew {
+            what: super::lexicon::plural(&m.spec.noun),
+            found: fit.len(),
+            wanted: nth,
+        },
+    }
+}
+
 /// Decides: all, a picked one, so many, or a question.
 pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Chosen {
     let fit = fitting(map, boxes, m, all);

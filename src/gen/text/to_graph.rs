@@ -68,6 +68,25 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     };
     for (i, o) in d.foreground.iter().enumerate() {
         for r in &o.relations {
+            // Beside what stands anywhere: that stands beside this, whose own place was said.
+            if let (RelationKind::Near | RelationKind::NextTo, Anchor::Object(j), None) =
+                (r.relation, r.anchor, r.distance_m)
+                && j != i
+                && d.foreground.get(j).is_some_and(|x| x.relations.is_empty())
+                && o.relations.iter().any(|x| x.anchor == Anchor::Ego && x.distance_m.is_some())
+                && let Some(&to) = out.nodes.get(i).and_then(|n| n.first())
+            {
+                for from in out.nodes[j].clone() {
+                    out.graph.edges.push(Edge {
+                        relation: r.relation,
+                        from,
+                        to,
+                        and: None,
+                        distance_m: None,
+                    });
+                }
+                continue;
+            }
             for (k, from) in out.nodes[i].clone().into_iter().enumerate() {
                 let mut node = |out: &mut Graphed, a: &Anchor, second: bool| match a {
                     Anchor::Ego => Some(SceneGraph::EGO),

@@ -204,7 +204,15 @@ impl Tally {
 impl Eval {
     /// Prompts and text edits, judged by [`Judge`].
     pub(super) fn layout(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
-        let cases: Vec<Case> = PROMPTS
+        let given = match &self.prompts {
+            Some(path) => {
+                Some(std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?)
+            }
+            None => None,
+        };
+        let cases: Vec<Case> = given
+            .as_deref()
+            .unwrap_or(PROMPTS)
             .lines()
             .filter(|l| !l.trim().is_empty())
             .enumerate()

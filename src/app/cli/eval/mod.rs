@@ -49,6 +49,9 @@ pub struct Eval {
     /// Worlds on which a removal is compared with one of 1000 steps (editing); minutes each.
     #[arg(long, value_name = "N", default_value_t = 0)]
     reference_frames: usize,
+    /// Other prompts to judge (layout), one JSON object a line as in `tests/data/prompts.jsonl`.
+    #[arg(long, value_name = "FILE")]
+    prompts: Option<PathBuf>,
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,

@@ -65,7 +65,7 @@ pub const VEHICLES: &[Class] = &[Car, Truck, Bus, Trailer, ConstructionVehicle, 
 pub const NOUNS: &[Noun] = &[
     noun(
         &[Car],
-        "car|auto|automobile|sedan|saloon|saloon car|hatchback|hatch|coupe|convertible|cabriolet|roadster|sports car|\
+        "car|auto|automobile|hearse|motor|banger|runabout|family car|family saloon|four door|two door|fastback|muscle car|hot hatch|estate wagon|shooting brake|town car|cop cruiser|sheriffs car|police cruiser car|driving school car|learner car|micro car|smart car|micra|golf|corolla|civic|mustang|ferrari|porsche|lamborghini|bentley|rolls royce|jaguar|skoda|renault|peugeot|hyundai|kia|nissan|mazda|citroen|opel|vauxhall|subaru|lexus|sedan|saloon|saloon car|hatchback|hatch|coupe|convertible|cabriolet|roadster|sports car|\
          sportscar|supercar|limousine|limo|station wagon|wagon|estate car|estate|motorcar|motor car|passenger car|\
          passenger vehicle|compact car|compact|city car|electric car|ev|taxi|taxicab|cab|taxi cab|minicab|uber|\
          police car|patrol car|police cruiser|cop car|squad car|police vehicle|tesla|toyota|bmw|audi|mercedes|ford|volkswagen|\
@@ -74,13 +74,13 @@ pub const NOUNS: &[Noun] = &[
     noun(&[Car], "suv|jeep|land rover|range rover|crossover|four by four|off roader|four wheel drive|offroader|sport utility vehicle").sized(4.8, 2.0, 1.85),
     noun(
         &[Car],
-        "van|minivan|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
+        "van|minivan|ambulance van|police van|transit|box van|bread van|milk float|minibus taxi|vw bus|security van|luton|courier van|parcel van|high roof van|people mover|ice cream truck van|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
          delivery van|postal van|mail van|work van|builders van|transporter|sprinter|ambulance",
     )
     .sized(5.4, 2.1, 2.4),
     noun(
         &[Truck],
-        "truck|lorry|heavy goods vehicle|hgv|goods vehicle|semi|semi truck|semitruck|eighteen wheeler|big rig|articulated lorry|artic|\
+        "truck|lorry|goods lorry|wagon lorry|curtainsider|hgv lorry|seven and a half tonner|dust cart|bin wagon|waste truck|gritting lorry|gritter lorry|snowplough|snowplough truck|plough|salt truck|salt spreader|car transporter|car carrier|hauler|transport lorry|cattle truck|livestock lorry|refrigerated lorry|reefer truck|skip lorry|cement lorry|concrete lorry|furniture van lorry|supermarket lorry|delivery lorry|army truck|military truck|artics|hook lift truck|vacuum truck|utility truck|heavy goods vehicle|hgv|goods vehicle|semi|semi truck|semitruck|eighteen wheeler|big rig|articulated lorry|artic|\
          delivery truck|box truck|moving truck|removal van|removals van|removal lorry|dump truck|dumper truck|dumper|tipper|tipper truck|\
          tipper lorry|garbage truck|refuse truck|trash truck|bin lorry|dustcart|rubbish truck|recycling truck|garbage lorry|tow truck|\
          breakdown truck|recovery truck|wrecker|flatbed|flatbed truck|tanker|tanker truck|fuel truck|petrol tanker|oil tanker|\
@@ -92,19 +92,19 @@ pub const NOUNS: &[Noun] = &[
     noun(&[Truck], "pickup|pick up|pickup truck|pick up truck|ute|bakkie").sized(5.6, 2.1, 1.9),
     noun(
         &[Bus],
-        "bus/buses/busses|coach/coaches|city bus|school bus|double decker|double decker bus|minibus|mini bus|shuttle|shuttle bus|transit bus|\
+        "bus/buses/busses|double deck bus|articulated coach|single decker|single decker bus|rail replacement bus|omnibuses|charabanc|party bus|works bus|hop on hop off bus|sightseeing bus|county bus|coach/coaches|city bus|school bus|double decker|double decker bus|minibus|mini bus|shuttle|shuttle bus|transit bus|\
          tour bus|tourist bus|tourist coach|public bus|public transport bus|omnibus|trolleybus|articulated bus|bendy bus|\
          bendybus|night bus|commuter bus|airport bus|greyhound|airport shuttle|motorcoach|autobus",
     ),
-    noun(&[Bus], "tram|streetcar|trolley|trolley car|light rail vehicle|tramcar").nearest(),
+    noun(&[Bus], "tram|streetcar|tramway car|trolley|trolley car|light rail vehicle|tramcar").nearest(),
     noun(
         &[Trailer],
-        "trailer|semi trailer|semitrailer|caravan|travel trailer|cargo trailer|flatbed trailer|boat trailer|horse trailer|horsebox|lorry trailer|\
+        "trailer|semi trailer|towed trailer|camping trailer|glamping trailer|mobile home|animal trailer|car hauler trailer|generator trailer|trailer tent|boat on a trailer|container trailer|semitrailer|caravan|travel trailer|cargo trailer|flatbed trailer|boat trailer|horse trailer|horsebox|lorry trailer|\
          utility trailer|car trailer|house trailer",
     ),
     noun(
         &[ConstructionVehicle],
-        "construction vehicle|excavator|digger|mechanical digger|bulldozer|dozer|backhoe|backhoe loader|front loader|front end loader|\
+        "construction vehicle|excavator|mini digger|mini excavator|backacter|jcb digger|road paver|tarmac machine|tarmac layer|asphalt machine|asphalt roller|road laying machine|piling rig|drilling rig|earth moving machine|dump loader|tower crane|scissor lift|aerial work platform|bucket loader|scraper|harvester|plant machine|building vehicle|digger|mechanical digger|bulldozer|dozer|backhoe|backhoe loader|front loader|front end loader|\
          wheel loader|loader|crane|mobile crane|crane truck|steamroller|steam roller|road roller|roller|compactor|paver|asphalt paver|grader|\
          forklift|fork lift|forklift truck|skid steer|bobcat|jcb|construction machine|construction machinery|building machine|\
          earth mover|earthmover|heavy equipment|construction equipment|construction truck|work machine|work vehicle|cherry picker|tractor|\
@@ -112,12 +112,12 @@ pub const NOUNS: &[Noun] = &[
     ),
     noun(
         &[Motorcycle],
-        "motorcycle|motorbike|motor bike|motor cycle|motorcyclist|biker|moped|motor scooter|scooter|vespa|motorcycle rider|motorbike rider|\
+        "motorcycle|motorbike|scooterist|scooter driver|mopedist|motorcycle courier|motorbike courier|crotch rocket|trike|motor tricycle|motorcycle cop|motorbike cop|police motorcycle|police motorbike|pizza scooter|motor bike|motor cycle|motorcyclist|biker|moped|motor scooter|scooter|vespa|motorcycle rider|motorbike rider|\
          harley|chopper|dirt bike|sports bike|superbike|motorised bike|delivery scooter|two wheeler|motorized bike|scooter rider|moped rider|quad bike|quad",
     ),
     noun(
         &[Bicycle],
-        "bicycle|bike|cyclist|bicyclist|push bike|pushbike|pedal cycle|cycle|cycle rider|bicycle rider|bike rider|road bike|mountain bike|\
+        "bicycle|bike|velocipede|push bicycle|penny farthing|racer bike|city bike|hire bike|rental bike|delivery rider on a bike|cargo bicycle|fixie|bmx|recumbent|velomobile|bike messenger|food courier on a bike|cyclist|bicyclist|push bike|pushbike|pedal cycle|cycle|cycle rider|bicycle rider|bike rider|road bike|mountain bike|\
          e bike|ebike|electric bike|electric bicycle|pedal bike|cargo bike|racing bike|tandem|rickshaw|tricycle|bike courier|bicycle courier|\
          cycle courier|person on a bike|person on a bicycle|man on a bike|woman on a bike|man on a bicycle|woman on a bicycle|\
          kid on a bike|child on a bike|child on a bicycle|boy on a bike|girl on a bike|someone on a bike|guy on a bike|somebody on a bike|\
@@ -133,7 +133,7 @@ pub const NOUNS: &[Noun] = &[
          parent|businessman/businessmen|businesswoman/businesswomen|businessperson|office worker|postman/postmen|mailman/mailmen|mail carrier|\
          delivery man/delivery men|delivery person|courier|dog walker|hiker|stroller|jaywalker|someone|somebody|figure|foot traffic|folk|folks|individual|\
          stranger|firefighter|fireman/firemen|fire fighter|paramedic|surveyor|flagger|hitchhiker|drunk|beggar|local|resident|neighbour|neighbor|\
-         driver|passenger|waiting passenger|pedestrain|pedestian|pedestrianss|ppl",
+         driver|rider|dad with a pram|walkers|rambler|pedlar|toddlers|crossing warden|refuse collector|dustman/dustmen|bin man/bin men|binman/binmen|roadworker|lollipop man/lollipop men|labourers|tradesman/tradesmen|businesspeople/businesspeople|policeperson|police officer|constable|patrolman/patrolmen|schoolteacher|couple of people/couple of people|oap|fella|gent|teenage boy|teenage girl|bride|priest|nun|monk|chef|barista|reporter|journalist|evangelist|farmer|carpenter|plumber|electrician|mechanic|foreman/foremen|homeless person|homeless man|drunkard|party goer|partygoer|reveller|clubber|cop on foot|passenger|waiting passenger|pedestrain|pedestian|pedestrianss|ppl",
     ),
     noun(&[Pedestrian], "jogger|runner").state(ObjectState::Moving),
     noun(&[Pedestrian], "child/children|kid|boy|girl|toddler|schoolchild/schoolchildren|schoolkid|schoolboy|schoolgirl|school child/school children|pupil|youngster|little boy|little girl|infant").sized(0.5, 0.5, 1.25),
@@ -144,12 +144,12 @@ pub const NOUNS: &[Noun] = &[
          mother with a stroller|person with a pram|man with a stroller|parent with a stroller|parent with a pram|mother with a pushchair|shopping trolley|shopping cart").nearest(),
     noun(
         &[TrafficCone],
-        "traffic cone|cone|pylon|safety cone|road cone|orange cone|construction cone|warning cone|witchs hat|traffic pylon|marker cone|safety pylon|\
+        "traffic cone|cone|trafic cone|safety bollard cone|road pylon|parking cone|rubber cone|lane marker|pylon|safety cone|road cone|orange cone|construction cone|warning cone|witchs hat|traffic pylon|marker cone|safety pylon|\
          traffic conus|pilon|hazard cone|delineator|channelizer|warning triangle",
     ),
     noun(
         &[Barrier],
-        "barrier|jersey barrier|concrete barrier|road barrier|traffic barrier|construction barrier|barricade|safety barrier|water filled barrier|\
+        "barrier|jersey barrier|road block barrier|traffic barrier board|steel barrier|metal barrier|wooden barrier|plastic barrier|barricade board|a frame barrier|pedestrian barrier|chapter eight barrier|safety rail|safety fence|cordon|crowd fence|concrete divider|lane divider|concrete blocks/concrete blocks|concrete barrier|road barrier|traffic barrier|construction barrier|barricade|safety barrier|water filled barrier|\
          plastic barrier|crash barrier|k rail|jersey wall|roadblock|road block|concrete block|traffic barricade|crowd barrier|crowd control barrier|\
          temporary barrier|construction fence|temporary fence|blockade|guard rail|guardrail|hurdle|sawhorse|warning board|road closure|boom barrier|\
          construction barricade|barier|barrer|concrete wall|work zone barrier|traffic block|police barrier",
@@ -178,7 +178,7 @@ pub const BACKGROUND: &str = "tree|bush/bushes|hedge|forest|wood|grass|park|gard
     traffic light|traffic signal|stoplight|stop light|traffic sign|road sign|street sign|stop sign|sign|signal|billboard|bridge|overpass|flyover|\
     tunnel|petrol station|gas station|station|mountain|hill|river|lake|field|farm|meadow|skyline|vegetation|shrub|plant|flower|bench|trash can|bin|dustbin|\
     fire hydrant|hydrant|mailbox|post box|statue|fountain|pole|telephone pole|cafe|restaurant|bar|hotel|bank|supermarket|palm tree|container|shelter|bus shelter|\
-    central reservation|median strip|traffic island|cloud|puddle|lamp|greenery|foliage|terrace|stall|market stall|awning|balcony|advert|poster|headlight|headlamp|taillight|tail light|brake light|neon sign|neon light|umbrella|luggage|suitcase|backpack|bag|shopping bag";
+    central reservation|median strip|traffic island|cloud|puddle|lamp|greenery|foliage|terrace|stall|market stall|awning|balcony|advert|poster|headlight|headlamp|taillight|tail light|brake light|neon sign|neon light|umbrella|walking stick|cane|crutch/crutches|hat|cap|coat|jacket|vest|high vis vest|hi vis jacket|helmet|mobile|phone|mobile phone|smartphone|newspaper|map|shovel|spade|rope|sign board|lead|leash|basket|parcel|package|sack|tool|toolbox|torch|flag|banner|flashing light|indicator|hazard light|warning light|siren|window|roof|door|garage|gate|railing|luggage|suitcase|backpack|bag|shopping bag";
 
 /// What people name that has neither a class nor a place in the surroundings, with the reason.
 pub const CANNOT: &[(&str, &str)] = &[
@@ -192,6 +192,6 @@ pub const CANNOT: &[(&str, &str)] = &[
     ),
     (
         "no class for loose things",
-        "ball|football|suitcase on the road|mattress|debris|pothole|manhole|manhole cover|speed bump|speed hump|ladder|tyre|tire|cardboard box|plastic bag|pallet|rock|fallen tree|boulder|oil spill|skip|dumpster|snowman/snowmen|robot|toy|chair|sofa|piano|banana",
+        "puddle of oil|barrel|sandbag|football|suitcase on the road|mattress|debris|pothole|manhole|manhole cover|speed bump|speed hump|ladder|tyre|tire|cardboard box|plastic bag|pallet|rock|fallen tree|boulder|oil spill|skip|dumpster|snowman/snowmen|robot|toy|chair|sofa|piano|banana",
     ),
 ];

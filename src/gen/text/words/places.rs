@@ -134,7 +134,7 @@ pub const RELATIONS: &[(R, &str)] = &[
     ),
     (
         R::Facing,
-        "facing|faces|face|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards",
+        "facing|faces|face|towards|toward|in the direction towards|rushing towards|rush towards|rushes towards|speeding towards|speeds towards|come towards|heads for|racing towards|races towards|looking at|pointing at|pointing towards|pointing to|looking towards|turned towards|oriented towards|heading towards|heading for|heading toward|walking towards|walking toward|running towards|running toward|walking to|running to|driving towards|driving toward|looking toward|facing towards|facing toward|coming towards|coming toward|approaching|moving towards|moving toward|coming at|approaches|riding towards|riding toward|cycling towards|comes towards|comes toward|drives towards|walks towards|walks toward|runs towards|heads towards|heading straight for|heading straight at|watching|cycling toward|coming straight at|aimed at|headed towards|headed toward|headed for|bearing down on|travelling towards|traveling toward|traveling towards",
     ),
     (
         R::FacingAway,
@@ -162,7 +162,7 @@ pub const RELATIONS: &[(R, &str)] = &[
 pub const EGO_RELATIONS: &[(&[R], &str)] = &[
     (
         &[R::InFrontOf],
-        "ahead|in front|up ahead|straight ahead|directly ahead|further ahead|just ahead|right ahead|farther ahead|up front|down the road|down the street|further down the road|upcoming|further on|right in front|directly in front|up the road|immediately ahead|close ahead|dead ahead|further along|straight in front|further down the street|down the lane|further up the road|up the street|ahead on the road|ahead in the road|coming up|in my view ahead|ahead in the distance|at the front|forwards|infront|to the front|in the front|away ahead|off ahead",
+        "ahead|in front|in my windscreen|in my windshield|before me|before us|ahead of me|ahead of us|in front of me|in front of us|at the front of us|in view ahead|a little way ahead|a short way ahead|up in front|out front|out in front|up ahead|straight ahead|directly ahead|further ahead|just ahead|right ahead|farther ahead|up front|down the road|down the street|further down the road|upcoming|further on|right in front|directly in front|up the road|immediately ahead|close ahead|dead ahead|further along|straight in front|further down the street|down the lane|further up the road|up the street|ahead on the road|ahead in the road|coming up|in my view ahead|ahead in the distance|at the front|forwards|infront|to the front|in the front|away ahead|off ahead",
     ),
     (
         &[R::InFrontOf, R::FarFrom],
@@ -170,15 +170,15 @@ pub const EGO_RELATIONS: &[(&[R], &str)] = &[
     ),
     (
         &[R::Behind],
-        "behind|from behind|at the rear|in the back|to the rear|in the rear|further behind|just behind|right behind|at the back|directly behind|in the rear view mirror|in my mirror|in the mirror|in my rear view mirror|behind on the road|close behind|in the rearview mirror|to the back|in my rearview mirror|backwards",
+        "behind|from behind|at the rear|in the back|to the rear|in the rear|further behind|just behind|right behind|at the back|directly behind|in the rear view mirror|in my mirror|in the mirror|in my mirrors|in the mirrors|in the wing mirror|at my back|at our back|on my tail|on our tail|on my bumper|behind my back|at my rear|to our rear|bringing up the rear|in my rear view mirror|behind on the road|close behind|in the rearview mirror|to the back|in my rearview mirror|backwards",
     ),
     (
         &[R::LeftOf],
-        "on the left|to the left|at left|on my left|on our left|to my left|to our left|on the left side|on the left hand side|on left|at the left|left|leftwards|to the left hand side|on the left flank|on my left hand side|on my left side|on the lefthand side|to the left side|off to the left|over on the left|left hand side|left side|from the left|at my left|from my left|on the ego vehicles left|along the left|down the left|on its left hand|at the left side|on our left hand side|on left side|over to the left|away to the left",
+        "on the left|to the left|at left|on my left|on our left|to my left|to our left|on the left side|on the left hand side|on left|at the left|left|leftwards|to the left hand side|on the left flank|on my left hand side|on my left side|on the lefthand side|to the left side|off to the left|over on the left|left hand side|left side|from the left|at my left|from my left|approaching from the left|coming from the left|arriving from the left|emerging from the left|entering from the left|comes from the left|approaches from the left|coming from my left|approaching from my left|from the left hand side|from our left|on the near left|on the left edge|along the left edge|at the left edge|on the left flank|left of us|left of me|to the left of us|to the left of me|on the ego vehicles left|along the left|down the left|on its left hand|at the left side|on our left hand side|on left side|over to the left|away to the left",
     ),
     (
         &[R::RightOf],
-        "on the right|to the right|at right|on my right|on our right|to my right|to our right|on the right side|on the right hand side|on right|at the right|right|rightwards|to the right hand side|on the right flank|on my right hand side|on my right side|on the righthand side|to the right side|off to the right|over on the right|right hand side|right side|from the right|at my right|from my right|on the ego vehicles right|along the right|down the right|on its right hand|at the right side|on our right hand side|on right side|over to the right|away to the right",
+        "on the right|to the right|at right|on my right|on our right|to my right|to our right|on the right side|on the right hand side|on right|at the right|right|rightwards|to the right hand side|on the right flank|on my right hand side|on my right side|on the righthand side|to the right side|off to the right|over on the right|right hand side|right side|from the right|at my right|from my right|approaching from the right|coming from the right|arriving from the right|emerging from the right|entering from the right|comes from the right|approaches from the right|coming from my right|approaching from my right|from the right hand side|from our right|on the near right|on the right edge|along the right edge|at the right edge|on the right flank|right of us|right of me|to the right of us|to the right of me|on the ego vehicles right|along the right|down the right|on its right hand|at the right side|on our right hand side|on right side|over to the right|away to the right",
     ),
     (
         &[R::InFrontOf, R::LeftOf],
@@ -206,11 +206,11 @@ pub const EGO_RELATIONS: &[(&[R], &str)] = &[
     ),
     (
         &[R::SameDirection],
-        "in the same direction|going my way|going our way|in my direction|same direction|going the same way|in our direction|same way",
+        "in the same direction|going the same way as us|going the same way as me|going the same way as i am|same way as us|same way as me|in the same direction as us|in the same direction as me|going my way|going our way|in my direction|same direction|going the same way|in our direction|same way",
     ),
     (
         &[R::OppositeDirection],
-        "in the opposite direction|oncoming|coming the other way|going the other way|coming towards|approaching|from the opposite direction|in the other direction|coming from the opposite direction|coming from ahead|on coming|opposing|going the opposite way|coming the opposite way|driving the wrong way|travelling the other way|traveling the other way|heading the other way|coming from the front|from the other direction|opposite direction|going in the opposite direction|driving in the opposite direction|coming in the opposite direction|coming at me|incoming",
+        "in the opposite direction|oncoming|coming the other way|going the other way|coming towards|approaching|from the opposite direction|in the other direction|coming from the opposite direction|coming from ahead|on coming|opposing|going the opposite way|coming the opposite way|driving the wrong way|travelling the other way|traveling the other way|heading the other way|coming from the front|from the other direction|opposite direction|going in the opposite direction|heading our way|heading my way|headed our way|headed my way|coming our way|coming my way|heading this way|coming this way|heading towards the camera|against us|head on|driving towards the camera|coming up the other side|travelling the opposite way|driving in the opposite direction|coming in the opposite direction|coming at me|incoming",
     ),
     (&[R::Facing], "facing forward"),
 ];
@@ -270,7 +270,7 @@ pub const EGO: &str = "me|us|ego|my car|our car|my vehicle|our vehicle|the ego v
 /// Words that point back.
 pub const PRONOUNS: &str = "it|them|they|that|this|those|these|its|their|him|her|he|she|same one|that one|this one|itself|the latter|theirs|each other|one another";
 /// Part of a group.
-pub const PARTS: &str = "another|another one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the remaining three";
+pub const PARTS: &str = "another|another one|a second one|a third one|a second|a third|a further one|one other|the first one|the second one|the third one|the last one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the remaining three";
 
 /// Words that turn around what follows.
 pub const NOT: &str = "no|not|without|without any|no more|never|free of|devoid of|lacking|isnt|arent|aint|zero|none|neither|nor|not a single|no single|there are no|there is no|there isnt|there arent|not any|empty of|clear of|absolutely no|absent|minus|except|except for|excluding|nary a|doesnt|dont|wont|dont want|dont include|do not include|with no|having no|avoid|omit|not a|not one|hardly any|is not|are not|but no|no other|sans|rather than|instead of|do not want";

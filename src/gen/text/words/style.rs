@@ -153,17 +153,17 @@ pub const COUNTS: &[(Count, &str)] = &[
     ),
     (
         Count { min: 2, n: 2, max: 2 },
-        "two|a couple of|couple of|a pair of|pair of|a couple|couple|twin|both|a duo of|two single|pairs of",
+        "two|a couple of|a brace of|a twosome of|a pair|pair|couple of|a pair of|pair of|a couple|couple|twin|both|a duo of|two single|pairs of",
     ),
     (
         Count { min: 3, n: 3, max: 3 },
-        "three|a trio of|trio of|trio|triple",
+        "three|a trio of|a threesome of|trio of|trio|triple",
     ),
-    (Count { min: 4, n: 4, max: 4 }, "four|a quartet of|fou"),
+    (Count { min: 4, n: 4, max: 4 }, "four|a quartet of|quartet of|a foursome of|fou"),
     (Count { min: 5, n: 5, max: 5 }, "five"),
     (
         Count { min: 6, n: 6, max: 6 },
-        "six|half a dozen|half dozen|a half dozen|a half dozen of",
+        "six|half a dozen|half a dozen of|half dozen|a half dozen|a half dozen of",
     ),
     (Count { min: 7, n: 7, max: 7 }, "seven"),
     (Count { min: 8, n: 8, max: 8 }, "eight"),
@@ -190,7 +190,7 @@ pub const COUNTS: &[(Count, &str)] = &[
             n: 12,
             max: 12,
         },
-        "twelve|a dozen|dozen|a dozen of",
+        "twelve|a dozen|one dozen|dozen|a dozen of",
     ),
     (
         Count {
@@ -306,11 +306,11 @@ pub const COUNTS: &[(Count, &str)] = &[
     ),
     (
         Count { min: 2, n: 3, max: 5 },
-        "some|a few|few|a handful of|handful of|a number of|various|a small number of|different|assorted|a bunch of|bunch of|multiple|several|a small group of|a set of|set of|more than one|a group of|group of|groups of|a cluster of|cluster of|clusters of|a small crowd of|a series of|a mix of|a pack of|a gang of|a string of|string of|a team of|team of",
+        "some|a couple or three|two or three|one or two|a smattering of|a sprinkling of|a scattering of|a selection of|a knot of|a huddle of|a gaggle of|a bevy of|the odd|quite a few|a good few|a party of|party of|a band of|a squad of|a crew of|a batch of|batch of|a handful|a few|few|a handful of|handful of|a number of|various|a small number of|different|assorted|a bunch of|bunch of|multiple|several|a small group of|a set of|set of|more than one|a group of|group of|groups of|a cluster of|cluster of|clusters of|a small crowd of|a series of|a mix of|a pack of|a gang of|a string of|string of|a team of|team of",
     ),
     (
         Count { min: 3, n: 4, max: 8 },
-        "a row of|row of|rows of|a line of|line of|lines of|a queue of|queue of|queues of|a column of|column of|a convoy of|convoy of|a chain of|a fleet of|fleet of|a large group of|large group of|a procession of",
+        "a row of|row of|file of|a file of|a train of|an array of|a stretch of|a bank of|a stack of|a caravan of|a tailback of|tailback of|a pile up of|a pile of|pile of|a clump of|a wall of|rows of|a line of|line of|lines of|a queue of|queue of|queues of|a column of|column of|a convoy of|convoy of|a chain of|a fleet of|fleet of|a large group of|large group of|a procession of",
     ),
     (
         Count {
@@ -318,7 +318,7 @@ pub const COUNTS: &[(Count, &str)] = &[
             n: 8,
             max: 20,
         },
-        "many|lots of|a lot of|a large number of|large number of|numerous|plenty of|loads of|countless|a crowd of|crowds of|crowd of|tons of|heaps of|a swarm of|dozens of|hordes of|a great many|an abundance of|a great number of|masses of|scores of|a multitude of|a host of|so many|too many|full of|lined with|packed with|crowded with|filled with|a throng of|tens of|a long line of|a long queue of|a long row of|littered with|swarming with",
+        "many|lots of|lots and lots of|a whole lot of|oodles of|no end of|a sea of|an army of|a ton of|a load of|a whole bunch of|a good number of|no shortage of|umpteen|scads of|ever so many|a lot of|a large number of|large number of|numerous|plenty of|loads of|countless|a crowd of|crowds of|crowd of|tons of|heaps of|a swarm of|dozens of|hordes of|a great many|an abundance of|a great number of|masses of|scores of|a multitude of|a host of|so many|too many|full of|lined with|packed with|crowded with|filled with|a throng of|tens of|a long line of|a long queue of|a long row of|littered with|swarming with",
     ),
 ];
 

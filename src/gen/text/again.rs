@@ -1,0 +1,205 @@
+//! What a sentence leaves out because it was said before: "and two on the right", "six of them", "people on bikes",
+//! "roadworks on the right: a digger and three men".
+
+use super::description::{Anchor, Count};
+use super::lexicon::Sense;
+use super::mention::{Mention, Pre, Prep, apply};
+use super::parse::Parser;
+use super::tag::Tag;
+use super::tokens::Span;
+use super::words::edits::Pick;
+use super::words::objects::Noun;
+use crate::scene::Class;
+use crate::scene::graph::ObjectState;
+
+impl Parser<'_> {
+    /// True if the clause ends before item `i`.
+    pub(super) fn ends(&self, i: usize) -> bool {
+        self.item(i)
+            .is_none_or(|n| matches!(n.tag, Tag::Stop | Tag::Comma | Tag::Mark))
+    }
+
+    /// True if item `i` is a number that ends its clause.
+    pub(super) fn bare_number(&self, i: usize) -> bool {
+        let number = self
+            .item(i)
+            .is_some_and(|n| matches!(n.tag, Tag::Number(_) | Tag::Is(Sense::Count(_))));
+        number && self.ends(i + 1) && self.mentions.iter().any(|m| !m.gone && !m.is_anchor)
+    }
+
+    /// True if "and" and a comma stand right before.
+    pub(super) fn after_and(&self) -> bool {
+        let word = |k: usize| self.at.checked_sub(k).and_then(|i| self.item(i));
+        word(1).is_some_and(|n| n.tag == Tag::Comma) && word(2).is_some_and(|n| n.tag == Tag::Is(Sense::And))
+    }
+
+    /// "cones block the lane, four in total": the number of what was named last. True if it was that.
+    pub(super) fn numbers_last(&mut self, count: Count, span: Span) -> bool {
+        let mut end = self.at + 1;
+        let mut total = false;
+        while let Some(n) = self.item(end)
+            && matches!(n.words.as_str(), "in total" | "total" | "altogether" | "in all" | "all told" | "of them")
+        {
+            total = true;
+            end += 1;
+        }
+        let lead = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|n| matches!(n.tag, Tag::Comma | Tag::Mark) || n.words == "of");
+        if !self.ends(end) || !(total || lead) || !self.fronted.is_empty() {
+            return false;
+        }
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let Some(m) = last.map(|i| &mut self.mentions[i]) else {
+            return false;
+        };
+        let many = m.plural || m.spec.count.n > 1;
+        if !m.uncounted || !many {
+            return false;
+        }
+        m.spec.count = count;
+        m.spec.span = m.spec.span.to(span);
+        m.uncounted = false;
+        self.pre = Pre::default();
+        self.at = end - 1;
+        true
+    }
+
+    /// "a roadblock of five barriers": only what it is made of is counted. True if it was that.
+    pub(super) fn holds_others(&mut self, noun: &'static Noun, pre: &Pre) -> bool {
+        let of = self.item(self.at + 1).is_some_and(|n| n.words == "of");
+        let counted = matches!(
+            self.item(self.at + 2).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Count(_)))
+        );
+        let same = self.items[self.at..]
+            .iter()
+            .skip(3)
+            .take(3)
+            .find_map(|n| match n.tag {
+                Tag::Is(Sense::Noun(other, _)) => Some(other.classes[0] == noun.classes[0]),
+                _ => None,
+            });
+        of && counted && pre.count.is_none_or(|c| c.n == 1) && same == Some(true) && self.noun_ahead(self.at + 2)
+    }
+
+    /// As many more of what was named last, elsewhere.
+    pub(super) fn again(&mut self, count: Count, span: Span) {
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let Some(last) = last else {
+            return;
+        };
+        self.flush();
+        let mut twin = self.mentions[last].clone();
+        twin.spec.relations.clear();
+        twin.spec.count = count;
+        twin.spec.span = span;
+        twin.plural = count.n > 1;
+        twin.uncounted = false;
+        for frag in &self.fronted {
+            apply(&mut twin.spec, frag);
+        }
+        self.mentions.push(twin);
+        let index = self.mentions.len() - 1;
+        self.head = vec![index];
+        self.last = vec![index];
+        self.chain = false;
+        self.pre = Pre::default();
+    }
+
+    /// "a man on a bike", "two people riding scooters": one thing, what they ride. True if it was that.
+    pub(super) fn rides(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
+        if !matches!(noun.classes[0], Class::Bicycle | Class::Motorcycle) || pre.article == Some(true) {
+            return false;
+        }
+        let mut before = self.at;
+        while before > 0
+            && matches!(
+                self.sense(before - 1),
+                Some(Sense::Article(_) | Sense::Pronoun | Sense::Attribute(_) | Sense::Color(_))
+            )
+        {
+            before -= 1;
+        }
+        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let riding = matches!(lead, "riding" | "rides" | "ride" | "is riding" | "are riding");
+        let on = matches!(lead, "on")
+            && self
+                .pending
+                .as_ref()
+                .is_some_and(|p| p.prep == Prep::In && !p.not);
+        let people: Vec<usize> = self.last.clone();
+        let fits = !people.is_empty()
+            && people
+                .iter()
+                .all(|i| self.mentions[*i].spec.class == Class::Pedestrian && !self.mentions[*i].is_anchor);
+        if !(fits && (riding || on)) {
+            return false;
+        }
+        self.pending = None;
+        for i in people {
+            let m: &mut Mention = &mut self.mentions[i];
+            m.classes = noun.classes;
+            m.spec.class = noun.classes[0];
+            m.spec.noun = word.to_string();
+            m.spec.size_m = noun.size_m;
+            m.spec.state = m.spec.state.or(Some(ObjectState::Moving));
+        }
+        true
+    }
+
+    /// "seven vehicles, all cars": says which. True if it was that.
+    pub(super) fn says_which(&mut self, noun: &'static Noun, word: &str, plural: bool, pre: &Pre) -> bool {
+        if !plural || pre.pick != Some(Pick::All) || pre.count.is_some() || self.edits || self.pending.is_some() {
+            return false;
+        }
+        let Some(&last) = self.last.last().or(self.head.last()).or(self.before.last()) else {
+            return false;
+        };
+        let m = &mut self.mentions[last];
+        if m.classes.len() < 3 || !m.classes.contains(&noun.classes[0]) || noun.classes.len() > 1 {
+            return false;
+        }
+        m.classes = noun.classes;
+        m.spec.class = noun.classes[0];
+        m.spec.noun = word.to_string();
+        m.spec.size_m = noun.size_m;
+        true
+    }
+
+    /// "in front of the car", where no car was named: the ego vehicle.
+    pub(super) fn is_ego_car(&self, index: usize) -> bool {
+        let m = &self.mentions[index];
+        let plain = m.definite
+            && !m.plural
+            && m.uncounted
+            && m.spec.state.is_none()
+            && m.spec.color.is_none()
+            && m.spec.attributes.is_empty();
+        let other = self.mentions[..index]
+            .iter()
+            .any(|o| o.classes.iter().any(|c| m.classes.contains(c)));
+        plain && !other && !self.edits && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
+    }
+
+    /// What follows a colon stands where what is before it was said to be.
+    pub(super) fn introduce(&mut self) {
+        let Some(&first) = self.head.first() else {
+            return;
+        };
+        if !self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1) {
+            return;
+        }
+        self.listed = self.mentions[first]
+            .spec
+            .relations
+            .iter()
+            .filter(|r| r.anchor != Anchor::Object(first))
+            .copied()
+            .collect();
+    }
+}
