@@ -377,3 +377,41 @@ fn differences_are_counted() {
         .expect("text");
     assert!(text.contains("boxes: 0 added, 1 removed, 0 changed"), "{text}");
 }
+
+/// Two settings on one world against a tiny reference: points, front, stops and the promise about untouched voxels.
+#[test]
+fn trade_measures_settings_and_refuses_bad_arguments() {
+    let folder = Folder::new();
+    let [out, plot, stops] = ["t.json", "t.png", "stops.json"].map(|n| folder.path(n));
+    let common = ["trade", "--frames", "1", "--repeats", "1", "-o", &out];
+    let only = ["--parts", "edit,vae", "--only", "2 steps;4 steps, int8", "--reference-steps", "4"];
+    let files = ["--processes", "2", "--plot", &plot, "--stops", &stops];
+    let (report, code) = run(&[&common[..], &only, &files].concat());
+    assert_eq!(code, 0);
+    let points = report["points"].as_array().expect("points");
+    let edits: Vec<_> = points.iter().filter(|p| p["part"] == "edit").collect();
+    assert_eq!(edits.len(), 2);
+    for p in &edits {
+        let zero = Some(0);
+        assert_eq!((p["untouched_voxels_changed"].as_u64(), p["failed"].as_u64()), (zero, zero));
+        assert!(p["wall_s"]["median"].as_f64() > Some(0.0) && p["runs"].as_u64() == Some(6), "{p}");
+    }
+    let error = |name: &str| {
+        let point = edits.iter().find(|p| p["name"] == name).expect("measured");
+        point["error"]["median"].as_f64().expect("a number")
+    };
+    // The reference has four steps: the same in eight bits lies nearer to it than two steps do.
+    assert!(error("4 steps, int8") < error("2 steps"));
+    assert_eq!(report["figures"]["untouched_identical_edit"], true);
+    assert_eq!(points.iter().filter(|p| p["part"] == "vae").count(), 2);
+    assert!(std::fs::read(&plot).expect("a picture").starts_with(b"\x89PNG"));
+    let found: Value = serde_json::from_slice(&std::fs::read(&stops).expect("stops")).expect("json");
+    assert_eq!(found["stops"][0]["name"], "draft");
+    for (bad, says) in [
+        (["--frames", "0"], "expected 1 to 1000"),
+        (["--reference-steps", "1001"], "expected 2 to 1000"),
+        (["--parts", "edit,paint"], "expected edit"),
+    ] {
+        refused(&[&["trade", "-o", &out], &bad[..]].concat(), says);
+    }
+}

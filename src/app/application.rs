@@ -603,6 +603,8 @@ impl SceneloomApp {
             bookmarks: self.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
+            stops: self.tuning.foretold(),
+            stop: self.tuning.current(&self.live.params),
         };
         egui::Panel::top("toolbar")
             .exact_size(42.0)

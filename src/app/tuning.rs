@@ -6,12 +6,27 @@ use std::sync::Arc;
 
 use super::trade::calibrate::{Background, News, Refine, Task, build};
 use super::trade::load::machine;
+use super::trade::plot::{percent, seconds};
 use crate::generation::job::{GenParams, GenReport, GenResult};
 use crate::generation::model::{OccModels, tokens_of};
 use crate::generation::redraw;
 use crate::generation::region::Region;
-use crate::generation::trade::Stops;
+use crate::generation::trade::{Stop, Stops};
 use crate::scene::Scene;
+
+/// Tokens of an edit of one vehicle.
+const TYPICAL_TOKENS: f64 = 36.0;
+
+/// One line: what a stop is foretold to take and to miss.
+pub fn foretold(stop: &Stop, tokens: f64) -> String {
+    let time = seconds(stop.cost.wall_s(tokens));
+    if stop.error.high == 0.0 {
+        return format!("{time}  ·  what the others are measured against");
+    }
+    let [low, high] = stop.error_of_one.map(percent);
+    let middle = percent(stop.error.median);
+    format!("{time}  ·  {middle} of its voxels differ ({low} to {high})")
+}
 
 /// What an edit did and cost, beside what was foretold.
 pub struct LastEdit {
@@ -179,6 +194,18 @@ impl Tuning {
             super::cli::trade::write_stops(file, &self.stops)
         };
         write().map_err(|e| e.to_string())
+    }
+
+    /// Tokens of an edit like the last one, or of a typical one until there was one.
+    pub fn tokens_of_next(&self) -> f64 {
+        self.last.as_ref().map_or(TYPICAL_TOKENS, |l| l.report.tokens as f64)
+    }
+
+    /// Name of each stop, and what it is foretold to cost.
+    pub fn foretold(&self) -> Vec<(String, String)> {
+        let tokens = self.tokens_of_next();
+        let of = |s: &Stop| (s.name.clone(), foretold(s, tokens));
+        self.stops.stops.iter().map(of).collect()
     }
 
     /// The stop that the parameters stand at.

@@ -10,4 +10,5 @@ mod recovery;
 mod sensors;
 mod shell;
 mod tools;
+mod trade;
 mod views;

@@ -51,6 +51,9 @@ pub struct Trade {
     /// Random settings across all knobs, beside each knob by itself.
     #[arg(long, value_name = "N", default_value_t = 8)]
     draws: usize,
+    /// Only these settings, separated by semicolons, as the report names them: `4 steps;10 steps, int8`.
+    #[arg(long, value_name = "NAMES", value_delimiter = ';')]
+    only: Vec<String>,
     /// Folder that keeps the references between runs.
     #[arg(long, value_name = "DIR")]
     keep_references: Option<PathBuf>,
@@ -173,14 +176,16 @@ impl Trade {
     }
 
     fn settings(&self, part: &str, models: &OccModels) -> (GenParams, Vec<Setting>) {
-        if part == "edit" {
+        let (base, mut settings) = if part == "edit" {
             let base = GenParams::default();
             let distilled = models.distilled.is_some();
             (base, settings::of_edits(base, distilled, self.draws, self.seed))
         } else {
             let base = full_params();
             (base, settings::of_scenes(base))
-        }
+        };
+        settings.retain(|s| self.only.is_empty() || self.only.contains(&s.name));
+        (base, settings)
     }
 
     fn cases(&self, part: &str) -> anyhow::Result<Vec<Case>> {
@@ -221,21 +226,16 @@ impl Trade {
         for part in ["edit", "scene"].into_iter().filter(|p| self.has(p)) {
             let (base, settings) = self.settings(part, models);
             let found = self.cases(part)?;
-            for (i, case) in found.iter().enumerate() {
-                let all = found.len() * settings.len();
-                let outcomes = bench.run(
-                    case,
-                    &settings,
-                    self.repeats(),
-                    base,
-                    self.seed ^ i as u64 ^ self.process << 32,
-                    &JobCtx::detached(),
-                    |k| progress.at(part, i * settings.len() + k, all),
-                )?;
-                raw.parts
-                    .entry(part.into())
-                    .or_default()
-                    .push((case.name.clone(), outcomes));
+            // Those of one scene share what makes it ready.
+            let scenes: Vec<&[Case]> = found.chunk_by(|a, b| Arc::ptr_eq(&a.before, &b.before)).collect();
+            for (i, some) in scenes.iter().enumerate() {
+                let seed = self.seed ^ i as u64 ^ self.process << 32;
+                let all = scenes.len() * settings.len();
+                let told = |k| progress.at(part, i * settings.len() + k, all);
+                let ctx = JobCtx::detached();
+                let outcomes = bench.run(some, &settings, self.repeats(), base, seed, &ctx, told)?;
+                let named = some.iter().map(|c| c.name.clone()).zip(outcomes);
+                raw.parts.entry(part.into()).or_default().extend(named);
             }
         }
         Ok(raw)
@@ -267,6 +267,9 @@ impl Trade {
             for (name, value) in numbers {
                 command.args([name, &value]);
             }
+            if !self.only.is_empty() {
+                command.args(["--only", &self.only.join(";")]);
+            }
             command.arg("--keep-references").arg(&references).arg("-o").arg(&file);
             if let Some(weights) = &self.common.weights {
                 command.arg("--weights").arg(weights);
@@ -291,6 +294,11 @@ impl Trade {
         }
         if !(2..=100_000).contains(&self.reference_steps()) || self.reference_steps() > 1000 {
             return Err(anyhow::anyhow!("--reference-steps {}: expected 2 to 1000", self.reference_steps()).into());
+        }
+        for (name, number) in [("--frames", self.frames()), ("--repeats", self.repeats())] {
+            if !(1..=1000).contains(&number) {
+                return Err(anyhow::anyhow!("{name} {number}: expected 1 to 1000").into());
+            }
         }
         let load = Load::now();
         if load.is_busy() && !self.raw {
@@ -412,9 +420,9 @@ impl Trade {
             return Ok(Value::Null);
         }
         let found = self.cases("edit")?;
-        let Some(case) = found.first() else {
+        if found.is_empty() {
             return Ok(Value::Null);
-        };
+        }
         progress.at("self-check", 0, 1);
         let bench = Bench {
             models: models.clone(),
@@ -427,9 +435,9 @@ impl Trade {
             other_target: false,
         };
         let ctx = JobCtx::detached();
-        let outcomes = bench.run(case, &[half], 0, GenParams::default(), 0, &ctx, |_| {})?;
-        Ok(outcomes.first().map_or(Value::Null, |o| {
-            json!({ "case": case.name, "steps": self.reference_steps() / 2, "error": o.error, "latent_error": o.latent_error })
+        let outcomes = bench.run(&found[..1], &[half], 0, GenParams::default(), 0, &ctx, |_| {})?;
+        Ok(outcomes[0].first().map_or(Value::Null, |o| {
+            json!({ "case": found[0].name, "steps": self.reference_steps() / 2, "error": o.error, "latent_error": o.latent_error })
         }))
     }
 

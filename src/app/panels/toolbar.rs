@@ -33,6 +33,10 @@ pub struct ToolbarInput<'a> {
     pub has_paint: bool,
     /// The workspace chosen last.
     pub workspace: Workspace,
+    /// Stops of the quality slider, and what they are foretold to cost.
+    pub stops: Vec<(String, String)>,
+    /// The one in use.
+    pub stop: Option<usize>,
 }
 
 /// Draws the bar.
@@ -297,6 +301,33 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     if live.clicked() {
         commands.push(Command::ToggleLive);
     }
+    if !input.stops.is_empty() {
+        quality(ui, input, commands);
+    }
+}
+
+/// The stops of the quality slider as a menu.
+fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
+    let current = input.stop.and_then(|i| input.stops.get(i));
+    let name = current.map_or("own settings", |(name, _)| name);
+    let menu = ui.menu_button(theme::sentence(name), |ui| {
+        for (i, (name, foretold)) in input.stops.iter().enumerate() {
+            let text = egui::RichText::new(format!("{}   {foretold}", theme::sentence(name)));
+            if ui.selectable_label(input.stop == Some(i), text).clicked() {
+                commands.push(Command::Quality(i));
+                ui.close();
+            }
+        }
+        ui.separator();
+        if ui.button("Speed and accuracy…").clicked() {
+            commands.push(Command::Workspace(Workspace::Trade));
+            ui.close();
+        }
+    });
+    let label = format!("Quality: {name} menu");
+    menu.response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    let cost = current.map_or(String::new(), |(_, foretold)| format!("\n{foretold}"));
+    menu.response.on_hover_text(format!("How exactly edits are generated{cost}"));
 }
 
 /// A button with an icon and a name, of one height with the others.

@@ -7,12 +7,9 @@ use crate::app::command::Command;
 use crate::app::theme;
 use crate::app::trade::load::Load;
 use crate::app::trade::plot::{Mark, front_plot, percent, seconds};
-use crate::app::tuning::{LastEdit, Measuring, Tuning};
+use crate::app::tuning::{LastEdit, Measuring, Tuning, foretold};
 use crate::generation::job::GenParams;
 use crate::generation::trade::Stop;
-
-/// Tokens of a typical edit, until there was one.
-const TYPICAL_TOKENS: f64 = 36.0;
 
 /// Draws the panel. `params` are those of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {
@@ -37,12 +34,8 @@ fn edits(tuning: &Tuning) -> usize {
     tuning.stops.stops.first().map_or(0, |s| s.error.n)
 }
 
-fn tokens_of_next(tuning: &Tuning) -> f64 {
-    tuning.last.as_ref().map_or(TYPICAL_TOKENS, |l| l.report.tokens as f64)
-}
-
 fn marks(tuning: &Tuning) -> Vec<Mark> {
-    let tokens = tokens_of_next(tuning);
+    let tokens = tuning.tokens_of_next();
     let mark = |s: &Stop| Mark {
         name: s.name.clone(),
         wall_s: [s.cost.wall_s(tokens); 3],
@@ -51,17 +44,6 @@ fn marks(tuning: &Tuning) -> Vec<Mark> {
         stop: Some(s.name.clone()),
     };
     tuning.stops.stops.iter().map(mark).collect()
-}
-
-/// One line: what a stop is foretold to take and to miss.
-pub fn foretold(stop: &Stop, tokens: f64) -> String {
-    format!(
-        "{}  ·  {} of its voxels differ ({} to {})",
-        seconds(stop.cost.wall_s(tokens)),
-        percent(stop.error.median),
-        percent(stop.error_of_one[0]),
-        percent(stop.error_of_one[1]),
-    )
 }
 
 fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<Command>) {
@@ -88,7 +70,7 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
         }
         ui.label(RichText::new("Exact").color(theme::text_weak()));
     });
-    let tokens = tokens_of_next(tuning);
+    let tokens = tuning.tokens_of_next();
     match current {
         Some(i) => {
             ui.label(RichText::new(theme::sentence(&stops[i].name)).strong());

@@ -34,13 +34,14 @@ pub fn held_out(index: u64) -> Scene {
 
 /// One case of every kind that suits the scene.
 pub fn of_scene(scene: &Scene, name: &str, seed: u64) -> Vec<Case> {
+    let before = Arc::new(scene.clone());
     let case = |kind: &&str| {
         let trial = Trial::propose(kind, scene.frame(), seed)?;
         let mut document = Document::new(scene.clone());
         document.apply("Edit", &trial.edit).ok()?;
         Some(Case {
             name: format!("{name}, {kind}"),
-            before: Arc::new(scene.clone()),
+            before: before.clone(),
             after: document.scene().clone(),
         })
     };

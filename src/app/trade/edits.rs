@@ -13,7 +13,7 @@ use super::load::forget_peak_memory;
 use super::settings::Setting;
 use crate::app::cli::output::peak_rss_mb;
 use crate::generation::composite::label_hash;
-use crate::generation::job::{GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
+use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::model::{LATENT, OccModels};
 use crate::generation::pipeline::OccPipeline;
@@ -201,22 +201,24 @@ impl Bench {
         }
     }
 
-    /// One case under all settings, `repeats` timed runs each, in random turns. Sources are ready when the clock
-    /// starts, as they are in the window; what that took stands beside it.
+    /// Cases of one scene under all settings, `repeats` timed runs each, in random turns. Sources are ready when the
+    /// clock starts, as they are in the window; what that took stands beside it. Outcomes by case, then by setting.
+    #[allow(clippy::too_many_arguments)] // what is measured, how often, and who listens
     pub fn run(
         &self,
-        case: &Case,
+        cases: &[Case],
         settings: &[Setting],
         repeats: usize,
         base: GenParams,
         seed: u64,
         ctx: &JobCtx<'_>,
         mut at: impl FnMut(usize),
-    ) -> anyhow::Result<Vec<Outcome>> {
+    ) -> anyhow::Result<Vec<Vec<Outcome>>> {
         let mut pipeline = OccPipeline::new(self.models.clone());
-        let reference = self.reference(&mut pipeline, case, base, ctx)?;
+        let references = cases.iter().map(|case| self.reference(&mut pipeline, case, base, ctx));
+        let references = references.collect::<anyhow::Result<Vec<_>>>()?;
         drop(pipeline);
-        let mut outcomes: Vec<Option<Outcome>> = vec![None; settings.len()];
+        let mut outcomes: Vec<Vec<Outcome>> = vec![vec![Outcome::default(); settings.len()]; cases.len()];
         let mut order: Vec<usize> = (0..settings.len()).collect();
         let mut draw = Draw::new(seed, "turns");
         shuffle(&mut order, &mut draw);
@@ -229,49 +231,56 @@ impl Bench {
                 forget_peak_memory();
                 let start = Instant::now();
                 if params.region == RegionMode::Auto {
-                    pipeline.prepare(&Self::job(&case.before, params), ctx)?;
+                    pipeline.prepare(&Self::job(&cases[0].before, params), ctx)?;
                 }
                 let invert_s = start.elapsed().as_secs_f64();
-                // The run that is judged also warms up.
-                let mut first = pipeline.clone();
-                let outcome = match first.run(&Self::job(&case.after, params), ctx) {
-                    Ok(result) => {
-                        let latent = first.latest_latent();
-                        let (grid, report) = (&result.occupancy, &result.report);
-                        Self::compare(case, &params, grid, latent.as_deref(), report, &reference)
-                    }
-                    Err(error) => Outcome {
-                        error: f64::INFINITY,
-                        notes: vec![error.to_string()],
-                        ..Outcome::default()
-                    },
-                };
-                outcomes[*i] = Some(Outcome {
-                    invert_s,
-                    peak_rss_mb: peak_rss_mb(),
-                    ..outcome
-                });
+                for ((case, reference), outcomes) in cases.iter().zip(&references).zip(&mut outcomes) {
+                    // The run that is judged also warms up.
+                    let mut first = pipeline.clone();
+                    let outcome = match first.run(&Self::job(&case.after, params), ctx) {
+                        Ok(result) => {
+                            let latent = first.latest_latent();
+                            let (grid, report) = (&result.occupancy, &result.report);
+                            Self::compare(case, &params, grid, latent.as_deref(), report, reference)
+                        }
+                        Err(GenError::Superseded) => return Err(GenError::Superseded.into()),
+                        Err(error) => Outcome {
+                            error: f64::INFINITY,
+                            notes: vec![error.to_string()],
+                            ..Outcome::default()
+                        },
+                    };
+                    outcomes[*i] = Outcome {
+                        invert_s,
+                        peak_rss_mb: peak_rss_mb(),
+                        ..outcome
+                    };
+                }
                 done += 1;
                 at(done);
                 ready.push((*i, pipeline));
             }
-            let mut turns: Vec<usize> = (0..ready.len() * repeats).map(|t| t % ready.len()).collect();
+            let turns = ready.len() * cases.len();
+            let mut turns: Vec<usize> = (0..turns * repeats).map(|t| t % turns).collect();
             shuffle(&mut turns, &mut draw);
             for turn in turns {
                 ctx.check()?;
-                let (i, pipeline) = &ready[turn];
+                let (i, pipeline) = &ready[turn / cases.len()];
+                let c = turn % cases.len();
                 let mut pipeline = pipeline.clone();
-                let job = Self::job(&case.after, settings[*i].params);
+                let job = Self::job(&cases[c].after, settings[*i].params);
                 let start = Instant::now();
                 let ran = pipeline.run(&job, ctx);
                 let wall_s = start.elapsed().as_secs_f64();
-                if let (Ok(result), Some(outcome)) = (ran, &mut outcomes[*i]) {
+                if let Ok(result) = ran {
+                    let outcome = &mut outcomes[c][*i];
                     outcome.wall_s.push(wall_s);
-                    outcome.stages_s = result.report.wall_s.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
+                    let stages = result.report.wall_s.iter();
+                    outcome.stages_s = stages.map(|(k, v)| ((*k).to_owned(), *v)).collect();
                 }
             }
         }
-        Ok(outcomes.into_iter().flatten().collect())
+        Ok(outcomes)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::*;
-use crate::editor::Document;
+use crate::editor::{Document, EditError};
 use crate::scene::draft::draft;
 use crate::scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig};
 

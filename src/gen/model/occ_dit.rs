@@ -563,6 +563,7 @@ mod tests {
                     HEADS,
                     &places,
                     &mut keys_values,
+                    Precision::F32,
                 );
             }
         }
