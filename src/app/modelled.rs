@@ -38,12 +38,12 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
         painter.rect_stroke(squares(brick / BRICKS, brick % BRICKS, BRICK), 0.0, green, StrokeKind::Inside);
     }
     let text = format!(
-        "Computed: {} of {} tokens (blue), {} columns (yellow), {} of {} bricks meshed again (green)",
+        "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",
         last.tokens.len(),
         TOKENS * TOKENS,
         last.report.region_columns,
         last.bricks.len(),
         BRICKS * BRICKS,
     );
-    tag(ui, pos2(area.left() + 8.0, area.bottom() - 30.0), &text, false);
+    tag(ui, pos2(area.left() + 8.0, area.top() + 8.0), &text, false);
 }

@@ -1,7 +1,7 @@
 //! Speed and accuracy: the slider of measured stops, the plot they lie on, the receipt of the last edit, what was
 //! computed for it, and what stability there was.
 
-use egui::{Grid, RichText, Slider, Ui, vec2};
+use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::theme;
@@ -111,10 +111,17 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
     }
 }
 
-fn row(ui: &mut Ui, name: &str, value: impl Into<String>) {
-    ui.label(RichText::new(name).color(theme::text_weak()));
-    ui.label(value.into());
-    ui.end_row();
+/// A name and what is said of it, on as many lines as that takes.
+fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let width = 86.0;
+        ui.allocate_ui_with_layout(vec2(width, 16.0), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(width);
+            ui.add(Label::new(RichText::new(name).color(theme::text_weak())).truncate());
+        });
+        ui.add(Label::new(value.into()).wrap());
+    });
 }
 
 fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
@@ -125,7 +132,8 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
         return;
     };
     let r = &last.report;
-    Grid::new("receipt").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
         row(ui, "Region", format!("{} columns ({})", r.region_columns, percent(r.region_share)));
         row(ui, "Computed", format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls));
         let foretold = last.predicted_s.map_or(String::new(), |s| format!(", foretold {}", seconds(s)));
@@ -133,7 +141,11 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
         row(ui, "Stages", stages(last));
         let error = match (last.measured_error, last.predicted_error) {
             (Some(e), Some([_, low, high])) => {
-                let where_ = if (low..=high).contains(&e) { "as foretold" } else { "outside what was foretold" };
+                let where_ = match e {
+                    e if e < low => "better than foretold",
+                    e if e <= high => "as foretold",
+                    _ => "more than foretold",
+                };
                 format!("{} measured, {where_} ({} to {})", percent(e), percent(low), percent(high))
             }
             (Some(e), None) => format!("{} measured", percent(e)),
@@ -180,7 +192,8 @@ fn stages(last: &LastEdit) -> String {
 fn stability(ui: &mut Ui, tuning: &Tuning) {
     ui.label(RichText::new("Stability").strong());
     let s = &tuning.stability;
-    Grid::new("stability").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
         if let Some(r) = tuning.last.as_ref().map(|l| &l.report)
             && let (Some(std), Some(max)) = (r.noise_std, r.noise_max_abs)
         {
@@ -190,10 +203,8 @@ fn stability(ui: &mut Ui, tuning: &Tuning) {
         }
         row(ui, "Generations", format!("{}, {} with a fallback or warning", s.runs, s.fallbacks));
         row(ui, "Failed", format!("{}, {} by a number that was not finite", s.failures, s.not_finite));
-        ui.label(RichText::new("Untouched voxels changed").color(theme::text_weak()));
         let color = if s.untouched_changed == 0 { theme::text() } else { theme::bad() };
-        ui.label(RichText::new(s.untouched_changed.to_string()).color(color));
-        ui.end_row();
+        row(ui, "Untouched", RichText::new(format!("{} voxels changed", s.untouched_changed)).color(color));
     });
     if let Some(notes) = tuning.last.as_ref().map(|l| &l.report.notes).filter(|n| !n.is_empty()) {
         for note in notes {

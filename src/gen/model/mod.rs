@@ -41,6 +41,9 @@ pub const LATENT: usize = CELLS * CHANNELS;
 /// File names of the two networks.
 pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
 
+/// File name of the DiT's student of few steps, which may be missing.
+pub const STUDENT: &str = "occ_dit_distilled.safetensors";
+
 /// What a network refuses, or cannot promise any more.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModelError {
@@ -146,10 +149,15 @@ impl OccModels {
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
-    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder.
+    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and the DiT's student if it is there.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
         let [vae, dit] = FILES.map(|f| weights::read(&folder.join(f)));
-        Ok(Arc::new(Self::parse(&vae?, &dit?)?))
+        let mut models = Self::parse(&vae?, &dit?)?;
+        let student = folder.join(STUDENT);
+        if student.exists() {
+            models.distilled = Some(OccDit::new(WeightFile::parse(STUDENT, &weights::read(&student)?)?)?);
+        }
+        Ok(Arc::new(models))
     }
 
     fn parse(vae: &[u8], dit: &[u8]) -> Result<Self, WeightsError> {
