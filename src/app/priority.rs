@@ -4,7 +4,7 @@
 use std::process::{Command, Stdio};
 
 /// How much nicer than the window, of 19.
-const NICER: &str = "5";
+const NICER: i32 = 5;
 
 /// The system's number of this thread; none where `/proc` does not tell.
 fn thread_id() -> Option<String> {
@@ -12,11 +12,23 @@ fn thread_id() -> Option<String> {
     Some(link.file_name()?.to_str()?.to_owned())
 }
 
+/// Field 19 of `/proc/<pid>/task/<tid>/stat`, proc(5): from -20, first in line, to 19.
+fn nice() -> Option<i32> {
+    let stat = std::fs::read_to_string("/proc/thread-self/stat").ok()?;
+    // The name of the thread, in brackets, may hold blanks.
+    let (_, rest) = stat.rsplit_once(')')?;
+    rest.split_whitespace().nth(16)?.parse().ok()
+}
+
 /// Makes this thread give way to others of the program. True if the system did it.
 pub fn give_way() -> bool {
-    let Some(id) = thread_id() else { return false };
+    let (Some(id), Some(nice)) = (thread_id(), nice()) else {
+        return false;
+    };
+    let wanted = (nice + NICER).min(19).to_string();
+    // Without `-n` the number is meant as it is by every `renice`.
     let renice = Command::new("renice")
-        .args(["--relative", NICER, "--pid", &id])
+        .args([wanted.as_str(), "-p", &id])
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -36,13 +48,6 @@ pub fn workers_give_way() {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Field 19 of `/proc/<pid>/task/<tid>/stat` is the nice value, proc(5).
-    fn nice() -> Option<i32> {
-        let stat = std::fs::read_to_string("/proc/thread-self/stat").ok()?;
-        let (_, rest) = stat.rsplit_once(')')?;
-        rest.split_whitespace().nth(16)?.parse().ok()
-    }
 
     #[test]
     fn a_thread_gives_way_alone() {

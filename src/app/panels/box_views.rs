@@ -150,6 +150,7 @@ impl BoxViewsPane {
             let lift = DVec3::Z * if physical { 0.0 } else { LIFT_M };
             let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)) + lift);
             if local.abs().cmple(reach).all() {
+                painter.circle_filled(to_screen(local), 2.0, Color32::from_black_alpha(150));
                 painter.circle_filled(to_screen(local), 1.3, Color32::WHITE);
             }
         }
