@@ -671,7 +671,12 @@ impl SceneloomApp {
             };
             checks_window(ui, &input, &mut self.state.checks_open, commands);
         }
-        performance_ui(ui, self.center, &mut self.perf);
+        // Over the 3D view, where it hides no list.
+        let over = match self.view3d.rect.is_positive() {
+            true => self.view3d.rect,
+            false => self.center,
+        };
+        performance_ui(ui, over, &mut self.perf);
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.center);

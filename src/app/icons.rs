@@ -293,18 +293,57 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());
     let name_at = pos2(rect.left() + 28.0, rect.center().y);
-    ui.painter()
+    let name_rect = ui
+        .painter()
         .text(name_at, egui::Align2::LEFT_CENTER, name, body, text);
-    let right_at = pos2(rect.right() - 8.0, rect.center().y);
-    ui.painter().text(
-        right_at,
-        egui::Align2::RIGHT_CENTER,
-        right,
-        small,
-        theme::text_weak(),
+    // Where both do not fit, the name stays.
+    let right = ui
+        .painter()
+        .layout_no_wrap(right.to_owned(), small, theme::text_weak());
+    let right_at = pos2(
+        rect.right() - 8.0 - right.size().x,
+        rect.center().y - right.size().y / 2.0,
     );
+    if right_at.x > name_rect.right() + 4.0 {
+        ui.painter().galley(right_at, right, theme::text_weak());
+    }
     focus_ring(ui, &response, rect);
     response
+}
+
+/// Choices side by side where there is room for them, else as a list that opens; true if another was chosen. `label`
+/// names the list for screen readers.
+pub fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    chosen: &mut T,
+    choices: &[(T, &str, &str)],
+    label: &str,
+) -> bool {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let width = |name: &str| {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(name.to_owned(), font.clone(), theme::text());
+        galley.size().x + 18.0
+    };
+    let wanted: f32 = choices.iter().map(|(_, name, _)| width(name)).sum::<f32>() + 4.0;
+    if ui.available_width() >= wanted {
+        return segments(ui, chosen, choices);
+    }
+    let before = *chosen;
+    let shown = choices.iter().find(|(value, ..)| *value == before);
+    egui::ComboBox::from_id_salt(label)
+        .selected_text(shown.map_or("", |(_, name, _)| name))
+        .width(72.0)
+        .show_ui(ui, |ui| {
+            for (value, name, hint) in choices {
+                ui.selectable_value(chosen, *value, *name)
+                    .on_hover_text(*hint);
+            }
+        })
+        .response
+        .accessible_name(label);
+    *chosen != before
 }
 
 /// Choices side by side, one of them chosen; true if it changed.

@@ -19,7 +19,13 @@ pub fn commands(
     if ctx.text_edit_focused() {
         return;
     }
-    for (key, modifiers, repeat) in pressed(ctx) {
+    for Pressed {
+        key,
+        physical,
+        modifiers,
+        repeat,
+    } in pressed(ctx)
+    {
         let chord = Chord::pressed(key, modifiers);
         if flying && is_flight(key) && !chord.ctrl {
             continue;
@@ -36,7 +42,9 @@ pub fn commands(
             When::Over3d => over_3d,
             When::Chosen => chosen,
         };
-        let Some(action) = keymap.action(chord, applies) else {
+        // Shift makes another key of some: `|` of a backslash. What is written on the key counts then.
+        let on_key = || keymap.action(Chord::pressed(physical?, modifiers), applies);
+        let Some(action) = keymap.action(chord, applies).or_else(on_key) else {
             continue;
         };
         if key == Key::Tab {
@@ -57,19 +65,39 @@ fn drop_focus(ctx: &Context) {
     });
 }
 
-fn pressed(ctx: &Context) -> Vec<(Key, Modifiers, bool)> {
+/// A key that went down.
+struct Pressed {
+    key: Key,
+    /// Where it lies, named as on a US keyboard.
+    physical: Option<Key>,
+    modifiers: Modifiers,
+    repeat: bool,
+}
+
+fn pressed(ctx: &Context) -> Vec<Pressed> {
+    let ctrl = |key| Pressed {
+        key,
+        physical: None,
+        modifiers: Modifiers::CTRL,
+        repeat: false,
+    };
     let event = |e: &egui::Event| match e {
         egui::Event::Key {
             key,
+            physical_key,
             pressed: true,
             repeat,
             modifiers,
-            ..
-        } => Some((*key, *modifiers, *repeat)),
+        } => Some(Pressed {
+            key: *key,
+            physical: *physical_key,
+            modifiers: *modifiers,
+            repeat: *repeat,
+        }),
         // Window systems turn these chords into events of their own.
-        egui::Event::Copy => Some((Key::C, Modifiers::CTRL, false)),
-        egui::Event::Cut => Some((Key::X, Modifiers::CTRL, false)),
-        egui::Event::Paste(_) => Some((Key::V, Modifiers::CTRL, false)),
+        egui::Event::Copy => Some(ctrl(Key::C)),
+        egui::Event::Cut => Some(ctrl(Key::X)),
+        egui::Event::Paste(_) => Some(ctrl(Key::V)),
         _ => None,
     };
     ctx.input(|i| i.events.iter().filter_map(event).collect())
@@ -150,6 +178,25 @@ mod tests {
             of(Key::Z, Modifiers::SHIFT, &mut state, false),
             [Command::Turn(15.0)]
         );
+    }
+
+    /// On a US keyboard Shift+backslash arrives as `|`.
+    #[test]
+    fn what_shift_makes_another_key_of_still_counts() {
+        let ctx = Context::default();
+        let (mut out, keymap, mut state) = (Vec::new(), Keymap::default(), UiState::default());
+        let input = egui::RawInput {
+            events: vec![egui::Event::Key {
+                key: Key::Pipe,
+                physical_key: Some(Key::Backslash),
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::SHIFT,
+            }],
+            ..Default::default()
+        };
+        let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, &mut state, false, &mut out));
+        assert_eq!(out, [Command::CycleCompare]);
     }
 
     #[test]

@@ -39,6 +39,7 @@ mod pipeline;
 mod pointer;
 mod recovering;
 pub mod recovery;
+pub mod priority;
 pub mod roads;
 pub mod sensing;
 pub mod settings;
@@ -67,6 +68,7 @@ use crate::scene::Scene;
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
 /// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
 pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
+    priority::workers_give_way();
     let config = AppConfig {
         scene,
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),

@@ -11,9 +11,9 @@ use super::Common;
 /// Prints the report: as JSON if asked, else the given text.
 pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
     if common.json {
-        println!("{json}");
+        say(&json.to_string());
     } else {
-        println!("{}", text());
+        say(&text());
     }
 }
 
@@ -92,4 +92,9 @@ pub fn peak_rss_mb() -> Option<f64> {
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
     let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some((kb / 102.4).round() / 10.0)
+}
+
+/// A line on stdout. Nobody is left to be told if its reader has closed it (`| head`).
+fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
 }

@@ -18,7 +18,9 @@ const MARGIN_M: f64 = 1.6;
 const MIN_SIZE_M: f64 = 0.2;
 /// How far from a face the pointer takes hold of it, points.
 const REACH: f32 = 7.0;
-/// The ground of labels lies this far below the physical one, on which boxes stand, m: voxels are shown lifted by it.
+/// The ground of labels lies this far below the physical one, on which boxes stand, m: it is shown lifted by that.
+/// Objects reach down to it in labels, but their tops are where they are: what of them is below the physical ground is
+/// shown faintly.
 const LIFT_M: f64 = -GROUND_TOP_M;
 
 /// A view: its name, and the box axes (0 along the heading, 1 left, 2 up) that run right and up on the screen.
@@ -125,11 +127,9 @@ impl BoxViewsPane {
         let toward = if depth_axis == 2 { 1.0 } else { -1.0 };
         let mut seen: Vec<(f64, Pos2, Color32)> = voxels(scene, &frame, reach)
             .map(|(local, class)| {
-                (
-                    local[depth_axis] * toward,
-                    to_screen(local),
-                    theme::class_color(class),
-                )
+                let below = !class.is_ground() && local.z < -frame.center_m.z;
+                let color = theme::class_color(class).gamma_multiply(if below { 0.3 } else { 1.0 });
+                (local[depth_axis] * toward, to_screen(local), color)
             })
             .collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -146,10 +146,12 @@ impl BoxViewsPane {
         }
         let physical = sweep.is_some_and(|s| s.physical);
         for point in sweep.map_or(&[][..], |s| &s.points) {
-            // The exact sweep hits voxels where labels have them; the learned one knows the physical ground.
-            let lift = DVec3::Z * if physical { 0.0 } else { LIFT_M };
+            // The exact sweep meets the ground where labels have it; the learned one knows the physical ground.
+            let lifted = !physical && point.class.is_ground();
+            let lift = DVec3::Z * if lifted { LIFT_M } else { 0.0 };
             let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)) + lift);
             if local.abs().cmple(reach).all() {
+                painter.circle_filled(to_screen(local), 2.0, Color32::from_black_alpha(150));
                 painter.circle_filled(to_screen(local), 1.3, Color32::WHITE);
             }
         }
@@ -278,7 +280,7 @@ fn face_at(outline: Rect, p: Pos2, view: &View) -> Option<(usize, f64)> {
     }
 }
 
-/// Occupied voxels around a box, lifted to the physical ground: centre in box coordinates, class.
+/// Occupied voxels around a box, the ground lifted to the physical one: centre in box coordinates, class.
 fn voxels<'a>(
     scene: &'a Scene,
     b: &SceneBox,
@@ -301,7 +303,8 @@ fn voxels<'a>(
         .filter_map(move |(x, y, z)| {
             let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
             let center = |i: usize, axis: usize| GridSpec::MIN_M[axis] + (i as f64 + 0.5) * GridSpec::VOXEL_M;
-            let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2) + LIFT_M));
+            let lift = if class.is_ground() { LIFT_M } else { 0.0 };
+            let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2) + lift));
             local.abs().cmple(reach).all().then_some((local, class))
         })
 }
@@ -322,7 +325,7 @@ mod tests {
     use super::*;
     use crate::scene::BoxId;
 
-    /// The voxels of a car drawn by the draft fill its box: they begin at its underside and end at its roof.
+    /// The voxels of a car end at its roof; the ground around it ends where it stands.
     #[test]
     fn voxels_lie_in_their_box() {
         use crate::scene::{BevLayout, Frame, draft::draft};
@@ -338,16 +341,14 @@ mod tests {
         let occupancy = draft(&layout, [b].iter());
         let frame = Frame::new(layout, [(b.id, b)].into(), occupancy);
         let scene = Scene::single("test", frame, std::sync::Arc::default(), 0);
-        let heights: Vec<f64> = voxels(&scene, &b, b.size_m)
-            .filter(|(_, class)| *class == Class::Car)
-            .map(|(local, _)| local.z)
-            .collect();
-        assert!(!heights.is_empty());
-        let half = GridSpec::VOXEL_M / 2.0;
-        let low = heights.iter().copied().fold(f64::MAX, f64::min) - half;
-        let high = heights.iter().copied().fold(f64::MIN, f64::max) + half;
-        assert!((low + 0.85).abs() <= GridSpec::VOXEL_M, "{low}");
-        assert!((high - 0.85).abs() <= GridSpec::VOXEL_M, "{high}");
+        let top = |wanted: fn(Class) -> bool| {
+            let heights = voxels(&scene, &b, b.size_m).filter(|(_, class)| wanted(*class));
+            heights.map(|(local, _)| local.z).fold(f64::MIN, f64::max) + GridSpec::VOXEL_M / 2.0
+        };
+        let roof = top(|class| class == Class::Car);
+        assert!((roof - 0.85).abs() <= GridSpec::VOXEL_M, "{roof}");
+        let ground = top(Class::is_ground);
+        assert!((ground + 0.85).abs() < 1e-9, "{ground}");
     }
 
     #[test]

@@ -131,7 +131,7 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
         let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
         icons::swatch(ui, rect.center(), 14.0, theme::class_color(class));
         let combo = egui::ComboBox::from_id_salt("class")
-            .width(118.0)
+            .width((ui.available_width() - 100.0).clamp(48.0, 118.0))
             .selected_text(theme::sentence(&class.label()));
         combo.show_ui(ui, |ui| {
             for other in Class::OBJECTS {

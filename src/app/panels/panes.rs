@@ -10,15 +10,12 @@ use crate::viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 
 /// Of the bird's-eye view.
 pub fn bev_controls(ui: &mut Ui, state: &mut UiState) {
-    icons::segments(
-        ui,
-        &mut state.underlay,
-        &[
-            (Underlay::Layout, "Layout", "map layers"),
-            (Underlay::Occupancy, "Occupancy", "voxels from above"),
-            (Underlay::Both, "Both", "layers over voxels"),
-        ],
-    );
+    let choices = [
+        (Underlay::Layout, "Layout", "map layers"),
+        (Underlay::Occupancy, "Occupancy", "voxels from above"),
+        (Underlay::Both, "Both", "layers over voxels"),
+    ];
+    icons::choice(ui, &mut state.underlay, &choices, "Bird's-eye view shows");
 }
 
 /// Of the 3D view.

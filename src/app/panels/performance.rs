@@ -17,7 +17,7 @@ pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {
         .collapsible(false)
         .resizable(false)
         .pivot(Align2::RIGHT_TOP)
-        .default_pos(over.right_top() + vec2(-12.0, 42.0))
+        .default_pos(over.right_top() + vec2(-10.0, 10.0))
         .show(ui.ctx(), |ui| {
             ui.set_width(300.0);
             bars(ui, perf);

@@ -96,7 +96,7 @@ pub fn versions_ui(
 
 /// What the header of the list offers.
 pub fn versions_controls(ui: &mut Ui, state: &mut UiState) {
-    icons::segments(ui, &mut state.compare, &CompareMode::ALL);
+    icons::choice(ui, &mut state.compare, &CompareMode::ALL, "Compare");
 }
 
 fn draw_star(ui: &Ui, center: egui::Pos2, color: Color32, filled: bool) {
