@@ -30,6 +30,7 @@ pub mod panels;
 pub mod picture;
 mod pipeline;
 mod pointer;
+pub mod prompting;
 mod recovering;
 pub mod recovery;
 pub mod roads;

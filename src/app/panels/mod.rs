@@ -13,6 +13,7 @@ pub mod objects;
 pub mod palette;
 pub mod panes;
 pub mod prompt;
+pub mod prompt_plan;
 pub mod recovery;
 pub mod sensors;
 pub mod settings;
