@@ -108,3 +108,54 @@ fn what_cannot_be_done_is_said_in_one_line() {
         assert!(error.contains(needle), "{args:?}: {needle:?} is not in {error}");
     }
 }
+
+#[test]
+fn placers_memory_and_kept_parts() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let (a, b, c) = (path("a.loom"), path("b.loom"), path("c.loom"));
+    let text = "two parked cars and a bus ahead, no people";
+    let made = sceneloom(&["prompt", text, "--placer", "diffusion", "--memory", "--json", "-o", &a]);
+    assert_eq!(
+        made.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+    let made = report(&made);
+    assert_eq!(made["placer"], "diffusion");
+    assert_eq!(made["classes"]["car"], 2, "{made}");
+    assert!(made["classes"]["pedestrian"].is_null(), "{made}");
+    assert!(made["memory"]["scenes"].as_array().is_some_and(|s| !s.is_empty()));
+    assert!(made["diffusion"]["report"]["steps"].as_u64() > Some(0), "{made}");
+    // A new scene on the road of that one, and one around its objects.
+    let kept = sceneloom(&["prompt", "a cyclist ahead", "--base", &a, "--keep", "road", "--json", "-o", &b]);
+    assert_eq!(report(&kept)["boxes"], 1);
+    let road = sceneloom(&["prompt", "a straight road", "--base", &a, "--keep", "objects", "--json", "-o", &c]);
+    assert_eq!(report(&road)["boxes"], made["boxes"], "{}", report(&road));
+    let refused = sceneloom(&["prompt", "a car", "--keep", "road", "-o", &b]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
+fn odd_prompts_get_one_clear_answer() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let out = dir.path().join("x.loom").display().to_string();
+    let long = "two cars and a bus ahead, ".repeat(400);
+    for text in [
+        "🦄🦄🦄",
+        "zwei Autos und ein Fahrrad",
+        "no cars and three cars",
+        "a bus behind itself",
+        "999999999 cones",
+        "a car 1e308 m ahead",
+        "the the the of of",
+        long.as_str(),
+    ] {
+        let output = sceneloom(&["prompt", text, "--json", "-o", &out]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(output.status.code(), Some(0..=2)), "{text:.40}: {error}");
+        assert!(error.trim_end().lines().count() <= 1, "{text:.40}: {error}");
+        assert!(!error.contains("panicked"), "{text:.40}: {error}");
+    }
+}

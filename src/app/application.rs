@@ -100,7 +100,7 @@ impl Pipeline for AnyPipeline {
 pub(super) enum Next {
     New,
     NewFrom(&'static str),
-    FromPrompt(String, u64),
+    FromPrompt(Box<super::prompting::Ask>),
     AskOpen,
     Open(PathBuf),
     Quit,

@@ -152,7 +152,7 @@ pub enum Command {
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
     /// Starts from what words describe, drawn from a seed.
-    NewFromPrompt(String, u64),
+    NewFromPrompt(Box<super::prompting::Ask>),
     /// Goes to the field of the prompt.
     FocusPrompt,
     /// Starts from a ready-made road.

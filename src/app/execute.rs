@@ -165,7 +165,7 @@ impl SceneloomApp {
             Command::TogglePalette => self.palette.toggle(),
             Command::ToggleSettings => self.state.settings_open = !self.state.settings_open,
             Command::ToggleStart => self.state.start_open = !self.state.start_open,
-            Command::NewFromPrompt(prompt, seed) => self.guarded(Next::FromPrompt(prompt, seed), ctx),
+            Command::NewFromPrompt(ask) => self.guarded(Next::FromPrompt(ask), ctx),
             Command::FocusPrompt => {
                 self.dock.open(Pane::Prompt);
                 self.prompt.focus();
@@ -333,11 +333,12 @@ impl SceneloomApp {
                 let make = self.io.2.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());
             }
-            Next::FromPrompt(prompt, seed) => {
+            Next::FromPrompt(ask) => {
+                let told = self.prompt.told();
                 let make = move || {
-                    let reading = super::text::read(&prompt)?;
-                    let mut made = super::text::make(&reading.description, seed);
-                    made.scene.name = reading
+                    let mut made = super::text::made(ask.lay_out(), ask.seed);
+                    told.tell(&made.laid);
+                    made.scene.name = ask
                         .description
                         .summary
                         .chars()

@@ -37,6 +37,7 @@ pub mod paint;
 pub mod perf;
 mod pipeline;
 mod pointer;
+pub mod prompting;
 mod recovering;
 pub mod recovery;
 pub mod priority;

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use anyhow::bail;
 
+use super::prompting::{How, Laid, lay_out};
 use crate::editor::Edit;
 use crate::generation::text::description::{Description, Reading};
 use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
-use crate::generation::text::place::{Placement, place_with};
-use crate::generation::text::road::{self, Chosen};
-use crate::generation::text::to_graph::{Graphed, to_graph};
 use crate::generation::text::{self};
 use crate::generation::world::World;
 use crate::generation::world::voxelize::{Vertical, complete};
@@ -19,12 +17,8 @@ use crate::scene::{Frame, Scene, SensorRig};
 pub struct Made {
     /// The scene, its occupancy drafted.
     pub scene: Scene,
-    /// Nodes and relations, and which belong to which object.
-    pub graphed: Graphed,
-    /// The road.
-    pub road: Chosen,
-    /// Where everything went.
-    pub placement: Placement,
+    /// Graph, road, places, and how they came about.
+    pub laid: Laid,
 }
 
 /// Reads a prompt; an error in one line if there is nothing in it that could become a scene.
@@ -54,22 +48,19 @@ pub fn read(prompt: &str) -> anyhow::Result<Reading> {
 
 /// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
 /// `sceneloom new` makes it.
-pub fn make(description: &Description, seed: u64) -> Made {
-    let graphed = to_graph(description, seed);
-    let road = road::choose(description, &graphed.graph, seed);
-    let placement = place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &[]);
-    let boxes = placement.boxes.iter().map(|b| (b.id, *b)).collect();
-    let world = World::new(road.layout.clone(), boxes, seed);
+pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Made {
+    made(lay_out(prompt, description, seed, how), seed)
+}
+
+/// A scene of a layout from words.
+pub fn made(laid: Laid, seed: u64) -> Made {
+    let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
+    let world = World::new(laid.road.layout.clone(), boxes, seed);
     let occupancy = complete(&world, Vertical::Occ3d);
     let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
     let mut scene = Scene::single("prompt", frame, Arc::new(SensorRig::default()), seed);
-    scene.prompt = description.style().into();
-    Made {
-        scene,
-        graphed,
-        road,
-        placement,
-    }
+    scene.prompt = laid.description.style().into();
+    Made { scene, laid }
 }
 
 /// Reads words as edits of a scene; see [`read_edit`](crate::generation::text::edit::read_edit).
@@ -118,7 +109,8 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
 }
 
 /// What was left out or could not be met, in words, one line each.
-pub fn shortfalls(description: &Description, made: &Made) -> Vec<String> {
+pub fn shortfalls(made: &Laid) -> Vec<String> {
+    let description = &made.description;
     let mut out = Vec::new();
     for (o, nodes) in description.foreground.iter().zip(&made.graphed.nodes) {
         let left: Vec<&String> = made

@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::new::class_counts;
 use super::{Common, Outcome, Stop, output};
+use crate::app::prompting::{How, Keep, Placer};
 use crate::app::{enrich, open, text};
 use crate::editor::Document;
 use crate::formats::project;
@@ -26,6 +27,21 @@ pub struct Prompt {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
+    /// Who places the objects.
+    #[arg(long, value_enum, default_value_t)]
+    placer: Placer,
+    /// Fill in what the prompt leaves open from remembered scenes.
+    #[arg(long, overrides_with = "no_memory")]
+    memory: bool,
+    /// Fill in nothing (the default).
+    #[arg(long)]
+    no_memory: bool,
+    /// Folder of your own .loom scenes that are remembered too.
+    #[arg(long, value_name = "DIR", requires = "memory")]
+    memory_scenes: Option<PathBuf>,
+    /// With --base: make a new scene that keeps the road of it, or its objects, instead of editing it.
+    #[arg(long, value_name = "WHAT", value_parser = ["road", "objects"], requires = "base")]
+    keep: Option<String>,
     /// Language model that fills in what the prompt leaves open: an OpenAI-compatible server, http:// only.
     #[arg(long, value_name = "URL", requires = "model")]
     endpoint: Option<String>,
@@ -42,8 +58,8 @@ pub struct Prompt {
 impl Prompt {
     pub(super) fn run(self) -> Outcome {
         match self.base.clone() {
-            Some(base) => self.edit(&base),
-            None => self.make(),
+            Some(base) if self.keep.is_none() => self.edit(&base),
+            _ => self.make(),
         }
     }
 
@@ -54,18 +70,30 @@ impl Prompt {
             let notes = enrich::enrich(&mut reading.description, &self.text, endpoint, model, timeout)?;
             reading.notes.extend(notes);
         }
-        let made = text::make(&reading.description, self.seed);
-        let shortfalls = text::shortfalls(&reading.description, &made);
+        let how = How {
+            placer: self.placer,
+            memory: self.memory && !self.no_memory,
+            own_scenes: self.memory_scenes.clone(),
+            weights: self.common.weights.clone(),
+            keep: self.kept()?,
+            ..How::default()
+        };
+        let made = text::make(&self.text, &reading.description, self.seed, &how);
+        let shortfalls = text::shortfalls(&made.laid);
         project::save(&self.output, &made.scene)?;
         let frame = made.scene.frame();
         let report = json!({
-            "description": reading.description,
-            "graph": made.graphed.graph,
+            "description": made.laid.description,
+            "graph": made.laid.graphed.graph,
+            "placer": self.placer,
+            "memory": made.laid.remembered,
+            "diffusion": made.laid.diffused,
             "phrases": reading.phrases,
             "not_understood": reading.not_understood,
-            "notes": reading.notes,
+            "notes": reading.notes.iter().chain(&made.laid.notes).collect::<Vec<_>>(),
             "shortfalls": shortfalls,
-            "template": made.road.template,
+            "template": made.laid.road.template,
+            "layout_s": made.laid.wall_s,
             "boxes": frame.boxes.len(),
             "occupied_voxels": frame.occupancy.count_set(),
             "classes": class_counts(&made.scene),
@@ -83,7 +111,17 @@ impl Prompt {
                 Some(why) => format!("not understood: {:?} ({why})", u.text),
                 None => format!("not understood: {:?}", u.text),
             }));
-            lines.extend(reading.notes.iter().map(|n| format!("note: {n}")));
+            if let Some(found) = &made.laid.remembered {
+                let best = found.scenes.first().map_or("", |s| s.0.as_str());
+                lines.push(format!("from memory: {} (nearest: {best})", found.filled.join(", ")));
+            }
+            if let Some(d) = &made.laid.diffused {
+                lines.push(format!(
+                    "by diffusion in {:.2} s; the projection moved boxes by {:.1} m on average, {:.1} m at most; {} placed by rules",
+                    d.report.diffusion_s, d.mean_move_m, d.most_move_m, d.by_rules
+                ));
+            }
+            lines.extend(reading.notes.iter().chain(&made.laid.notes).map(|n| format!("note: {n}")));
             lines.extend(shortfalls.iter().map(|n| format!("short: {n}")));
             lines.join("\n")
         });
@@ -91,6 +129,19 @@ impl Prompt {
             return Ok(());
         }
         Err(Stop::Short(shortfalls.join("; ")))
+    }
+
+    fn kept(&self) -> anyhow::Result<Keep> {
+        let (Some(keep), Some(base)) = (&self.keep, &self.base) else {
+            return Ok(Keep::Nothing);
+        };
+        let scene = open::scene(base)?;
+        let frame = scene.frame();
+        Ok(if keep == "road" {
+            Keep::Road(std::sync::Arc::new(frame.layout.clone()))
+        } else {
+            Keep::Objects(std::sync::Arc::new(frame.boxes.clone()))
+        })
     }
 
     fn edit(self, base: &Path) -> Outcome {

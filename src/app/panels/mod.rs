@@ -15,6 +15,7 @@ pub mod palette;
 pub mod performance;
 pub mod panes;
 pub mod prompt;
+pub mod prompt_plan;
 pub mod recovery;
 pub mod sensors;
 pub mod settings;

@@ -3,11 +3,12 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Ui, WidgetInfo, vec2};
 
+use super::prompt_plan::{Plan, Told};
 use crate::app::command::Command;
 use crate::app::icons::section;
 use crate::app::text;
 use crate::app::theme;
-use crate::generation::text::description::{Phrase, Reading, Unread};
+use crate::generation::text::description::{Became, Phrase, Reading, TimeOfDay, Unread, Weather};
 use crate::generation::text::edit::{EditReading, Question};
 use crate::scene::Scene;
 
@@ -33,12 +34,18 @@ pub struct PromptPane {
     questions: Vec<Question>,
     notes: Vec<String>,
     wants_focus: bool,
+    plan: Plan,
 }
 
 impl PromptPane {
     /// The next frame gives the field the focus.
     pub fn focus(&mut self) {
         self.wants_focus = true;
+    }
+
+    /// Where the thread that makes a scene tells how it came about.
+    pub fn told(&self) -> Told {
+        self.plan.told()
     }
 
     /// Draws the pane.
@@ -48,9 +55,12 @@ impl PromptPane {
             .auto_shrink(false)
             .show(ui, |ui| {
                 self.field(ui, scene, commands);
-                self.chips(ui);
+                self.chips(ui, scene, commands);
                 self.answers(ui, scene, commands);
+                self.completions(ui);
+                self.beyond_words(ui, scene, commands);
                 if self.prompt.is_empty() {
+                    self.recent(ui);
                     self.examples(ui);
                 }
             });
@@ -123,9 +133,83 @@ impl PromptPane {
             self.change(scene, commands);
         } else if make {
             self.remember();
-            match text::read(&self.prompt) {
-                Ok(_) => commands.push(Command::NewFromPrompt(self.prompt.clone(), self.seed)),
-                Err(error) => self.notes = vec![format!("{error:#}")],
+            self.make(self.seed, scene, commands);
+        }
+        self.plan.switches(ui);
+    }
+
+    fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
+        match text::read(&self.prompt) {
+            Ok(reading) => {
+                let ask = self.plan.ask(&self.prompt, &reading.description, seed, scene);
+                self.plan.makes(&self.prompt, seed);
+                commands.push(Command::NewFromPrompt(Box::new(ask)));
+            }
+            Err(error) => self.notes = vec![format!("{error:#}")],
+        }
+    }
+
+    /// Variants, how the last scene came about, and the scene graph.
+    fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let Some((_, Ok(reading))) = &self.read else {
+            return;
+        };
+        if self.prompt.trim().is_empty() {
+            return;
+        }
+        let read = reading.description.clone();
+        let ask = self.plan.ask(&self.prompt, &read, self.seed, scene);
+        let chosen = self.plan.variants(ui, &ask);
+        self.plan.origin(ui);
+        let place = self.plan.graph(ui, &ask.description, self.seed, scene, commands);
+        if let Some(seed) = chosen {
+            self.seed = seed;
+        }
+        if chosen.is_some() || place {
+            self.remember();
+            self.make(self.seed, scene, commands);
+        }
+    }
+
+    /// Ends of the word that is being typed.
+    fn completions(&mut self, ui: &mut Ui) {
+        let Some(begun) = self.prompt.rsplit(' ').next().filter(|w| w.chars().count() > 2) else {
+            return;
+        };
+        let begun = begun.to_lowercase();
+        let mut found = completions(&begun);
+        found.truncate(4);
+        if found.is_empty() {
+            return;
+        }
+        ui.horizontal_wrapped(|ui| {
+            for word in found {
+                let text = egui::RichText::new(&word).small().color(theme::text_weak());
+                let button = ui.add(egui::Button::new(text).fill(theme::field()));
+                let label = format!("Complete with {word}");
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+                if button.clicked() {
+                    let keep = self.prompt.len() - self.prompt.rsplit(' ').next().map_or(0, str::len);
+                    self.prompt.truncate(keep);
+                    self.prompt.push_str(&word);
+                    self.prompt.push(' ');
+                    self.wants_focus = true;
+                }
+            }
+        });
+    }
+
+    fn recent(&mut self, ui: &mut Ui) {
+        if self.history.is_empty() {
+            return;
+        }
+        section(ui, "Typed before");
+        for past in self.history.clone().iter().rev().take(5) {
+            let text = egui::RichText::new(past).small().color(theme::text());
+            let button = egui::Button::new(text).wrap().fill(theme::field());
+            if ui.add(button).on_hover_text("Alt+Up and Alt+Down too").clicked() {
+                self.prompt.clone_from(past);
+                self.wants_focus = true;
             }
         }
     }
@@ -172,8 +256,8 @@ impl PromptPane {
         }
     }
 
-    /// Each phrase with what it became; a click takes it out of the prompt.
-    fn chips(&mut self, ui: &mut Ui) {
+    /// Each phrase with what it became: to be changed, locked, re-rolled or taken out.
+    fn chips(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         if self.prompt.trim().is_empty() {
             return;
         }
@@ -184,11 +268,20 @@ impl PromptPane {
         let Some((_, Ok(reading))) = &self.read else {
             return;
         };
-        let mut gone = None;
+        let (mut gone, mut other) = (None, None);
+        let read = &reading.description;
+        self.plan.description(&self.prompt, read);
+        let plan = &mut self.plan;
         ui.add_space(4.0);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             for phrase in &reading.phrases {
+                match phrase.became {
+                    Became::Object(i) => plan.object_menu(ui, i, &phrase.text, scene, read, commands),
+                    Became::Time => style_menu(ui, phrase, TimeOfDay::ALL.iter().map(|t| t.name()), &mut other),
+                    Became::Weather => style_menu(ui, phrase, Weather::ALL.iter().map(|w| w.name()), &mut other),
+                    _ => {}
+                }
                 if chip(ui, phrase) {
                     gone = Some(phrase.clone());
                 }
@@ -199,6 +292,9 @@ impl PromptPane {
         }
         for note in &reading.notes {
             ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
+        }
+        if let Some((phrase, word)) = other {
+            self.prompt = self.prompt.replacen(&phrase.text, word, 1);
         }
         if let Some(phrase) = gone {
             self.prompt = without(&self.prompt, &phrase);
@@ -249,8 +345,41 @@ impl PromptPane {
     }
 }
 
+/// A chip whose words may be others of their kind.
+fn style_menu(
+    ui: &mut Ui,
+    phrase: &Phrase,
+    names: impl Iterator<Item = &'static str>,
+    other: &mut Option<(Phrase, &'static str)>,
+) {
+    let menu = ui.menu_button(egui::RichText::new(&phrase.text).color(theme::text_strong()), |ui| {
+        for name in names {
+            if ui.button(name).clicked() {
+                *other = Some((phrase.clone(), name));
+                ui.close();
+            }
+        }
+    });
+    let label = format!("Change {}", phrase.text);
+    menu.response
+        .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+}
+
+/// Words of the lexicon's plain kinds that begin so.
+fn completions(begun: &str) -> Vec<String> {
+    const WORDS: &str = "ahead|approaching|barriers|behind me|bicycle|blocking my lane|bus|buses|busy|cars|clear|cones|        construction vehicle|crossing the road|crossroads|cyclist|dawn|delivery van|dusk|excavator|facing me|foggy|following me|        heavy rain|highway|in front of me|in my lane|in the oncoming lane|intersection|motorcycle|moving|nearest|next to|night|        oncoming|on the left|on the right|on the sidewalk|parked|parked cars|parking lot|pedestrians|people|rain|remove|replace|        residential street|roadworks|roundabout|snow|straight road|suburban street|taxi|t-junction|traffic cones|trailer|truck|        turn|vans|waiting at the crossing|without";
+    WORDS
+        .split('|')
+        .map(str::trim)
+        .filter(|w| w.starts_with(begun) && *w != begun)
+        .map(str::to_owned)
+        .collect()
+}
+
 fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
-    let text = egui::RichText::new(format!("{}  ×", phrase.text)).color(theme::text_strong());
+    let has_menu = matches!(phrase.became, Became::Object(_) | Became::Time | Became::Weather);
+    let text = if has_menu { "×".to_string() } else { format!("{}  ×", phrase.text) };
+    let text = egui::RichText::new(text).color(theme::text_strong());
     let button = egui::Button::new(text)
         .corner_radius(10)
         .fill(theme::field_active());

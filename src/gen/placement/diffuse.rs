@@ -228,10 +228,18 @@ pub fn lay_out(
     graph: &SceneGraph,
     seed: u64,
 ) -> Result<(BevLayout, Vec<SceneBox>, PlacementReport), PlacementError> {
+    lay_out_with(&*LayoutNet::bundled()?, graph, seed)
+}
+
+/// The same with a network.
+pub fn lay_out_with(
+    net: &LayoutNet,
+    graph: &SceneGraph,
+    seed: u64,
+) -> Result<(BevLayout, Vec<SceneBox>, PlacementReport), PlacementError> {
     if let Some(problem) = graph.problem() {
         return Err(PlacementError::Graph(problem));
     }
-    let net = LayoutNet::bundled()?;
     let mut open = graph.clone();
     for (i, node) in open.nodes.iter_mut().enumerate() {
         if let NodeKind::Lane { role, polyline } = &mut node.kind
@@ -244,7 +252,7 @@ pub fn lay_out(
         }
     }
     let start = std::time::Instant::now();
-    let values = sample(&net, &open, None, STEPS, seed)?;
+    let values = sample(net, &open, None, STEPS, seed)?;
     let mut lanes = Vec::new();
     for (node, values) in open.nodes.iter().zip(values.chunks_exact(VALUES)) {
         match (&node.kind, &node.locked) {
@@ -273,7 +281,7 @@ pub fn lay_out(
             node.locked = None;
         }
     }
-    let (boxes, mut report) = place_with(&net, &placed, &layout, STEPS, seed)?;
+    let (boxes, mut report) = place_with(net, &placed, &layout, STEPS, seed)?;
     report.diffusion_s += road_s;
     report.steps += STEPS;
     Ok((layout, boxes, report))

@@ -68,6 +68,21 @@ pub fn place_with(
     best.unwrap_or_default()
 }
 
+/// Nodes of which a statement does not hold where their boxes stand.
+pub fn broken(graph: &SceneGraph, layout: &BevLayout, boxes: &BTreeMap<u32, SceneBox>) -> Vec<u32> {
+    let map = LaneMap::new(layout);
+    let placer = Placer {
+        graph,
+        map: &map,
+        draw: Draw::new(0, "text place"),
+        sizes_m: &BTreeMap::new(),
+        placed: boxes.clone(),
+        others: &[],
+    };
+    let wrong = |e: &&Edge| boxes.get(&e.from).is_some_and(|b| !placer.edge_holds(e, b));
+    graph.edges.iter().filter(wrong).map(|e| e.from).collect()
+}
+
 struct Placer<'a> {
     graph: &'a SceneGraph,
     map: &'a LaneMap<'a>,

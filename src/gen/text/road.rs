@@ -87,6 +87,63 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
     )
 }
 
+/// What a layout lacks for a description, in words.
+pub fn lacks(d: &Description, graph: &SceneGraph, layout: &BevLayout) -> Vec<String> {
+    let junction = graph.nodes.iter().any(|n| n.kind == NodeKind::Junction);
+    judge(d, &roles(graph), junction, false, graph.nodes.len(), layout).0
+}
+
+/// How many of given vehicles do not stand on the road of a layout, or drive across their lane.
+pub fn misplaced(layout: &BevLayout, boxes: &[crate::scene::SceneBox]) -> usize {
+    let map = LaneMap::new(layout);
+    let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+    let wrong = |b: &&crate::scene::SceneBox| {
+        let p = b.center_m.truncate();
+        let off = !b.footprint().iter().all(|c| map.has(road, *c));
+        let against = b.velocity_mps.length() > 0.5
+            && map.nearest(p).is_some_and(|l| l.dir.dot(b.heading()) < 0.9);
+        off || against
+    };
+    boxes
+        .iter()
+        .filter(|b| b.class.is_vehicle() || b.class == crate::scene::Class::Motorcycle)
+        .filter(wrong)
+        .count()
+}
+
+/// A road under given objects: of the templates (or the one that was asked for) the variation that misplaces the fewest.
+pub fn under(d: &Description, graph: &SceneGraph, boxes: &[crate::scene::SceneBox], seed: u64) -> Chosen {
+    let mut best: Option<(usize, Chosen)> = None;
+    let names: Vec<&'static str> = template::TEMPLATES
+        .iter()
+        .copied()
+        .filter(|t| d.road.kind.is_none_or(|k| k.name() == *t))
+        .collect();
+    'all: for k in 0..TRIES {
+        for name in &names {
+            let Some(layout) = template::layout(name, hash(seed ^ (k << 40)).wrapping_add(seed)) else {
+                continue;
+            };
+            let missing = lacks(d, graph, &layout);
+            let cost = misplaced(&layout, boxes) * 3 + missing.len() * 10;
+            if best.as_ref().is_none_or(|(c, _)| cost < *c) {
+                best = Some((
+                    cost,
+                    Chosen {
+                        template: name,
+                        layout,
+                        missing,
+                    },
+                ));
+                if cost == 0 {
+                    break 'all;
+                }
+            }
+        }
+    }
+    best.map_or_else(|| choose(d, graph, seed), |b| b.1)
+}
+
 /// What a layout lacks, in words, and how many softer wishes it leaves open.
 fn judge(
     d: &Description,

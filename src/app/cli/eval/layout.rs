@@ -10,25 +10,46 @@ use serde_json::{Value, json};
 use super::layout_check::Judge;
 use super::{Bar, Eval, TEST_SEED, with_interval};
 use crate::app::cli::progress::Progress;
+use crate::app::prompting::{How, Laid, lay_out};
 use crate::app::text;
 use crate::editor::Document;
 use crate::generation::metrics::stats::median;
 use crate::generation::text::edit::read_edit;
-use crate::generation::text::place::place_with;
-use crate::generation::text::{read, road, to_graph};
+use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
-/// The held-out prompts.
-const PROMPTS: &str = include_str!("../../../../tests/data/prompts.jsonl");
+/// The prompts, in three sets that were written one after another; the grammar was mended after each was judged once.
+const SETS: [(&str, &str); 3] = [
+    ("prompts.jsonl", include_str!("../../../../tests/data/prompts.jsonl")),
+    ("strangers.jsonl", include_str!("../../../../tests/data/strangers.jsonl")),
+    (
+        "strangers_2.jsonl",
+        include_str!("../../../../tests/data/strangers_2.jsonl"),
+    ),
+];
+
+fn cases_of(name: &str, text: &str) -> anyhow::Result<Vec<Case>> {
+    text.lines()
+        .filter(|l| !l.trim().is_empty())
+        .enumerate()
+        .map(|(i, l)| {
+            let case: Case = serde_json::from_str(l).with_context(|| format!("{name}, line {}", i + 1))?;
+            Ok(Case {
+                line: i as u64,
+                ..case
+            })
+        })
+        .collect()
+}
 
 /// One line of the file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Case {
-    text: String,
+pub(super) struct Case {
+    pub text: String,
     /// A prompt that makes the scene to edit; none: `text` makes a scene.
     #[serde(default)]
-    base: Option<String>,
+    pub base: Option<String>,
     /// Class (or `vehicle`) to number, or least and most.
     #[serde(default)]
     counts: BTreeMap<String, Number>,
@@ -43,6 +64,9 @@ struct Case {
     /// The edit must ask back with so many candidates.
     #[serde(default)]
     asks: Option<usize>,
+    /// Line in its file, from 0: seeds hang on it.
+    #[serde(skip)]
+    pub line: u64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -69,7 +93,7 @@ struct Relation {
 
 /// Shares of one group of cases.
 #[derive(Default)]
-struct Tally {
+pub(super) struct Tally {
     cases: usize,
     counts: Vec<f64>,
     relations: Vec<f64>,
@@ -110,27 +134,25 @@ fn mean(values: &[f64]) -> f64 {
     }
 }
 
-fn place(prompt: &str, seed: u64) -> (Scene, f64) {
+pub(super) fn place(prompt: &str, seed: u64, how: &How) -> (Scene, Laid) {
     let started = Instant::now();
     let reading = read(prompt);
-    let graphed = to_graph::to_graph(&reading.description, seed);
-    let road = road::choose(&reading.description, &graphed.graph, seed);
-    let placed = place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &[]);
-    let wall_s = started.elapsed().as_secs_f64();
-    let boxes = placed.boxes.iter().map(|b| (b.id, *b)).collect();
-    let frame = Frame::new(road.layout, boxes, crate::scene::VoxelGrid::new());
+    let mut laid = lay_out(prompt, &reading.description, seed, how);
+    laid.wall_s = started.elapsed().as_secs_f64();
+    let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
+    let frame = Frame::new(laid.road.layout.clone(), boxes, crate::scene::VoxelGrid::new());
     let mut scene = Scene::single(
-        road.template,
+        laid.road.template,
         frame,
         std::sync::Arc::new(SensorRig::default()),
         seed,
     );
-    scene.prompt = reading.description.style().into();
-    (scene, wall_s)
+    scene.prompt = laid.description.style().into();
+    (scene, laid)
 }
 
 impl Tally {
-    fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
+    pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
         self.cases += 1;
         self.wall_s.push(wall_s);
         let frame = scene.frame();
@@ -184,7 +206,7 @@ impl Tally {
         }
     }
 
-    fn report(&self) -> Value {
+    pub(super) fn report(&self) -> Value {
         json!({
             "cases": self.cases,
             "counts_exact": with_interval(&self.counts),
@@ -204,30 +226,29 @@ impl Tally {
 impl Eval {
     /// Prompts and text edits, judged by [`Judge`].
     pub(super) fn layout(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
-        let given = match &self.prompts {
+        let mut cases: Vec<Case> = Vec::new();
+        match &self.prompts {
             Some(path) => {
-                Some(std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?)
+                let text = std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?;
+                cases.extend(cases_of(&path.display().to_string(), &text)?);
             }
-            None => None,
-        };
-        let cases: Vec<Case> = given
-            .as_deref()
-            .unwrap_or(PROMPTS)
-            .lines()
-            .filter(|l| !l.trim().is_empty())
-            .enumerate()
-            .map(|(i, l)| serde_json::from_str(l).with_context(|| format!("prompts.jsonl, line {}", i + 1)))
-            .collect::<Result<_, _>>()?;
+            None => {
+                for (name, text) in SETS {
+                    cases.extend(cases_of(name, text)?);
+                }
+            }
+        }
+        let how = How::default();
         let (mut prompts, mut edits) = (Tally::default(), Tally::default());
         for (i, case) in cases.iter().enumerate() {
             progress.at("layout", i, cases.len());
-            let seed = TEST_SEED + i as u64;
+            let seed = TEST_SEED + case.line;
             let Some(base) = &case.base else {
-                let (scene, wall_s) = place(&case.text, seed);
-                prompts.add(case, &scene, wall_s);
+                let (scene, laid) = place(&case.text, seed, &how);
+                prompts.add(case, &scene, laid.wall_s);
                 continue;
             };
-            let (scene, _) = place(base, seed);
+            let (scene, _) = place(base, seed, &how);
             let started = Instant::now();
             let reading = read_edit(&case.text, &text::open_scene(&scene), seed);
             let wall_s = started.elapsed().as_secs_f64();
@@ -258,7 +279,8 @@ impl Eval {
             ("vehicles_on_drivable", both(|t| ratio(t.drivable)), 0.99),
             ("moving_headings", both(|t| ratio(t.headings)), 0.95),
         ];
-        let report = json!({ "prompts": cases.len(), "made": prompts.report(), "edited": edits.report() });
+        let placers = self.placers(&cases, progress);
+        let report = json!({ "prompts": cases.len(), "made": prompts.report(), "edited": edits.report(), "placers": placers });
         Ok((report, bars))
     }
 }

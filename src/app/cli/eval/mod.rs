@@ -6,6 +6,7 @@ mod fidelity;
 mod generation;
 mod layout;
 mod layout_check;
+mod layout_placers;
 mod lidar;
 mod splat;
 mod vae;
@@ -52,6 +53,9 @@ pub struct Eval {
     /// Other prompts to judge (layout), one JSON object a line as in `tests/data/prompts.jsonl`.
     #[arg(long, value_name = "FILE")]
     prompts: Option<PathBuf>,
+    /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    placer_prompts: usize,
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,

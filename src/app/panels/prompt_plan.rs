@@ -1,0 +1,654 @@
+//! What a prompt became, to be changed by hand before a scene is made of it or in the open one: chips that are locked,
+//! re-rolled, counted otherwise; the scene graph; variants side by side.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex};
+
+use egui::accesskit::Role;
+use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use crate::app::command::Command;
+use crate::app::icons::section;
+use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
+use crate::app::theme;
+use crate::editor::Edit;
+use crate::generation::text::description::{Count, Description};
+use crate::generation::text::to_graph::{Graphed, to_graph};
+use crate::scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
+use crate::scene::{BoxId, Class, PolylineKind, Scene, SceneBox};
+
+/// Variants that are shown side by side.
+const VARIANTS: u64 = 4;
+
+/// What the last scene from words was made with, told by the thread that made it.
+#[derive(Clone, Debug, Default)]
+pub struct Told(Arc<Mutex<Option<(Option<Remembered>, Option<Diffused>, Vec<String>)>>>);
+
+impl Told {
+    /// Tells how a layout came about.
+    pub fn tell(&self, laid: &Laid) {
+        let mut notes = laid.notes.clone();
+        notes.extend(crate::app::text::shortfalls(laid));
+        if let Ok(mut told) = self.0.lock() {
+            *told = Some((laid.remembered.clone(), laid.diffused.clone(), notes));
+        }
+    }
+
+    fn show(&self, ui: &mut Ui) {
+        let Ok(told) = self.0.lock() else {
+            return;
+        };
+        let Some((remembered, diffused, notes)) = &*told else {
+            return;
+        };
+        let weak = |ui: &mut Ui, text: String| {
+            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+        };
+        if let Some(found) = remembered {
+            let best = found.scenes.first().map_or("", |s| s.0.as_str());
+            let road = if found.road { ", its road" } else { "" };
+            weak(ui, format!("From memory{road}: {}", found.filled.join(", ")));
+            weak(ui, format!("Nearest remembered scene: {best}"));
+        }
+        if let Some(d) = diffused {
+            weak(
+                ui,
+                format!(
+                    "Diffusion took {:.2} s; the projection moved boxes by {:.1} m on average, {:.1} m at most; {} were placed by rules.",
+                    d.report.diffusion_s, d.mean_move_m, d.most_move_m, d.by_rules
+                ),
+            );
+        }
+        for note in notes {
+            ui.label(egui::RichText::new(note).small().color(theme::warn()));
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Stays {
+    #[default]
+    Nothing,
+    Road,
+    Objects,
+}
+
+struct Variants {
+    of: Ask,
+    coming: Receiver<(u64, Laid)>,
+    found: BTreeMap<u64, Laid>,
+}
+
+/// What is wanted of the words beyond the words.
+#[derive(Default)]
+pub struct Plan {
+    placer: Placer,
+    memory: bool,
+    stays: Stays,
+    prompt: String,
+    description: Option<Description>, // changed by hand
+    graphed: Option<Graphed>,         // edited by hand
+    locked: BTreeSet<usize>,          // objects of the description
+    made: Option<(String, u64)>,      // the words and the seed that the open scene was made of
+    rolls: u64,
+    variants: Option<Variants>,
+    told: Told,
+}
+
+impl Plan {
+    /// Where the thread that makes a scene tells how it came about.
+    pub fn told(&self) -> Told {
+        self.told.clone()
+    }
+
+    /// The description, as changed by hand for these words.
+    pub fn description(&mut self, prompt: &str, read: &Description) -> Description {
+        if self.prompt != prompt {
+            self.prompt = prompt.to_string();
+            self.description = None;
+            self.graphed = None;
+            self.locked.clear();
+            self.variants = None;
+        }
+        self.description.clone().unwrap_or_else(|| read.clone())
+    }
+
+    fn how(&self, scene: &Scene) -> How {
+        let frame = scene.frame();
+        How {
+            placer: self.placer,
+            memory: self.memory,
+            keep: match self.stays {
+                Stays::Nothing => Keep::Nothing,
+                Stays::Road => Keep::Road(Arc::new(frame.layout.clone())),
+                Stays::Objects => Keep::Objects(Arc::new(frame.boxes.clone())),
+            },
+            ..How::default()
+        }
+    }
+
+    /// What to make of these words. Locked objects keep their places and the road where the open scene was made of them.
+    pub fn ask(&mut self, prompt: &str, read: &Description, seed: u64, scene: &Scene) -> Ask {
+        let description = self.description(prompt, read);
+        let mut how = self.how(scene);
+        if let Some((of, made_seed)) = &self.made
+            && *of == prompt
+            && !self.locked.is_empty()
+        {
+            let nodes = to_graph(&description, *made_seed).nodes;
+            let boxes = &scene.frame().boxes;
+            how.locked = self
+                .locked
+                .iter()
+                .flat_map(|i| nodes.get(*i).into_iter().flatten())
+                .filter_map(|id| boxes.get(&BoxId(*id)).map(|b| (*id, *b)))
+                .collect();
+            if how.keep == Keep::Nothing {
+                how.keep = Keep::Road(Arc::new(scene.frame().layout.clone()));
+            }
+        }
+        Ask {
+            prompt: prompt.to_string(),
+            description,
+            graphed: self.graphed.clone(),
+            seed,
+            how,
+        }
+    }
+
+    /// Notes that a scene is made of these words.
+    pub fn makes(&mut self, prompt: &str, seed: u64) {
+        self.made = Some((prompt.to_string(), seed));
+    }
+
+    /// Placer, memory, and what of the open scene stays.
+    pub fn switches(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            let mut diffusion = self.placer == Placer::Diffusion;
+            let said = "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly";
+            if ui.checkbox(&mut diffusion, "Diffusion").on_hover_text(said).changed() {
+                self.placer = if diffusion { Placer::Diffusion } else { Placer::Rules };
+                self.variants = None;
+            }
+            let said = "What the words leave open comes from the nearest remembered scenes";
+            if ui.checkbox(&mut self.memory, "Memory").on_hover_text(said).changed() {
+                self.variants = None;
+            }
+            let name = |s: Stays| match s {
+                Stays::Nothing => "keep nothing",
+                Stays::Road => "keep the road",
+                Stays::Objects => "keep the objects",
+            };
+            let combo = egui::ComboBox::from_id_salt("what stays")
+                .selected_text(name(self.stays))
+                .show_ui(ui, |ui| {
+                    for s in [Stays::Nothing, Stays::Road, Stays::Objects] {
+                        if ui.selectable_value(&mut self.stays, s, name(s)).changed() {
+                            self.variants = None;
+                        }
+                    }
+                });
+            combo
+                .response
+                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "What of this scene a new one keeps"));
+        });
+    }
+
+    /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene.
+    pub fn object_menu(
+        &mut self,
+        ui: &mut Ui,
+        index: usize,
+        text: &str,
+        scene: &Scene,
+        read: &Description,
+        commands: &mut Vec<Command>,
+    ) {
+        let prompt = self.prompt.clone();
+        let mut description = self.description(&prompt, read);
+        let Some(count) = description.foreground.get(index).map(|o| o.count.n) else {
+            return;
+        };
+        let locked = self.locked.contains(&index);
+        let changed = read.foreground.get(index).is_some_and(|o| o.count.n != count);
+        let mut shown = text.to_string();
+        if changed {
+            shown = format!("{shown}: {count}");
+        }
+        if locked {
+            shown = format!("{shown} (locked)");
+        }
+        let here = self.made.as_ref().is_some_and(|(of, _)| *of == prompt);
+        let shown = egui::RichText::new(shown).color(theme::text_strong());
+        let menu = ui.menu_button(shown, |ui| {
+            ui.horizontal(|ui| {
+                ui.label("Number");
+                let mut n = count;
+                let drag = ui.add(egui::DragValue::new(&mut n).range(0..=60));
+                drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, format!("Number of {text}")));
+                if n != count {
+                    description.foreground[index].count = Count::exactly(n);
+                    description.summarise();
+                    self.description = Some(description.clone());
+                    self.graphed = None;
+                    self.variants = None;
+                }
+            });
+            let mut lock = locked;
+            let said = "A re-roll or another seed leaves these where they are";
+            if ui
+                .add_enabled(here, egui::Checkbox::new(&mut lock, "Lock"))
+                .on_hover_text(said)
+                .changed()
+            {
+                if lock {
+                    self.locked.insert(index);
+                } else {
+                    self.locked.remove(&index);
+                }
+            }
+            let again = ui
+                .add_enabled(here && !locked, egui::Button::new("Re-roll these"))
+                .on_hover_text("Other places for these; all else stays");
+            if again.clicked() {
+                commands.extend(self.roll(&[index], scene, read));
+                ui.close();
+            }
+            if !here {
+                ui.label(egui::RichText::new("after New scene").small().color(theme::text_weak()));
+            }
+        });
+        let label = format!("Change {text}");
+        menu.response
+            .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    }
+
+    /// Other places for some objects of the open scene, as one undo step.
+    fn roll(&mut self, objects: &[usize], scene: &Scene, read: &Description) -> Option<Command> {
+        let (prompt, made_seed) = self.made.clone()?;
+        let description = self.description(&prompt, read);
+        let graphed = self
+            .graphed
+            .clone()
+            .unwrap_or_else(|| to_graph(&description, made_seed));
+        let open: BTreeSet<u32> = objects
+            .iter()
+            .flat_map(|i| graphed.nodes.get(*i).into_iter().flatten().copied())
+            .collect();
+        self.roll_nodes(&open, graphed, description, scene)
+    }
+
+    fn roll_nodes(
+        &mut self,
+        open: &BTreeSet<u32>,
+        graphed: Graphed,
+        description: Description,
+        scene: &Scene,
+    ) -> Option<Command> {
+        self.rolls += 1;
+        let frame = scene.frame();
+        let nodes: BTreeSet<u32> = graphed.graph.objects().map(|o| o.0).collect();
+        let locked: BTreeMap<u32, SceneBox> = frame
+            .boxes
+            .values()
+            .filter(|b| nodes.contains(&b.id.0) && !open.contains(&b.id.0))
+            .map(|b| (b.id.0, *b))
+            .collect();
+        let how = How {
+            placer: self.placer,
+            keep: Keep::Road(Arc::new(frame.layout.clone())),
+            others: frame.boxes.values().filter(|b| !nodes.contains(&b.id.0)).copied().collect(),
+            locked,
+            ..How::default()
+        };
+        let ask = Ask {
+            prompt: self.prompt.clone(),
+            description,
+            graphed: Some(graphed),
+            seed: self.rolls.wrapping_mul(7919),
+            how,
+        };
+        let laid = ask.lay_out();
+        self.told.tell(&laid);
+        let mut edits = Vec::new();
+        for b in laid.placement.boxes.iter().filter(|b| open.contains(&b.id.0)) {
+            if frame.boxes.contains_key(&b.id) {
+                edits.push(Edit::MoveBox {
+                    id: b.id,
+                    center_m: Some(b.center_m),
+                    yaw_deg: Some(b.yaw_rad.to_degrees()),
+                    size_m: None,
+                });
+            }
+        }
+        (!edits.is_empty()).then_some(Command::Apply("Re-roll", edits))
+    }
+
+    /// Variants: the seed that was chosen.
+    pub fn variants(&mut self, ui: &mut Ui, ask: &Ask) -> Option<u64> {
+        let mut chosen = None;
+        let button = ui
+            .button("Variants")
+            .on_hover_text("Four layouts of these words, side by side; a click takes one");
+        if button.clicked() {
+            let (send, coming) = channel();
+            let (work, wake) = (ask.clone(), ui.ctx().clone());
+            let thread = std::thread::Builder::new().name("variants".into()).spawn(move || {
+                for k in 0..VARIANTS {
+                    let ask = Ask {
+                        seed: work.seed.wrapping_add(k),
+                        ..work.clone()
+                    };
+                    // Nobody listens once others are asked for.
+                    if send.send((ask.seed, ask.lay_out())).is_err() {
+                        break;
+                    }
+                    wake.request_repaint();
+                }
+            });
+            self.variants = thread.ok().map(|_| Variants {
+                of: ask.clone(),
+                coming,
+                found: BTreeMap::new(),
+            });
+        }
+        let Some(variants) = &mut self.variants else {
+            return None;
+        };
+        while let Ok((seed, laid)) = variants.coming.try_recv() {
+            variants.found.insert(seed, laid);
+        }
+        let width = ((ui.available_width() - 8.0) / 2.0).clamp(80.0, 190.0);
+        let first = variants.of.seed;
+        for pair in 0..VARIANTS / 2 {
+            ui.horizontal(|ui| {
+                for k in [2 * pair, 2 * pair + 1] {
+                    let seed = first.wrapping_add(k);
+                    let (rect, response) = ui.allocate_exact_size(vec2(width, width * 0.62), Sense::click());
+                    let name = format!("Variant of seed {seed}");
+                    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                    let fill = if response.hovered() { theme::field_hover() } else { theme::well() };
+                    ui.painter().rect_filled(rect, theme::RADIUS, fill);
+                    match variants.found.get(&seed) {
+                        Some(laid) => small_map(ui, rect, laid),
+                        None => {
+                            ui.painter().text(
+                                rect.center(),
+                                egui::Align2::CENTER_CENTER,
+                                "...",
+                                egui::FontId::proportional(12.0),
+                                theme::text_weak(),
+                            );
+                        }
+                    }
+                    ui.painter().text(
+                        rect.left_bottom() + vec2(4.0, -3.0),
+                        egui::Align2::LEFT_BOTTOM,
+                        format!("seed {seed}"),
+                        egui::FontId::proportional(10.0),
+                        theme::text_weak(),
+                    );
+                    crate::app::icons::focus_ring(ui, &response, rect);
+                    if response.on_hover_text("A click makes this scene").clicked() {
+                        chosen = Some(seed);
+                    }
+                }
+            });
+        }
+        chosen
+    }
+
+    /// How the last scene came about.
+    pub fn origin(&self, ui: &mut Ui) {
+        self.told.show(ui);
+    }
+
+    /// The scene graph, editable; true if it is to be placed anew.
+    pub fn graph(&mut self, ui: &mut Ui, description: &Description, seed: u64, scene: &Scene, commands: &mut Vec<Command>) -> bool {
+        let mut place = false;
+        egui::CollapsingHeader::new("Scene graph")
+            .id_salt("scene graph")
+            .default_open(false)
+            .show(ui, |ui| {
+                let before = self.graphed.clone().unwrap_or_else(|| to_graph(description, seed));
+                let mut graphed = before.clone();
+                picture(ui, &graphed.graph);
+                let rolled = nodes(ui, &mut graphed, self.made.is_some());
+                edges(ui, &mut graphed.graph);
+                if graphed != before {
+                    self.graphed = Some(graphed.clone());
+                    self.variants = None;
+                }
+                if let Some(id) = rolled {
+                    let ids = BTreeSet::from([id]);
+                    commands.extend(self.roll_nodes(&ids, graphed.clone(), description.clone(), scene));
+                }
+                ui.horizontal(|ui| {
+                    let button = ui
+                        .button("Place this graph")
+                        .on_hover_text("A new scene of these nodes and relations");
+                    place = button.clicked();
+                    let edited = self.graphed.is_some();
+                    if ui.add_enabled(edited, egui::Button::new("As the words say")).clicked() {
+                        self.graphed = None;
+                    }
+                });
+                if let Some(problem) = graphed.graph.problem() {
+                    ui.label(egui::RichText::new(problem).color(theme::warn()));
+                    place = false;
+                }
+            });
+        place
+    }
+}
+
+fn name_of(graph: &SceneGraph, id: u32) -> String {
+    match graph.node(id).map(|n| &n.kind) {
+        Some(NodeKind::Ego) => "ego".into(),
+        Some(NodeKind::Object(o)) => format!("{} {id}", o.class.label()),
+        Some(NodeKind::Lane { role, .. }) => role_name(*role),
+        Some(NodeKind::Crossing { .. }) => "crossing".into(),
+        Some(NodeKind::Junction) => "junction".into(),
+        None => "nothing".into(),
+    }
+}
+
+fn role_name(role: LaneRole) -> String {
+    let word = format!("{role:?}");
+    let mut out = String::new();
+    for c in word.chars() {
+        if c.is_uppercase() && !out.is_empty() {
+            out.push(' ');
+        }
+        out.extend(c.to_lowercase());
+    }
+    match role {
+        LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming => format!("{out} lane"),
+        _ => out,
+    }
+}
+
+fn relation_name(r: RelationKind) -> String {
+    r.name().replace('_', " ")
+}
+
+/// Nodes on a ring, relations between them.
+fn picture(ui: &mut Ui, graph: &SceneGraph) {
+    let width = ui.available_width().clamp(120.0, 420.0);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 150.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Scene graph"));
+    ui.painter().rect_filled(rect, theme::RADIUS, theme::well());
+    let n = graph.nodes.len().max(1);
+    let at = |k: usize| -> Pos2 {
+        if k == 0 {
+            return rect.center();
+        }
+        let turn = (k as f32) / ((n - 1).max(1) as f32) * std::f32::consts::TAU;
+        rect.center() + vec2(turn.cos() * rect.width() * 0.4, turn.sin() * rect.height() * 0.38)
+    };
+    let place = |id: u32| graph.nodes.iter().position(|n| n.id == id).map(at);
+    for e in &graph.edges {
+        if let (Some(a), Some(b)) = (place(e.from), place(e.to)) {
+            ui.painter().line_segment([a, b], Stroke::new(1.0, theme::text_weak()));
+            if graph.edges.len() < 9 {
+                ui.painter().text(
+                    a + (b - a) * 0.5,
+                    egui::Align2::CENTER_CENTER,
+                    relation_name(e.relation),
+                    egui::FontId::proportional(9.5),
+                    theme::text(),
+                );
+            }
+        }
+    }
+    for (k, node) in graph.nodes.iter().enumerate() {
+        let color = match &node.kind {
+            NodeKind::Ego => theme::accent(),
+            NodeKind::Object(o) => theme::class_color(o.class),
+            _ => theme::text_weak(),
+        };
+        ui.painter().circle_filled(at(k), 5.0, color);
+        if n < 24 {
+            ui.painter().text(
+                at(k) + vec2(0.0, 7.0),
+                egui::Align2::CENTER_TOP,
+                name_of(graph, node.id),
+                egui::FontId::proportional(9.5),
+                theme::text(),
+            );
+        }
+    }
+}
+
+/// Objects with their class; which of them is to be placed anew.
+fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
+    let mut rolled = None;
+    let mut gone = None;
+    section(ui, "Objects");
+    let ids: Vec<u32> = graphed.graph.objects().map(|o| o.0).take(60).collect();
+    for id in ids {
+        ui.horizontal(|ui| {
+            let Some(node) = graphed.graph.nodes.iter_mut().find(|n| n.id == id) else {
+                return;
+            };
+            if let NodeKind::Object(o) = &mut node.kind {
+                let combo = egui::ComboBox::from_id_salt(("class of node", id))
+                    .selected_text(format!("{} {id}", o.class.label()))
+                    .show_ui(ui, |ui| {
+                        for class in Class::OBJECTS {
+                            ui.selectable_value(&mut o.class, class, class.label());
+                        }
+                    });
+                combo
+                    .response
+                    .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Class of node {id}")));
+            }
+            let again = ui.add_enabled(made, egui::Button::new("Re-roll").small());
+            again.widget_info(|| WidgetInfo::labeled(Role::Button, made, format!("Re-roll node {id}")));
+            if again.clicked() {
+                rolled = Some(id);
+            }
+            let out = ui.add(egui::Button::new("×").small());
+            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out node {id}")));
+            if out.clicked() {
+                gone = Some(id);
+            }
+        });
+    }
+    if let Some(id) = gone {
+        graphed.graph.nodes.retain(|n| n.id != id);
+        graphed
+            .graph
+            .edges
+            .retain(|e| e.from != id && e.to != id && e.and != Some(id));
+        graphed.nodes.iter_mut().for_each(|list| list.retain(|n| *n != id));
+    }
+    if ui.button("Add object").clicked() {
+        let node = crate::generation::text::edit::node_of(Class::Car);
+        graphed.graph.add(node);
+    }
+    rolled
+}
+
+/// Relations, each with its kind and what it is to.
+fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
+    section(ui, "Relations");
+    let all: Vec<(u32, String)> = graph.nodes.iter().map(|n| (n.id, name_of(graph, n.id))).collect();
+    let mut gone = None;
+    for (k, e) in graph.edges.iter_mut().enumerate().take(80) {
+        ui.horizontal_wrapped(|ui| {
+            ends(ui, ("from", k), &mut e.from, &all, "From");
+            let combo = egui::ComboBox::from_id_salt(("relation", k))
+                .selected_text(relation_name(e.relation))
+                .show_ui(ui, |ui| {
+                    for r in RelationKind::ALL {
+                        if r != RelationKind::Between || e.and.is_some() {
+                            ui.selectable_value(&mut e.relation, r, relation_name(r));
+                        }
+                    }
+                });
+            combo
+                .response
+                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Relation {}", k + 1)));
+            ends(ui, ("to", k), &mut e.to, &all, "To");
+            let out = ui.add(egui::Button::new("×").small());
+            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1)));
+            if out.clicked() {
+                gone = Some(k);
+            }
+        });
+    }
+    if let Some(k) = gone {
+        graph.edges.remove(k);
+    }
+    let first = graph.objects().map(|o| o.0).next();
+    let add = ui.add_enabled(first.is_some(), egui::Button::new("Add relation"));
+    if add.clicked()
+        && let Some(from) = first
+    {
+        graph.edges.push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
+    }
+}
+
+fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], what: &str) {
+    let shown = all.iter().find(|n| n.0 == *id).map_or("nothing", |n| n.1.as_str());
+    let combo = egui::ComboBox::from_id_salt(salt).selected_text(shown).show_ui(ui, |ui| {
+        for (other, name) in all {
+            ui.selectable_value(id, *other, name);
+        }
+    });
+    let label = format!("{what} of relation {}", salt.1 + 1);
+    combo
+        .response
+        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &label));
+}
+
+/// Lanes and boxes as seen from above, the ego vehicle's course to the right.
+fn small_map(ui: &Ui, rect: Rect, laid: &Laid) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let scale = rect.width() / 84.0;
+    let at = |p: glam::DVec2| -> Pos2 { pos2(rect.center().x + p.x as f32 * scale, rect.center().y - p.y as f32 * scale) };
+    let road = theme::text_weak().gamma_multiply(0.35);
+    for line in laid.road.layout.polylines.iter() {
+        let points: Vec<Pos2> = line.points_m.iter().map(|p| at(*p)).collect();
+        match line.kind {
+            PolylineKind::LaneCenter => {
+                painter.add(Shape::line(points, Stroke::new(3.6 * scale, road)));
+            }
+            PolylineKind::PedCrossing => {
+                painter.add(Shape::closed_line(points, Stroke::new(1.0, theme::text())));
+            }
+            _ => {}
+        }
+    }
+    let quad = |b: &SceneBox, color: Color32| {
+        let points: Vec<Pos2> = b.footprint().iter().map(|p| at(*p)).collect();
+        painter.add(Shape::convex_polygon(points, color, Stroke::new(0.8, theme::text_strong())));
+    };
+    quad(&crate::generation::text::holds::ego(), theme::accent());
+    for b in &laid.placement.boxes {
+        quad(b, theme::class_color(b.class));
+        painter.circle_filled(at(b.center_m.truncate()), 1.2, theme::class_color(b.class));
+    }
+}

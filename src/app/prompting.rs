@@ -1,0 +1,528 @@
+//! How a description becomes a scene: which placer, with or without memory, on which road, around which objects. The window,
+//! the command line and the evaluation share it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::memory::{layout_of, own_scenes};
+use crate::generation::model::layout::net::LayoutNet;
+use crate::generation::placement::diffuse::{self, PlacementReport, STEPS};
+use crate::generation::placement::facts::{self, RoadKind};
+use crate::generation::placement::memory::{Memory, Open, RoadRef};
+use crate::generation::text::description::{
+    Became, Count, Description, Environment, ObjectSpec, Phrase, TimeOfDay, Weather,
+};
+use crate::generation::text::lexicon::{Sense, look_up};
+use crate::generation::text::place::{Placement, place_with};
+use crate::generation::text::road::{self, Chosen};
+use crate::generation::text::to_graph::{Graphed, to_graph};
+use crate::generation::text::tokens::Span;
+use crate::scene::graph::{LaneRole, Locked, NodeKind, ObjectState};
+use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+
+/// Most objects that memory adds.
+const MOST_REMEMBERED: usize = 14;
+
+/// Who places the objects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Placer {
+    /// Rules: every object takes the best free place that what was said allows.
+    #[default]
+    Rules,
+    /// The layout network: boxes by diffusion under the scene graph, then the projection; what that leaves out or breaks is
+    /// placed by rules.
+    Diffusion,
+}
+
+/// What of an open scene stays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Keep {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The road: objects are placed on it.
+    Road(Arc<BevLayout>),
+    /// The objects: a road is laid under them.
+    Objects(Arc<BTreeMap<BoxId, SceneBox>>),
+}
+
+/// How a description becomes a layout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct How {
+    /// Who places.
+    pub placer: Placer,
+    /// Whether what a prompt leaves open comes from remembered scenes.
+    pub memory: bool,
+    /// A folder of the user's own scenes that are remembered too.
+    pub own_scenes: Option<PathBuf>,
+    /// A folder with other weights of the layout network.
+    pub weights: Option<PathBuf>,
+    /// What stays.
+    pub keep: Keep,
+    /// Boxes of nodes that stay where they are.
+    pub locked: BTreeMap<u32, SceneBox>,
+    /// Boxes that belong to no node and are kept clear of (by rules only).
+    pub others: Vec<SceneBox>,
+}
+
+/// A scene that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ask {
+    /// The words.
+    pub prompt: String,
+    /// What they say, as it may have been changed by hand.
+    pub description: Description,
+    /// The graph, if it was edited by hand.
+    pub graphed: Option<Graphed>,
+    /// Fixes every random draw.
+    pub seed: u64,
+    /// How.
+    pub how: How,
+}
+
+impl Ask {
+    /// Its layout.
+    pub fn lay_out(&self) -> Laid {
+        lay_out_graph(&self.prompt, &self.description, self.graphed.as_ref(), self.seed, &self.how)
+    }
+}
+
+/// What came from memory.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Remembered {
+    /// The nearest scenes: what a person would say of each, and how near (cosine).
+    pub scenes: Vec<(String, f64)>,
+    /// What was filled in, in words.
+    pub filled: Vec<String>,
+    /// True if the road is a remembered one.
+    pub road: bool,
+}
+
+/// How the diffusion went.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Diffused {
+    /// Steps, times, and what the projection moved.
+    pub report: PlacementReport,
+    /// Mean distance that the projection moved an object, m.
+    pub mean_move_m: f64,
+    /// Largest, m.
+    pub most_move_m: f64,
+    /// Objects that rules placed in the end: the projection found no place, or a statement did not hold.
+    pub by_rules: usize,
+}
+
+/// A layout from words.
+pub struct Laid {
+    /// The description, filled in if memory was used.
+    pub description: Description,
+    /// Nodes and relations.
+    pub graphed: Graphed,
+    /// The road.
+    pub road: Chosen,
+    /// Where everything went.
+    pub placement: Placement,
+    /// What came from memory.
+    pub remembered: Option<Remembered>,
+    /// How the diffusion went.
+    pub diffused: Option<Diffused>,
+    /// Anything else worth knowing, one line each.
+    pub notes: Vec<String>,
+    /// Time for all of it, s.
+    pub wall_s: f64,
+}
+
+/// Lays out a description; `prompt` is what memory is asked with.
+pub fn lay_out(prompt: &str, description: &Description, seed: u64, how: &How) -> Laid {
+    lay_out_graph(prompt, description, None, seed, how)
+}
+
+/// The same from a graph that was edited by hand.
+pub fn lay_out_graph(
+    prompt: &str,
+    description: &Description,
+    graphed: Option<&Graphed>,
+    seed: u64,
+    how: &How,
+) -> Laid {
+    let started = Instant::now();
+    let mut description = description.clone();
+    let mut notes = Vec::new();
+    let mut remembered = None;
+    let mut proposed = None;
+    if how.memory && graphed.is_none() {
+        match memory(how) {
+            Ok((memory, problems)) => {
+                notes.extend(problems);
+                if let Some((found, road)) = fill_in(&memory, prompt, &mut description, seed) {
+                    proposed = Some(road);
+                    remembered = Some(found);
+                }
+            }
+            Err(error) => notes.push(format!("memory is not used: {error:#}")),
+        }
+    }
+    let mut graphed = graphed.cloned().unwrap_or_else(|| to_graph(&description, seed));
+    for node in &mut graphed.graph.nodes {
+        if let (Some(b), NodeKind::Object(_)) = (how.locked.get(&node.id), &node.kind) {
+            node.locked = Some(Locked::Box(*b));
+        }
+    }
+    let net = match how.placer {
+        Placer::Rules => None,
+        Placer::Diffusion => match network(how) {
+            Ok(net) => Some(net),
+            Err(error) => {
+                notes.push(format!("placed by rules: {error:#}"));
+                None
+            }
+        },
+    };
+    let road = match &how.keep {
+        Keep::Road(layout) => Chosen {
+            template: "kept",
+            layout: (**layout).clone(),
+            missing: road::lacks(&description, &graphed.graph, layout),
+        },
+        Keep::Objects(boxes) => {
+            let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
+            for (k, b) in boxes.values().enumerate() {
+                graphed.graph.nodes.push(crate::scene::graph::Node {
+                    id: first + k as u32,
+                    kind: crate::generation::text::edit::node_of(b.class),
+                    locked: Some(Locked::Box(*b)),
+                });
+            }
+            road_under(&description, &graphed, boxes, seed, net.as_deref(), &mut notes)
+        }
+        Keep::Nothing => {
+            let fits = |r: &RoadRef| {
+                let layout = layout_of(r).ok()?;
+                road::lacks(&description, &graphed.graph, &layout).is_empty().then_some(layout)
+            };
+            match proposed.as_ref().filter(|_| description.road.kind.is_none()).and_then(fits) {
+                Some(layout) => {
+                    if let Some(found) = &mut remembered {
+                        found.road = true;
+                    }
+                    Chosen {
+                        template: "remembered",
+                        layout,
+                        missing: Vec::new(),
+                    }
+                }
+                None => road::choose(&description, &graphed.graph, seed),
+            }
+        }
+    };
+    let (placement, diffused) = match net {
+        None => (place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others), None),
+        Some(net) => match diffuse_and_mend(&net, &graphed, &road.layout, &how.others, seed) {
+            Ok((placement, diffused)) => (placement, Some(diffused)),
+            Err(error) => {
+                notes.push(format!("placed by rules: {error}"));
+                (place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others), None)
+            }
+        },
+    };
+    Laid {
+        description,
+        graphed,
+        road,
+        placement,
+        remembered,
+        diffused,
+        notes,
+        wall_s: started.elapsed().as_secs_f64(),
+    }
+}
+
+fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {
+    Ok(match &how.weights {
+        Some(folder) => LayoutNet::from_dir(folder)?,
+        None => LayoutNet::bundled()?,
+    })
+}
+
+fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
+    let bundled = Memory::bundled()?;
+    let Some(folder) = &how.own_scenes else {
+        return Ok((bundled, Vec::new()));
+    };
+    let (own, problems) = own_scenes(folder);
+    Ok((Arc::new(bundled.with(own)), problems))
+}
+
+/// Boxes by diffusion and projection; then rules place what was left out or breaks a statement, around all the others.
+fn diffuse_and_mend(
+    net: &LayoutNet,
+    graphed: &Graphed,
+    layout: &BevLayout,
+    others: &[SceneBox],
+    seed: u64,
+) -> Result<(Placement, Diffused), diffuse::PlacementError> {
+    let (boxes, report) = diffuse::place_with(net, &graphed.graph, layout, STEPS, seed)?;
+    let moved = &report.projection.moved;
+    let mut diffused = Diffused {
+        mean_move_m: report.projection.mean_move_m(boxes.len()),
+        most_move_m: moved.iter().map(|m| m.distance_m).fold(0.0, f64::max),
+        report,
+        by_rules: 0,
+    };
+    let found: BTreeMap<u32, SceneBox> = diffused.report.nodes.iter().copied().zip(boxes).collect();
+    let mut graph = graphed.graph.clone();
+    let broken: Vec<u32> = diffused
+        .report
+        .projection
+        .broken
+        .iter()
+        .map(|e| e.from)
+        .chain(crate::generation::text::place::broken(&graph, layout, &found))
+        .collect();
+    for node in &mut graph.nodes {
+        if let (None, Some(b)) = (&node.locked, found.get(&node.id))
+            && !broken.contains(&node.id)
+        {
+            node.locked = Some(Locked::Box(*b));
+        }
+    }
+    diffused.by_rules = graph
+        .nodes
+        .iter()
+        .filter(|n| n.locked.is_none() && matches!(n.kind, NodeKind::Object(_)))
+        .count();
+    let placement = place_with(&graph, layout, seed, &graphed.sizes_m, others);
+    Ok((placement, diffused))
+}
+
+/// A road on which given objects stand well: by the network where it may, else the variation of the templates that has the
+/// most of them where they belong.
+fn road_under(
+    d: &Description,
+    graphed: &Graphed,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    seed: u64,
+    net: Option<&LayoutNet>,
+    notes: &mut Vec<String>,
+) -> Chosen {
+    let given: Vec<SceneBox> = boxes.values().copied().collect();
+    let by_rules = road::under(d, &graphed.graph, &given, seed);
+    let Some(net) = net else {
+        return by_rules;
+    };
+    let mut graph = graphed.graph.clone();
+    for role in [LaneRole::Ego, LaneRole::Oncoming] {
+        let there = graph
+            .nodes
+            .iter()
+            .any(|n| matches!(n.kind, NodeKind::Lane { role: r, .. } if r == role));
+        if !there {
+            graph.add(NodeKind::Lane { role, polyline: None });
+        }
+    }
+    match diffuse::lay_out_with(net, &graph, seed) {
+        Ok((layout, ..)) => {
+            let (a, b) = (road::misplaced(&layout, &given), road::misplaced(&by_rules.layout, &given));
+            if a > b {
+                notes.push(format!(
+                    "the network's road leaves {a} of the kept objects beside it, a template {b}: the template is used"
+                ));
+                return by_rules;
+            }
+            Chosen {
+                template: "diffusion",
+                layout,
+                missing: Vec::new(),
+            }
+        }
+        Err(error) => {
+            notes.push(format!("the road was not laid by the network: {error}"));
+            by_rules
+        }
+    }
+}
+
+/// Fills what a description leaves open from the nearest scenes; the road that they propose.
+fn fill_in(memory: &Memory, prompt: &str, d: &mut Description, seed: u64) -> Option<(Remembered, RoadRef)> {
+    let mut counts: BTreeMap<Class, usize> = BTreeMap::new();
+    for o in &d.foreground {
+        // "seven vehicles" counts every class that the word may mean.
+        let all: &[Class] = match look_up(&o.noun) {
+            Some(Sense::Noun(noun, _)) => noun.classes,
+            _ => &[],
+        };
+        all.iter().chain([&o.class]).for_each(|c| {
+            counts.entry(*c).or_insert(0);
+        });
+        *counts.entry(o.class).or_insert(0) += o.count.n as usize;
+    }
+    for class in d.absent.iter().flat_map(|a| &a.classes) {
+        counts.entry(*class).or_insert(0);
+    }
+    let open = Open {
+        text: prompt.to_string(),
+        road: d.road.kind.and_then(|k| RoadKind::of_template(k.name())),
+        environment: d.environment.map(environment),
+        night: d.time_of_day.map(|t| t == TimeOfDay::Night),
+        weather: d.weather.and_then(weather_index),
+        counts,
+    };
+    let proposal = memory.fill_in(&open, seed)?;
+    let mut filled = Vec::new();
+    if d.time_of_day.is_none() {
+        d.time_of_day = Some(if proposal.night { TimeOfDay::Night } else { TimeOfDay::Day });
+        filled.push(format!("time: {}", d.time_of_day.map_or("", TimeOfDay::name)));
+    }
+    if d.weather.is_none() {
+        d.weather = [Weather::Clear, Weather::Overcast, Weather::Rain, Weather::Snow, Weather::Fog]
+            .get(proposal.weather)
+            .copied();
+        filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
+    }
+    // A prompt that says how busy it is leaves nothing of that open.
+    let mut room = if d.density.is_some() { 0 } else { MOST_REMEMBERED };
+    for (class, by_state) in &proposal.counts {
+        for (n, state) in by_state
+            .iter()
+            .zip([ObjectState::Moving, ObjectState::Parked, ObjectState::Waiting])
+        {
+            let n = (*n).min(room);
+            if n == 0 {
+                continue;
+            }
+            room -= n;
+            let word = format!("{state:?}").to_lowercase();
+            filled.push(format!("{n} x {} ({word})", class.label()));
+            d.foreground.push(ObjectSpec {
+                class: *class,
+                noun: class.label(),
+                count: Count::exactly(n as u32),
+                state: Some(state),
+                size: None,
+                color: None,
+                attributes: vec!["from memory".into()],
+                size_m: None,
+                relations: Vec::new(),
+                span: Span { start: 0, end: 0 },
+            });
+        }
+    }
+    let scenes = proposal
+        .from
+        .iter()
+        .map(|r| (memory.entries()[r.entry].text.clone(), r.similarity))
+        .collect();
+    Some((
+        Remembered {
+            scenes,
+            filled,
+            road: false,
+        },
+        proposal.road,
+    ))
+}
+
+/// Chips for what memory put in.
+pub fn remembered_phrases(d: &Description) -> Vec<Phrase> {
+    let from_memory = |o: &ObjectSpec| o.attributes.iter().any(|a| a == "from memory");
+    d.foreground
+        .iter()
+        .enumerate()
+        .filter(|(_, o)| from_memory(o))
+        .map(|(i, o)| Phrase {
+            span: o.span,
+            text: format!("{} {}", o.count.n, o.noun),
+            became: Became::Object(i),
+            meaning: "from memory".into(),
+        })
+        .collect()
+}
+
+fn environment(e: Environment) -> facts::Environment {
+    match e {
+        Environment::Downtown | Environment::Urban => facts::Environment::Downtown,
+        Environment::Suburban => facts::Environment::Suburban,
+        Environment::Residential => facts::Environment::Residential,
+        Environment::Rural => facts::Environment::Rural,
+        Environment::Highway => facts::Environment::Highway,
+        Environment::Industrial => facts::Environment::Industrial,
+        Environment::Nature => facts::Environment::Nature,
+    }
+}
+
+fn weather_index(w: Weather) -> Option<usize> {
+    [Weather::Clear, Weather::Overcast, Weather::Rain, Weather::Snow, Weather::Fog]
+        .iter()
+        .position(|x| *x == w)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::text::read;
+
+    #[test]
+    fn a_kept_road_stays_and_objects_are_placed_on_it() {
+        let first = lay_out("", &read("highway").description, 3, &How::default());
+        let how = How {
+            keep: Keep::Road(Arc::new(first.road.layout.clone())),
+            ..How::default()
+        };
+        let again = lay_out("", &read("two cars ahead").description, 4, &how);
+        assert_eq!(again.road.layout, first.road.layout);
+        assert_eq!(again.placement.boxes.len(), 2);
+    }
+
+    #[test]
+    fn kept_objects_stay_and_a_road_is_laid_under_them() {
+        let first = lay_out("", &read("three cars ahead, an oncoming bus").description, 3, &How::default());
+        let boxes: BTreeMap<BoxId, SceneBox> = first.placement.boxes.iter().map(|b| (b.id, *b)).collect();
+        let how = How {
+            keep: Keep::Objects(Arc::new(boxes.clone())),
+            ..How::default()
+        };
+        let again = lay_out("", &read("a straight road").description, 9, &how);
+        for b in boxes.values() {
+            assert!(
+                again.placement.boxes.iter().any(|x| x.center_m == b.center_m && x.class == b.class),
+                "{b:?}"
+            );
+        }
+        assert!(road::misplaced(&again.road.layout, &first.placement.boxes) <= 1);
+    }
+
+    #[test]
+    fn memory_adds_only_what_was_left_open() {
+        let said = read("two parked cars, no people, at night");
+        let how = How {
+            memory: true,
+            ..How::default()
+        };
+        let laid = lay_out("two parked cars, no people, at night", &said.description, 5, &how);
+        let count = |c: Class| laid.placement.boxes.iter().filter(|b| b.class == c).count();
+        assert_eq!((count(Class::Car), count(Class::Pedestrian)), (2, 0));
+        assert_eq!(laid.description.time_of_day, Some(TimeOfDay::Night));
+        let found = laid.remembered.expect("memory was used");
+        assert!(!found.scenes.is_empty());
+        assert_eq!(remembered_phrases(&laid.description).is_empty(), !found.filled.iter().any(|f| f.contains(" x ")));
+    }
+
+    #[test]
+    fn the_network_places_what_was_said() {
+        let how = How {
+            placer: Placer::Diffusion,
+            ..How::default()
+        };
+        let said = read("three cars ahead of me, a bus behind me");
+        let laid = lay_out("", &said.description, 2, &how);
+        assert_eq!(laid.placement.boxes.len(), 4, "{:?}", laid.notes);
+        let diffused = laid.diffused.expect("by diffusion");
+        assert_eq!(diffused.report.steps, STEPS);
+        let again = lay_out("", &said.description, 2, &how);
+        assert_eq!(laid.placement, again.placement);
+    }
+}
