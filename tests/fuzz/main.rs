@@ -330,6 +330,11 @@ fn command_lines_and_words() {
     );
 }
 
+#[test]
+fn measured_stops() {
+    plain("stops", vec![file("assets/trade/stops.json")], 1500);
+}
+
 /// Every target is run by a test of this file.
 #[test]
 fn no_target_is_forgotten() {
