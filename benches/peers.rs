@@ -28,13 +28,13 @@ const SIZE: [u32; 2] = [240, 135];
 const STEPS: usize = 20;
 const STATE: usize = 200_000;
 
-/// A network that costs next to nothing, so that the loop around it is what is timed: tanh(0.7 x + 0.001 t).
+/// A network that costs next to nothing, so that the loop around it is what is timed: 0.7 x / (1 + |x|) + 0.0005 t.
 struct Closed;
 
 impl Denoiser for Closed {
     type Error = SolverError;
     fn predict(&mut self, x: &[f64], t: f64, _: Branch) -> Result<Vec<f64>, SolverError> {
-        Ok(x.iter().map(|x| (0.7 * x + 0.001 * t).tanh()).collect())
+        Ok(x.iter().map(|x| 0.7 * x / (1.0 + x.abs()) + 0.0005 * t).collect())
     }
 }
 

@@ -9,6 +9,7 @@ use sceneloom::generation::job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use sceneloom::generation::model::layout::net::LayoutNet;
 use sceneloom::generation::model::lidar::LidarNet;
 use sceneloom::generation::model::{OccModels, fine_vae};
+use sceneloom::generation::params::Precision;
 use sceneloom::generation::pipeline::OccPipeline;
 use sceneloom::generation::placement::diffuse::place_with;
 use sceneloom::generation::sensors::appearance::{
@@ -74,7 +75,12 @@ fn scene() -> Scene {
 #[test]
 fn edit_by_inversion() {
     let (auto, full) = (RegionMode::Auto, RegionMode::Full);
-    for (solver, guidance, region) in [(SolverKind::Ddim, 1.0, auto), (SolverKind::DpmPp2M, 2.0, full)] {
+    let (ddim, dpmpp) = (SolverKind::Ddim, SolverKind::DpmPp2M);
+    for (solver, guidance, region, precision) in [
+        (ddim, 1.0, auto, Precision::F32),
+        (ddim, 1.0, auto, Precision::Int8),
+        (dpmpp, 2.0, full, Precision::F32),
+    ] {
         same_bits("edit", || {
             let mut document = Document::new(scene());
             let boxes = &document.scene().frame().boxes;
@@ -86,6 +92,7 @@ fn edit_by_inversion() {
                 solver,
                 guidance,
                 region,
+                precision,
                 keep_objects: region == auto,
                 strength: 0.5,
                 ..GenParams::default()

@@ -63,10 +63,10 @@ def load():
     return f"load {os.getloadavg()[0]:.1f} on {len(os.sched_getaffinity(0))} cores"
 
 
-def beside(what, ours, theirs, runs, peer):
+def beside(what, ours, theirs, runs, peer, warm=3):
     """Times `ours` (milliseconds come back) and `theirs` (is timed here) in random turns; prints one line."""
     times = {"ours": [], "theirs": []}
-    order = ["ours", "theirs"] * (runs + 3)
+    order = ["ours", "theirs"] * (runs + warm)
     pairs = [order[i:i + 2] for i in range(0, len(order), 2)]
     for i, pair in enumerate(pairs):
         random.shuffle(pair)
@@ -77,7 +77,7 @@ def beside(what, ours, theirs, runs, peer):
                 begun = time.perf_counter()
                 theirs()
                 ms = (time.perf_counter() - begun) * 1e3
-            if i >= 3:
+            if i >= warm:
                 times[side].append(ms)
     a, b = times["ours"], times["theirs"]
     ma, mb = statistics.median(a), statistics.median(b)

@@ -14,7 +14,7 @@ STEPS = 20
 def plain_ddim(x, steps, bars):
     """DDIM by its formula, NumPy in f64."""
     for i, t in enumerate(steps):
-        e = np.tanh(0.7 * x + 0.001 * t)
+        e = 0.7 * x / (1 + np.abs(x)) + 0.0005 * t
         bar, following = bars[t], bars[steps[i + 1]] if i + 1 < len(steps) else 1.0
         clean = (x - np.sqrt(1 - bar) * e) / np.sqrt(bar)
         x = np.sqrt(following) * clean + np.sqrt(1 - following) * e
@@ -46,7 +46,7 @@ def main():
         scheduler.set_timesteps(STEPS)
         state = start
         for t in scheduler.timesteps:
-            state = scheduler.step(torch.tanh(0.7 * state + 0.001 * t), t, state).prev_sample
+            state = scheduler.step(0.7 * state / (1 + state.abs()) + 0.0005 * t, t, state).prev_sample
         return state
 
     start = torch.from_numpy(x["start"])

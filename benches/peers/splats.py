@@ -96,7 +96,7 @@ def main():
               f"coverage differs by {gap.mean():.1e} on average, {100 * (gap > 1e-3).float().mean():.3f} % of the pixels by more than 0.001")
         if other > 1e-3:
             sys.exit("the two sides draw different things")
-        beside("splats, six cameras", lambda: ours("splats"), all_cameras, min(args.runs, 7), f"torch {torch.__version__}")
+        beside("splats, six cameras", lambda: ours("splats"), all_cameras, min(args.runs, 5), f"torch {torch.__version__}", warm=1)
 
 
 main()

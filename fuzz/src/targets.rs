@@ -28,6 +28,7 @@ use sceneloom::generation::solver::SolverKind;
 use sceneloom::generation::text::lanes::LaneMap;
 use sceneloom::generation::text::place::place_with;
 use sceneloom::generation::text::to_graph::to_graph;
+use sceneloom::generation::trade::Stops;
 use sceneloom::generation::weights::{WeightFile, WeightsError};
 use sceneloom::generation::world::{template, traffic};
 use sceneloom::scene::graph::SceneGraph;
@@ -39,7 +40,7 @@ use sceneloom::scene::{BevLayer, BevLayout, BoxId, Class, Frame, Scene, SensorRi
 pub type Target = fn(&[u8]);
 
 /// All of them by name.
-pub const ALL: [(&str, Target); 16] = [
+pub const ALL: [(&str, Target); 17] = [
     ("project", project_file),
     ("occ3d", occ3d_file),
     ("opendrive", opendrive_file),
@@ -56,6 +57,7 @@ pub const ALL: [(&str, Target); 16] = [
     ("arguments", arguments),
     ("words", words),
     ("params", params),
+    ("stops", stops),
 ];
 
 /// An error is for people: something, in one line.
@@ -541,6 +543,24 @@ pub fn params(bytes: &[u8]) {
             }
             if let Ok(text) = serde_json::to_string(&params) {
                 assert_eq!(serde_json::from_str::<GenParams>(&text).expect("its own"), params);
+            }
+        }
+    }
+}
+
+/// Measured stops of the quality slider.
+pub fn stops(bytes: &[u8]) {
+    let weights = Stops::bundled().weights;
+    match Stops::parse(&String::from_utf8_lossy(bytes), weights) {
+        Err(error) => one_line(error),
+        Ok(stops) => {
+            for stop in &stops.stops {
+                let params = stop.knobs.on(GenParams::default());
+                assert_eq!(params.check(), Ok(()));
+                assert!(stops.index_of(&params).is_some());
+                for tokens in [0.0, 1.0, 625.0] {
+                    assert!(stop.cost.wall_s(tokens) >= 0.0);
+                }
             }
         }
     }

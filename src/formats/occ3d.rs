@@ -84,7 +84,6 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
         (None, [only]) => only.clone(),
         _ => return Err(Occ3dError::NoLabels { found }),
     };
-    let labels = array(&mut zip, &name)?;
     let wrong = |i: usize, found: i64| Occ3dError::Array {
         name: name.clone(),
         problem: format!(
@@ -95,17 +94,27 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
             Class::FREE
         ),
     };
-    let mut dense = Vec::with_capacity(labels.len());
-    for (i, label) in labels.into_iter().enumerate() {
-        let known = u8::try_from(label).ok().filter(|l| *l <= Class::FREE);
-        dense.push(known.ok_or_else(|| wrong(i, label))?);
-    }
+    let dense: Vec<u8> = match array(&mut zip, &name)? {
+        Values::Bytes(labels) => match labels.iter().position(|l| *l > Class::FREE) {
+            Some(i) => return Err(wrong(i, labels[i].into())),
+            None => labels,
+        },
+        Values::Wide(labels) => {
+            let known = |(i, label): (usize, &i64)| {
+                let byte = u8::try_from(*label).ok().filter(|l| *l <= Class::FREE);
+                byte.ok_or_else(|| wrong(i, *label))
+            };
+            labels.iter().enumerate().map(known).collect::<Result<_, _>>()?
+        }
+    };
     let mut mask = |name: &str| -> Result<Option<Vec<bool>>, Occ3dError> {
         if !found.iter().any(|f| f == name) {
             return Ok(None);
         }
-        let values = array(&mut zip, name)?;
-        Ok(Some(values.into_iter().map(|v| v != 0).collect()))
+        Ok(Some(match array(&mut zip, name)? {
+            Values::Bytes(values) => values.into_iter().map(|v| v != 0).collect(),
+            Values::Wide(values) => values.into_iter().map(|v| v != 0).collect(),
+        }))
     };
     Ok(Occ3dFrame {
         lidar_observed: mask("mask_lidar")?,
@@ -124,8 +133,14 @@ pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
     }])
 }
 
+/// Values of an array: as they lie in the file if they are bytes, which is the usual case and much faster.
+enum Values {
+    Bytes(Vec<u8>),
+    Wide(Vec<i64>),
+}
+
 /// One array of the grid's shape, whatever its integer type.
-fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Occ3dError> {
+fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3dError> {
     // What a parser says may be a drawing of several lines, and holds what the file holds.
     let problem = |problem: String| Occ3dError::Array {
         name: name.into(),
@@ -142,7 +157,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Oc
     if bytes.len() as u64 > LARGEST {
         return Err(problem(format!("more than {LARGEST} bytes")));
     }
-    check_header(&bytes).map_err(problem)?;
+    let start = check_header(&bytes).map_err(problem)?;
     let npy = NpyFile::new(&bytes[..]).map_err(|e| problem(e.to_string()))?;
     let expected = [GridSpec::NX as u64, GridSpec::NY as u64, GridSpec::NZ as u64];
     if npy.shape() != expected {
@@ -152,25 +167,33 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Vec<i64>, Oc
         return Err(problem("Fortran order, expected C order".into()));
     }
     let dtype = npy.dtype().descr();
+    if matches!(dtype.as_str(), "'|u1'" | "'|b1'") {
+        let values = bytes.get(start..start + GridSpec::VOXELS).map(<[u8]>::to_vec);
+        let wanted = GridSpec::VOXELS;
+        let found = bytes.len().saturating_sub(start);
+        return values
+            .map(Values::Bytes)
+            .ok_or_else(|| problem(format!("{found} values, expected {wanted}")));
+    }
     macro_rules! read_as {
         ($npy:expr, $($type:ty),+) => {{
             let npy = $npy;
             $(let npy = match npy.try_data::<$type>() {
                 Ok(values) => {
                     let all: std::io::Result<Vec<i64>> = values.map(|v| v.map(i64::from)).collect();
-                    return all.map_err(|e| problem(e.to_string()));
+                    return all.map(Values::Wide).map_err(|e| problem(e.to_string()));
                 }
                 Err(npy) => npy,
             };)+
             drop(npy);
         }};
     }
-    read_as!(npy, u8, bool, i8, i64, i32, u16, i16, u32);
+    read_as!(npy, i8, i64, i32, u16, i16, u32);
     Err(problem(format!("type {dtype}, expected integers")))
 }
 
-/// Errors on a header that numpy would not write: too long, or nested too deeply.
-fn check_header(bytes: &[u8]) -> Result<(), String> {
+/// Where the values begin; errors on a header that numpy would not write: too long, or nested too deeply.
+fn check_header(bytes: &[u8]) -> Result<usize, String> {
     // Magic (6), version (2), length (2 bytes in version 1, 4 later), text.
     let (length, start) = match bytes {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (usize::from(u16::from_le_bytes([*a, *b])), 10),
@@ -188,7 +211,7 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
         true => Err(format!(
             "a header with {brackets} brackets, expected at most {MOST_BRACKETS}"
         )),
-        false => Ok(()),
+        false => Ok(start + length),
     }
 }
 

@@ -330,12 +330,17 @@ fn command_lines_and_words() {
     );
 }
 
+#[test]
+fn measured_stops() {
+    plain("stops", vec![file("assets/trade/stops.json")], 1500);
+}
+
 /// Every target is run by a test of this file.
 #[test]
 fn no_target_is_forgotten() {
     let own = include_str!("main.rs");
     for (name, _) in targets::ALL {
-        assert!(own.contains(&format!("(\"{name}\", ")), "{name} is not run");
+        assert!(own.contains(&format!("\"{name}\",")), "{name} is not run");
         assert!(
             root().join(format!("fuzz/fuzz_targets/{name}.rs")).exists(),
             "{name} has no target"
