@@ -98,6 +98,7 @@ def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--vae", type=Path, required=True)
     p.add_argument("--dit", type=Path, required=True)
+    p.add_argument("--distilled", type=Path, help="weights of the DiT's student (distill.py)")
     p.add_argument("--fine", type=Path, help="weights of the fine VAE; those that are there stay without it")
     p.add_argument("--data", type=Path, required=True, help="the data set; the VAE's golden is a held-out frame")
     p.add_argument("--data-command", required=True, help="how the data were made, for the card")
@@ -111,14 +112,15 @@ def main():
     old = args.weights / "card.json"
     kept = json.loads(old.read_text()) if old.exists() else {}
     card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
-    networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else [])
+    networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else []) \
+        + ([("occ_dit_distilled", args.distilled)] if args.distilled else [])
     for kind, path in networks:
         tensors, meta = read(path)
-        if meta.get("kind") != kind.removesuffix("_fine"):
+        if meta.get("kind") != kind.removesuffix("_fine").removesuffix("_distilled"):
             raise SystemExit(f"{path}: expected weights of {kind}, found {meta.get('kind')}")
-        if kind == "occ_dit" and meta["vae"] != name:
+        if kind.startswith("occ_dit") and meta["vae"] != name:
             raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
-        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae")
+        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "distilled_steps", "teacher_steps")
         meta = {k: meta[k] for k in keep if k in meta} | ({"name": name} if kind == "occ_vae" else {})
         out = args.weights / f"{kind}.safetensors"
         save_file(halved(tensors), out, meta)

@@ -67,8 +67,12 @@ pub fn of_edits(base: GenParams, distilled: bool, draws: usize, seed: u64) -> Ve
             add(GenParams { steps, solver, ..base }, false, "");
         }
     }
-    for inversion_iterations in [1, 3] {
-        add(GenParams { inversion_iterations, ..base }, false, "");
+    add(GenParams { inversion_iterations: 1, ..base }, false, "");
+    for steps in [4, 6, 10, 20, 33] {
+        let inversion_iterations = 3;
+        add(GenParams { steps, inversion_iterations, ..base }, false, "");
+        let precision = Precision::Int8;
+        add(GenParams { steps, inversion_iterations, precision, ..base }, false, "");
     }
     for halo_tokens in [0, 2, 4] {
         add(GenParams { halo_tokens, ..base }, false, "");
