@@ -83,9 +83,11 @@ done
 sleep "${SETTLED_S:-60}"
 shot 130
 # Before and after, in every view at once.
-xdotool key shift+backslash
+at 1483 743
+shot 30
+xdotool click 1
 sleep 6
-shot 50
+shot 60
 at 509 560
 xdotool mousedown 1
 for to in 450 390 330 400 470 540 610 680; do

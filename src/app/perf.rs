@@ -107,6 +107,8 @@ enum Pending {
 #[derive(Clone, Copy, Debug)]
 struct Open {
     began_s: f64,
+    /// Waited for the graphics card, only to measure; it counts as nobody's work, s.
+    waited_s: f64,
     logic_s: f64,
     draw_s: f64,
     events: usize,
@@ -150,15 +152,18 @@ impl Perf {
     /// `wait` waits until the graphics card has drawn all that it was given; the answer is the time then.
     pub fn frame_begins(&mut self, now_s: f64, before_s: Option<f64>, wait: impl FnOnce() -> f64) {
         self.frame_ended(before_s);
+        let mut began_s = now_s;
         if let Some(Pending::Drawn(at_s)) = self.pending {
             self.pending = None;
             // Without anybody looking the card is not waited for, and nothing is known.
             if self.watches() {
-                self.edit_visible(wait(), at_s);
+                began_s = wait();
+                self.edit_visible(began_s, at_s);
             }
         }
         self.frame = Some(Open {
-            began_s: now_s,
+            began_s,
+            waited_s: began_s - now_s,
             logic_s: 0.0,
             draw_s: 0.0,
             events: 0,
@@ -178,7 +183,7 @@ impl Perf {
     /// The frame that began last was closed by the window; `took_s` with presentation.
     fn frame_ended(&mut self, took_s: Option<f64>) {
         let Some(frame) = self.frame.take() else { return };
-        let busy_s = took_s.unwrap_or(0.0).max(frame.logic_s + frame.draw_s);
+        let busy_s = (took_s.unwrap_or(0.0) - frame.waited_s).max(frame.logic_s + frame.draw_s);
         self.frames.push(busy_s);
         if frame.working {
             self.frames_while_working.push(busy_s);
@@ -367,7 +372,7 @@ mod tests {
         perf.shown_at_once();
         assert!(perf.drawn(1.045, 0, false, false, false));
         perf.frame_begins(1.050, Some(0.012), || 1.050);
-        assert!((perf.visible.newest(1).sum::<f64>() - 0.015).abs() < 1e-9);
+        assert!((perf.visible.newest(1).sum::<f64>() - 0.014).abs() < 1e-9);
     }
 
     #[test]
