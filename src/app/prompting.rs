@@ -300,6 +300,12 @@ fn diffuse_and_mend(
         .iter()
         .map(|e| e.from)
         .chain(crate::generation::text::place::broken(&graph, layout, &found))
+        .chain(
+            found
+                .iter()
+                .filter(|(_, b)| road::misplaced(layout, &[**b]) > 0)
+                .map(|f| *f.0),
+        )
         .collect();
     for node in &mut graph.nodes {
         if let (None, Some(b)) = (&node.locked, found.get(&node.id))
@@ -414,8 +420,27 @@ fn fill_in(memory: &Memory, prompt: &str, d: &mut Description, seed: u64) -> Opt
         .copied();
         filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
     }
-    // A prompt that says how busy it is leaves nothing of that open.
-    let mut room = if d.density.is_some() { 0 } else { MOST_REMEMBERED };
+    // A prompt that says how busy it is, or that this is all, leaves nothing of that open.
+    let said = prompt.to_lowercase();
+    let closed = [
+        "only",
+        "nothing but",
+        "nothing else",
+        "no one else",
+        "alone",
+        "just",
+        "exactly",
+        "lone",
+        "empty",
+        "deserted",
+    ]
+    .iter()
+    .any(|w| said.contains(w));
+    let mut room = if d.density.is_some() || closed {
+        0
+    } else {
+        MOST_REMEMBERED
+    };
     for (class, by_state) in &proposal.counts {
         for (n, state) in
             by_state
