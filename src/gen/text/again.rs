@@ -27,6 +27,16 @@ impl Parser<'_> {
         number && self.ends(i + 1) && self.mentions.iter().any(|m| !m.gone && !m.is_anchor)
     }
 
+    /// "a motorbike and, behind it, a truck": true if a comma and a new noun phrase follow.
+    pub(super) fn set_off(&self) -> bool {
+        self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+            && matches!(
+                self.item(self.at + 2).map(|n| n.tag),
+                Some(Tag::Is(Sense::Article(false) | Sense::Count(_)) | Tag::Number(_))
+            )
+            && self.noun_ahead(self.at + 2)
+    }
+
     /// True if "and" and a comma stand right before.
     pub(super) fn after_and(&self) -> bool {
         let word = |k: usize| self.at.checked_sub(k).and_then(|i| self.item(i));

@@ -934,15 +934,7 @@ impl<'a> Parser<'a> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
-        // "a motorbike and, behind it, a truck"
-        let set_off = p.fresh
-            && p.anded
-            && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
-            && matches!(
-                self.item(self.at + 2).map(|n| n.tag),
-                Some(Tag::Is(Sense::Article(false) | Sense::Count(_)) | Tag::Number(_))
-            )
-            && self.noun_ahead(self.at + 2);
+        let set_off = p.fresh && p.anded && self.set_off();
         let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         if self.head.is_empty() || (p.fresh && new_noun) {
             if !self.head.is_empty() || !self.chain {
@@ -1572,7 +1564,8 @@ impl<'a> Parser<'a> {
                 }
             };
             let fresh = self.pending.as_ref().is_some_and(|p| p.fresh);
-            let antecedent = if fresh && self.noun_ahead(self.at + 1) {
+            let anded = self.pending.as_ref().is_some_and(|p| p.anded);
+            let antecedent = if fresh && (self.noun_ahead(self.at + 1) || (anded && self.set_off())) {
                 self.head.first().or(self.before.first()).copied().or(antecedent)
             } else {
                 antecedent

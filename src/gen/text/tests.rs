@@ -89,8 +89,10 @@ fn relations_belong_to_the_right_things() {
         ("an oncoming lorry", vec![(0, R::OppositeDirection, Ego)]),
         (
             "kids on the left pavement",
-            vec![(0, R::On, Lane(LaneRole::LeftSidewalk))],
+            vec![(0, R::On, Lane(LaneRole::LeftSidewalk)), (0, R::LeftOf, Ego)],
         ),
+        ("a bus and, behind it, a truck", vec![(1, R::Behind, Object(0))]),
+        ("a cyclist approaching from the right", vec![(0, R::RightOf, Ego)]),
     ] {
         assert_eq!(relations(prompt), expected, "{prompt}");
     }
@@ -99,6 +101,41 @@ fn relations_belong_to_the_right_things() {
     assert!((metres - 9.144).abs() < 1e-9);
     let parked = read("a parked car").description;
     assert_eq!(parked.foreground[0].state, Some(ObjectState::Parked));
+}
+
+#[test]
+fn what_was_said_before_is_not_said_again() {
+    let counts = |prompt: &str| -> Vec<(Class, u32)> {
+        let d = read(prompt).description;
+        d.foreground.iter().map(|o| (o.class, o.count.n)).collect()
+    };
+    for (prompt, expected) in [
+        (
+            "on the left there are three cars, and on the right two",
+            vec![(Class::Car, 3), (Class::Car, 2)],
+        ),
+        (
+            "cones along the left edge, six of them",
+            vec![(Class::TrafficCone, 6)],
+        ),
+        (
+            "cones block my lane, four in total",
+            vec![(Class::TrafficCone, 4)],
+        ),
+        ("seven vehicles, all trucks", vec![(Class::Truck, 7)]),
+        ("two people on bikes", vec![(Class::Bicycle, 2)]),
+        ("a roadblock of five barriers", vec![(Class::Barrier, 5)]),
+        (
+            "two cars on the left and two on the right",
+            vec![(Class::Car, 2), (Class::Car, 2)],
+        ),
+        (
+            "a car ahead and a second one behind me",
+            vec![(Class::Car, 1), (Class::Car, 1)],
+        ),
+    ] {
+        assert_eq!(counts(prompt), expected, "{prompt}");
+    }
 }
 
 #[test]
