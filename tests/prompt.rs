@@ -115,7 +115,16 @@ fn placers_memory_and_kept_parts() {
     let path = |name: &str| dir.path().join(name).display().to_string();
     let (a, b, c) = (path("a.loom"), path("b.loom"), path("c.loom"));
     let text = "two parked cars and a bus ahead, no people";
-    let made = sceneloom(&["prompt", text, "--placer", "diffusion", "--memory", "--json", "-o", &a]);
+    let made = sceneloom(&[
+        "prompt",
+        text,
+        "--placer",
+        "diffusion",
+        "--memory",
+        "--json",
+        "-o",
+        &a,
+    ]);
     assert_eq!(
         made.status.code(),
         Some(0),
@@ -129,9 +138,29 @@ fn placers_memory_and_kept_parts() {
     assert!(made["memory"]["scenes"].as_array().is_some_and(|s| !s.is_empty()));
     assert!(made["diffusion"]["report"]["steps"].as_u64() > Some(0), "{made}");
     // A new scene on the road of that one, and one around its objects.
-    let kept = sceneloom(&["prompt", "a cyclist ahead", "--base", &a, "--keep", "road", "--json", "-o", &b]);
+    let kept = sceneloom(&[
+        "prompt",
+        "a cyclist ahead",
+        "--base",
+        &a,
+        "--keep",
+        "road",
+        "--json",
+        "-o",
+        &b,
+    ]);
     assert_eq!(report(&kept)["boxes"], 1);
-    let road = sceneloom(&["prompt", "a straight road", "--base", &a, "--keep", "objects", "--json", "-o", &c]);
+    let road = sceneloom(&[
+        "prompt",
+        "a straight road",
+        "--base",
+        &a,
+        "--keep",
+        "objects",
+        "--json",
+        "-o",
+        &c,
+    ]);
     assert_eq!(report(&road)["boxes"], made["boxes"], "{}", report(&road));
     let refused = sceneloom(&["prompt", "a car", "--keep", "road", "-o", &b]);
     assert_eq!(refused.status.code(), Some(2));

@@ -212,7 +212,10 @@ impl SceneloomApp {
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
         // Whoever starts the window without settings names its parameters.
-        let quality = tuning.stops.named(&settings.quality).filter(|_| config.settings_file.is_some());
+        let quality = tuning
+            .stops
+            .named(&settings.quality)
+            .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
         Ok(Self {
             tuning,

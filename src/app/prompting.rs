@@ -88,7 +88,13 @@ pub struct Ask {
 impl Ask {
     /// Its layout.
     pub fn lay_out(&self) -> Laid {
-        lay_out_graph(&self.prompt, &self.description, self.graphed.as_ref(), self.seed, &self.how)
+        lay_out_graph(
+            &self.prompt,
+            &self.description,
+            self.graphed.as_ref(),
+            self.seed,
+            &self.how,
+        )
     }
 }
 
@@ -202,9 +208,15 @@ pub fn lay_out_graph(
         Keep::Nothing => {
             let fits = |r: &RoadRef| {
                 let layout = layout_of(r).ok()?;
-                road::lacks(&description, &graphed.graph, &layout).is_empty().then_some(layout)
+                road::lacks(&description, &graphed.graph, &layout)
+                    .is_empty()
+                    .then_some(layout)
             };
-            match proposed.as_ref().filter(|_| description.road.kind.is_none()).and_then(fits) {
+            match proposed
+                .as_ref()
+                .filter(|_| description.road.kind.is_none())
+                .and_then(fits)
+            {
                 Some(layout) => {
                     if let Some(found) = &mut remembered {
                         found.road = true;
@@ -220,12 +232,18 @@ pub fn lay_out_graph(
         }
     };
     let (placement, diffused) = match net {
-        None => (place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others), None),
+        None => (
+            place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others),
+            None,
+        ),
         Some(net) => match diffuse_and_mend(&net, &graphed, &road.layout, &how.others, seed) {
             Ok((placement, diffused)) => (placement, Some(diffused)),
             Err(error) => {
                 notes.push(format!("placed by rules: {error}"));
-                (place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others), None)
+                (
+                    place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others),
+                    None,
+                )
             }
         },
     };
@@ -326,7 +344,10 @@ fn road_under(
     }
     match diffuse::lay_out_with(net, &graph, seed) {
         Ok((layout, ..)) => {
-            let (a, b) = (road::misplaced(&layout, &given), road::misplaced(&by_rules.layout, &given));
+            let (a, b) = (
+                road::misplaced(&layout, &given),
+                road::misplaced(&by_rules.layout, &given),
+            );
             if a > b {
                 notes.push(format!(
                     "the network's road leaves {a} of the kept objects beside it, a template {b}: the template is used"
@@ -374,21 +395,32 @@ fn fill_in(memory: &Memory, prompt: &str, d: &mut Description, seed: u64) -> Opt
     let proposal = memory.fill_in(&open, seed)?;
     let mut filled = Vec::new();
     if d.time_of_day.is_none() {
-        d.time_of_day = Some(if proposal.night { TimeOfDay::Night } else { TimeOfDay::Day });
+        d.time_of_day = Some(if proposal.night {
+            TimeOfDay::Night
+        } else {
+            TimeOfDay::Day
+        });
         filled.push(format!("time: {}", d.time_of_day.map_or("", TimeOfDay::name)));
     }
     if d.weather.is_none() {
-        d.weather = [Weather::Clear, Weather::Overcast, Weather::Rain, Weather::Snow, Weather::Fog]
-            .get(proposal.weather)
-            .copied();
+        d.weather = [
+            Weather::Clear,
+            Weather::Overcast,
+            Weather::Rain,
+            Weather::Snow,
+            Weather::Fog,
+        ]
+        .get(proposal.weather)
+        .copied();
         filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
     }
     // A prompt that says how busy it is leaves nothing of that open.
     let mut room = if d.density.is_some() { 0 } else { MOST_REMEMBERED };
     for (class, by_state) in &proposal.counts {
-        for (n, state) in by_state
-            .iter()
-            .zip([ObjectState::Moving, ObjectState::Parked, ObjectState::Waiting])
+        for (n, state) in
+            by_state
+                .iter()
+                .zip([ObjectState::Moving, ObjectState::Parked, ObjectState::Waiting])
         {
             let n = (*n).min(room);
             if n == 0 {
@@ -455,9 +487,15 @@ fn environment(e: Environment) -> facts::Environment {
 }
 
 fn weather_index(w: Weather) -> Option<usize> {
-    [Weather::Clear, Weather::Overcast, Weather::Rain, Weather::Snow, Weather::Fog]
-        .iter()
-        .position(|x| *x == w)
+    [
+        Weather::Clear,
+        Weather::Overcast,
+        Weather::Rain,
+        Weather::Snow,
+        Weather::Fog,
+    ]
+    .iter()
+    .position(|x| *x == w)
 }
 
 #[cfg(test)]
@@ -479,7 +517,12 @@ mod tests {
 
     #[test]
     fn kept_objects_stay_and_a_road_is_laid_under_them() {
-        let first = lay_out("", &read("three cars ahead, an oncoming bus").description, 3, &How::default());
+        let first = lay_out(
+            "",
+            &read("three cars ahead, an oncoming bus").description,
+            3,
+            &How::default(),
+        );
         let boxes: BTreeMap<BoxId, SceneBox> = first.placement.boxes.iter().map(|b| (b.id, *b)).collect();
         let how = How {
             keep: Keep::Objects(Arc::new(boxes.clone())),
@@ -488,7 +531,11 @@ mod tests {
         let again = lay_out("", &read("a straight road").description, 9, &how);
         for b in boxes.values() {
             assert!(
-                again.placement.boxes.iter().any(|x| x.center_m == b.center_m && x.class == b.class),
+                again
+                    .placement
+                    .boxes
+                    .iter()
+                    .any(|x| x.center_m == b.center_m && x.class == b.class),
                 "{b:?}"
             );
         }
@@ -508,7 +555,10 @@ mod tests {
         assert_eq!(laid.description.time_of_day, Some(TimeOfDay::Night));
         let found = laid.remembered.expect("memory was used");
         assert!(!found.scenes.is_empty());
-        assert_eq!(remembered_phrases(&laid.description).is_empty(), !found.filled.iter().any(|f| f.contains(" x ")));
+        assert_eq!(
+            remembered_phrases(&laid.description).is_empty(),
+            !found.filled.iter().any(|f| f.contains(" x "))
+        );
     }
 
     #[test]

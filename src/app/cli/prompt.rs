@@ -113,7 +113,10 @@ impl Prompt {
             }));
             if let Some(found) = &made.laid.remembered {
                 let best = found.scenes.first().map_or("", |s| s.0.as_str());
-                lines.push(format!("from memory: {} (nearest: {best})", found.filled.join(", ")));
+                lines.push(format!(
+                    "from memory: {} (nearest: {best})",
+                    found.filled.join(", ")
+                ));
             }
             if let Some(d) = &made.laid.diffused {
                 lines.push(format!(
@@ -121,7 +124,13 @@ impl Prompt {
                     d.report.diffusion_s, d.mean_move_m, d.most_move_m, d.by_rules
                 ));
             }
-            lines.extend(reading.notes.iter().chain(&made.laid.notes).map(|n| format!("note: {n}")));
+            lines.extend(
+                reading
+                    .notes
+                    .iter()
+                    .chain(&made.laid.notes)
+                    .map(|n| format!("note: {n}")),
+            );
             lines.extend(shortfalls.iter().map(|n| format!("short: {n}")));
             lines.join("\n")
         });

@@ -278,8 +278,12 @@ impl PromptPane {
             for phrase in &reading.phrases {
                 match phrase.became {
                     Became::Object(i) => plan.object_menu(ui, i, &phrase.text, scene, read, commands),
-                    Became::Time => style_menu(ui, phrase, TimeOfDay::ALL.iter().map(|t| t.name()), &mut other),
-                    Became::Weather => style_menu(ui, phrase, Weather::ALL.iter().map(|w| w.name()), &mut other),
+                    Became::Time => {
+                        style_menu(ui, phrase, TimeOfDay::ALL.iter().map(|t| t.name()), &mut other)
+                    }
+                    Became::Weather => {
+                        style_menu(ui, phrase, Weather::ALL.iter().map(|w| w.name()), &mut other)
+                    }
                     _ => {}
                 }
                 if chip(ui, phrase) {
@@ -352,14 +356,17 @@ fn style_menu(
     names: impl Iterator<Item = &'static str>,
     other: &mut Option<(Phrase, &'static str)>,
 ) {
-    let menu = ui.menu_button(egui::RichText::new(&phrase.text).color(theme::text_strong()), |ui| {
-        for name in names {
-            if ui.button(name).clicked() {
-                *other = Some((phrase.clone(), name));
-                ui.close();
+    let menu = ui.menu_button(
+        egui::RichText::new(&phrase.text).color(theme::text_strong()),
+        |ui| {
+            for name in names {
+                if ui.button(name).clicked() {
+                    *other = Some((phrase.clone(), name));
+                    ui.close();
+                }
             }
-        }
-    });
+        },
+    );
     let label = format!("Change {}", phrase.text);
     menu.response
         .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
@@ -378,7 +385,11 @@ fn completions(begun: &str) -> Vec<String> {
 
 fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
     let has_menu = matches!(phrase.became, Became::Object(_) | Became::Time | Became::Weather);
-    let text = if has_menu { "×".to_string() } else { format!("{}  ×", phrase.text) };
+    let text = if has_menu {
+        "×".to_string()
+    } else {
+        format!("{}  ×", phrase.text)
+    };
     let text = egui::RichText::new(text).color(theme::text_strong());
     let button = egui::Button::new(text)
         .corner_radius(10)

@@ -256,7 +256,11 @@ impl Plan {
                 ui.close();
             }
             if !here {
-                ui.label(egui::RichText::new("after New scene").small().color(theme::text_weak()));
+                ui.label(
+                    egui::RichText::new("after New scene")
+                        .small()
+                        .color(theme::text_weak()),
+                );
             }
         });
         let label = format!("Change {text}");
@@ -298,7 +302,12 @@ impl Plan {
         let how = How {
             placer: self.placer,
             keep: Keep::Road(Arc::new(frame.layout.clone())),
-            others: frame.boxes.values().filter(|b| !nodes.contains(&b.id.0)).copied().collect(),
+            others: frame
+                .boxes
+                .values()
+                .filter(|b| !nodes.contains(&b.id.0))
+                .copied()
+                .collect(),
             locked,
             ..How::default()
         };
@@ -334,19 +343,21 @@ impl Plan {
         if button.clicked() {
             let (send, coming) = channel();
             let (work, wake) = (ask.clone(), ui.ctx().clone());
-            let thread = std::thread::Builder::new().name("variants".into()).spawn(move || {
-                for k in 0..VARIANTS {
-                    let ask = Ask {
-                        seed: work.seed.wrapping_add(k),
-                        ..work.clone()
-                    };
-                    // Nobody listens once others are asked for.
-                    if send.send((ask.seed, ask.lay_out())).is_err() {
-                        break;
+            let thread = std::thread::Builder::new()
+                .name("variants".into())
+                .spawn(move || {
+                    for k in 0..VARIANTS {
+                        let ask = Ask {
+                            seed: work.seed.wrapping_add(k),
+                            ..work.clone()
+                        };
+                        // Nobody listens once others are asked for.
+                        if send.send((ask.seed, ask.lay_out())).is_err() {
+                            break;
+                        }
+                        wake.request_repaint();
                     }
-                    wake.request_repaint();
-                }
-            });
+                });
             self.variants = thread.ok().map(|_| Variants {
                 of: ask.clone(),
                 coming,
@@ -368,7 +379,11 @@ impl Plan {
                     let (rect, response) = ui.allocate_exact_size(vec2(width, width * 0.62), Sense::click());
                     let name = format!("Variant of seed {seed}");
                     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-                    let fill = if response.hovered() { theme::field_hover() } else { theme::well() };
+                    let fill = if response.hovered() {
+                        theme::field_hover()
+                    } else {
+                        theme::well()
+                    };
                     ui.painter().rect_filled(rect, theme::RADIUS, fill);
                     match variants.found.get(&seed) {
                         Some(laid) => small_map(ui, rect, laid),
@@ -405,13 +420,23 @@ impl Plan {
     }
 
     /// The scene graph, editable; true if it is to be placed anew.
-    pub fn graph(&mut self, ui: &mut Ui, description: &Description, seed: u64, scene: &Scene, commands: &mut Vec<Command>) -> bool {
+    pub fn graph(
+        &mut self,
+        ui: &mut Ui,
+        description: &Description,
+        seed: u64,
+        scene: &Scene,
+        commands: &mut Vec<Command>,
+    ) -> bool {
         let mut place = false;
         egui::CollapsingHeader::new("Scene graph")
             .id_salt("scene graph")
             .default_open(false)
             .show(ui, |ui| {
-                let before = self.graphed.clone().unwrap_or_else(|| to_graph(description, seed));
+                let before = self
+                    .graphed
+                    .clone()
+                    .unwrap_or_else(|| to_graph(description, seed));
                 let mut graphed = before.clone();
                 picture(ui, &graphed.graph);
                 let rolled = nodes(ui, &mut graphed, self.made.is_some());
@@ -430,7 +455,10 @@ impl Plan {
                         .on_hover_text("A new scene of these nodes and relations");
                     place = button.clicked();
                     let edited = self.graphed.is_some();
-                    if ui.add_enabled(edited, egui::Button::new("As the words say")).clicked() {
+                    if ui
+                        .add_enabled(edited, egui::Button::new("As the words say"))
+                        .clicked()
+                    {
                         self.graphed = None;
                     }
                 });
@@ -490,7 +518,8 @@ fn picture(ui: &mut Ui, graph: &SceneGraph) {
     let place = |id: u32| graph.nodes.iter().position(|n| n.id == id).map(at);
     for e in &graph.edges {
         if let (Some(a), Some(b)) = (place(e.from), place(e.to)) {
-            ui.painter().line_segment([a, b], Stroke::new(1.0, theme::text_weak()));
+            ui.painter()
+                .line_segment([a, b], Stroke::new(1.0, theme::text_weak()));
             if graph.edges.len() < 9 {
                 ui.painter().text(
                     a + (b - a) * 0.5,
@@ -562,7 +591,10 @@ fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
             .graph
             .edges
             .retain(|e| e.from != id && e.to != id && e.and != Some(id));
-        graphed.nodes.iter_mut().for_each(|list| list.retain(|n| *n != id));
+        graphed
+            .nodes
+            .iter_mut()
+            .for_each(|list| list.retain(|n| *n != id));
     }
     if ui.button("Add object").clicked() {
         let node = crate::generation::text::edit::node_of(Class::Car);
@@ -593,7 +625,9 @@ fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
                 .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Relation {}", k + 1)));
             ends(ui, ("to", k), &mut e.to, &all, "To");
             let out = ui.add(egui::Button::new("×").small());
-            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1)));
+            out.widget_info(|| {
+                WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1))
+            });
             if out.clicked() {
                 gone = Some(k);
             }
@@ -607,17 +641,24 @@ fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
     if add.clicked()
         && let Some(from) = first
     {
-        graph.edges.push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
+        graph
+            .edges
+            .push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
     }
 }
 
 fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], what: &str) {
-    let shown = all.iter().find(|n| n.0 == *id).map_or("nothing", |n| n.1.as_str());
-    let combo = egui::ComboBox::from_id_salt(salt).selected_text(shown).show_ui(ui, |ui| {
-        for (other, name) in all {
-            ui.selectable_value(id, *other, name);
-        }
-    });
+    let shown = all
+        .iter()
+        .find(|n| n.0 == *id)
+        .map_or("nothing", |n| n.1.as_str());
+    let combo = egui::ComboBox::from_id_salt(salt)
+        .selected_text(shown)
+        .show_ui(ui, |ui| {
+            for (other, name) in all {
+                ui.selectable_value(id, *other, name);
+            }
+        });
     let label = format!("{what} of relation {}", salt.1 + 1);
     combo
         .response
@@ -628,7 +669,12 @@ fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], w
 fn small_map(ui: &Ui, rect: Rect, laid: &Laid) {
     let painter = ui.painter().with_clip_rect(rect);
     let scale = rect.width() / 84.0;
-    let at = |p: glam::DVec2| -> Pos2 { pos2(rect.center().x + p.x as f32 * scale, rect.center().y - p.y as f32 * scale) };
+    let at = |p: glam::DVec2| -> Pos2 {
+        pos2(
+            rect.center().x + p.x as f32 * scale,
+            rect.center().y - p.y as f32 * scale,
+        )
+    };
     let road = theme::text_weak().gamma_multiply(0.35);
     for line in laid.road.layout.polylines.iter() {
         let points: Vec<Pos2> = line.points_m.iter().map(|p| at(*p)).collect();
@@ -644,7 +690,11 @@ fn small_map(ui: &Ui, rect: Rect, laid: &Laid) {
     }
     let quad = |b: &SceneBox, color: Color32| {
         let points: Vec<Pos2> = b.footprint().iter().map(|p| at(*p)).collect();
-        painter.add(Shape::convex_polygon(points, color, Stroke::new(0.8, theme::text_strong())));
+        painter.add(Shape::convex_polygon(
+            points,
+            color,
+            Stroke::new(0.8, theme::text_strong()),
+        ));
     };
     quad(&crate::generation::text::holds::ego(), theme::accent());
     for b in &laid.placement.boxes {

@@ -38,7 +38,10 @@ impl Parser<'_> {
         let mut end = self.at + 1;
         let mut total = false;
         while let Some(n) = self.item(end)
-            && matches!(n.words.as_str(), "in total" | "total" | "altogether" | "in all" | "all told" | "of them")
+            && matches!(
+                n.words.as_str(),
+                "in total" | "total" | "altogether" | "in all" | "all told" | "of them"
+            )
         {
             total = true;
             end += 1;
@@ -82,7 +85,10 @@ impl Parser<'_> {
                 Tag::Is(Sense::Noun(other, _)) => Some(other.classes[0] == noun.classes[0]),
                 _ => None,
             });
-        of && counted && pre.count.is_none_or(|c| c.n == 1) && same == Some(true) && self.noun_ahead(self.at + 2)
+        of && counted
+            && pre.count.is_none_or(|c| c.n == 1)
+            && same == Some(true)
+            && self.noun_ahead(self.at + 2)
     }
 
     /// As many more of what was named last, elsewhere.
@@ -125,7 +131,10 @@ impl Parser<'_> {
         {
             before -= 1;
         }
-        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let lead = before
+            .checked_sub(1)
+            .and_then(|i| self.item(i))
+            .map_or("", |i| i.words.as_str());
         let riding = matches!(lead, "riding" | "rides" | "ride" | "is riding" | "are riding");
         let on = matches!(lead, "on")
             && self
@@ -154,7 +163,12 @@ impl Parser<'_> {
 
     /// "seven vehicles, all cars": says which. True if it was that.
     pub(super) fn says_which(&mut self, noun: &'static Noun, word: &str, plural: bool, pre: &Pre) -> bool {
-        if !plural || pre.pick != Some(Pick::All) || pre.count.is_some() || self.edits || self.pending.is_some() {
+        if !plural
+            || pre.pick != Some(Pick::All)
+            || pre.count.is_some()
+            || self.edits
+            || self.pending.is_some()
+        {
             return false;
         }
         let Some(&last) = self.last.last().or(self.head.last()).or(self.before.last()) else {
@@ -183,7 +197,10 @@ impl Parser<'_> {
         let other = self.mentions[..index]
             .iter()
             .any(|o| o.classes.iter().any(|c| m.classes.contains(c)));
-        plain && !other && !self.edits && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
+        plain
+            && !other
+            && !self.edits
+            && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
     }
 
     /// What follows a colon stands where what is before it was said to be.

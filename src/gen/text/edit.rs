@@ -434,7 +434,12 @@ impl Editor<'_> {
     }
 
     fn keep_only(&mut self, ids: &[BoxId]) {
-        let others: Vec<BoxId> = self.boxes.keys().filter(|id| !ids.contains(id)).copied().collect();
+        let others: Vec<BoxId> = self
+            .boxes
+            .keys()
+            .filter(|id| !ids.contains(id))
+            .copied()
+            .collect();
         others
             .iter()
             .for_each(|id| self.push(TextEdit::Remove { id: *id }));

@@ -353,7 +353,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             target_part(text, &items, &mut c);
             // "reduce the cars to two"
             if let [.., to, number] = items.as_slice()
-                && (matches!(verb, Verb::Keep | Verb::Make) && matches!(to.words.as_str(), "to" | "up to" | "down to" | "back to")
+                && (matches!(verb, Verb::Keep | Verb::Make)
+                    && matches!(to.words.as_str(), "to" | "up to" | "down to" | "back to")
                     || verb == Verb::Make && matches!(to.tag, Tag::Is(Sense::Noun(..))))
             {
                 let n = match number.tag {
@@ -512,7 +513,14 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             cut = cut.min(i);
         } else if matches!(
             w,
-            "away from" | "away" | "farther away" | "further away" | "further" | "farther" | "further off" | "farther off"
+            "away from"
+                | "away"
+                | "farther away"
+                | "further away"
+                | "further"
+                | "farther"
+                | "further off"
+                | "farther off"
         ) {
             toward = Some(true);
             cut = cut.min(i);
@@ -601,9 +609,16 @@ fn destination(
 /// "face the other way"
 fn turned_back(list: &[&str]) -> bool {
     let said = list.join(" ");
-    ["other way", "opposite way", "other direction", "opposite direction", "wrong way", "reverse direction"]
-        .iter()
-        .any(|w| said.contains(w))
+    [
+        "other way",
+        "opposite way",
+        "other direction",
+        "opposite direction",
+        "wrong way",
+        "reverse direction",
+    ]
+    .iter()
+    .any(|w| said.contains(w))
 }
 
 fn is_turn_word(w: &str) -> bool {

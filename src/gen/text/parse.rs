@@ -43,11 +43,11 @@ pub(super) struct Parser<'a> {
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
-    pub(super) chain: bool,      // only nouns so far in this clause
-    list: Vec<usize>, // those nouns
-    linked: bool,     // "and" or a comma right before
-    anded: bool,      // "and" right before
-    fresh: bool,      // nothing but small words since the clause began or a comma
+    pub(super) chain: bool, // only nouns so far in this clause
+    list: Vec<usize>,       // those nouns
+    linked: bool,           // "and" or a comma right before
+    anded: bool,            // "and" right before
+    fresh: bool,            // nothing but small words since the clause began or a comma
     pub(super) pending: Option<Pending>,
     pub(super) pre: Pre,
     not_goes_on: bool,
@@ -57,7 +57,7 @@ pub(super) struct Parser<'a> {
     relative: bool,
     with: bool,
     pub(super) edits: bool,
-    denied: bool, // what follows says where something is not
+    denied: bool,                   // what follows says where something is not
     pub(super) listed: Vec<Stated>, // where what a colon introduces stands
 }
 
@@ -1188,7 +1188,10 @@ impl<'a> Parser<'a> {
         }
         self.not_goes_on = false;
         self.denied = false;
-        if self.holds_others(noun, &pre) || self.rides(noun, word, &pre) || self.says_which(noun, word, plural, &pre) {
+        if self.holds_others(noun, &pre)
+            || self.rides(noun, word, &pre)
+            || self.says_which(noun, word, plural, &pre)
+        {
             return;
         }
         if self.mentions.len() >= MOST_MENTIONS {
@@ -1423,7 +1426,10 @@ impl<'a> Parser<'a> {
                 && !self.mentions[i].is_anchor
                 && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
         });
-        if matches!(self.item(self.at + 1).map(|i| i.words.as_str()), Some("one" | "ones")) {
+        if matches!(
+            self.item(self.at + 1).map(|i| i.words.as_str()),
+            Some("one" | "ones")
+        ) {
             self.at += 1; // "the first one"
         }
         let Some(parent) = parent else {

@@ -94,9 +94,23 @@ const UNWISH: &[&[&str]] = &[
     &["out", "with"],
     &["make", "do", "without"],
 ];
-const MODALS: &[&str] = &["should", "must", "shall", "ought", "needs", "need", "has", "have", "can", "could", "may", "will", "is", "are"];
+const MODALS: &[&str] = &[
+    "should", "must", "shall", "ought", "needs", "need", "has", "have", "can", "could", "may", "will", "is",
+    "are",
+];
 const GONE: &[&str] = &[
-    "gone", "removed", "deleted", "erased", "disappear", "vanish", "go", "away", "out", "leave", "scrapped", "dropped",
+    "gone",
+    "removed",
+    "deleted",
+    "erased",
+    "disappear",
+    "vanish",
+    "go",
+    "away",
+    "out",
+    "leave",
+    "scrapped",
+    "dropped",
 ];
 
 fn starts_with(tokens: &[Token], words: &[&str]) -> bool {
@@ -144,7 +158,10 @@ fn is_noun(t: &Token) -> bool {
 }
 
 fn is_verb(t: &Token) -> bool {
-    VERBS.iter().any(|(_, list)| list.split('|').any(|w| w.split(' ').next() == Some(t.text.as_str())))
+    VERBS.iter().any(|(_, list)| {
+        list.split('|')
+            .any(|w| w.split(' ').next() == Some(t.text.as_str()))
+    })
 }
 
 fn is_place_word(t: &Token) -> bool {
@@ -180,7 +197,8 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         if let Some(first) = body.first() {
             let (new, change) = one(&body);
             if let Some(change) = change {
-                out.changes.push((new.first().map_or(first.span.start, |t| t.span.start), change));
+                out.changes
+                    .push((new.first().map_or(first.span.start, |t| t.span.start), change));
             }
             out.tokens.extend(new);
         }
@@ -215,12 +233,17 @@ fn take_and_put(body: &[Token]) -> Vec<Token> {
     let (Some(&second), true) = (verbs.first(), is_verb(first)) else {
         return body.to_vec();
     };
-    let pronoun = body.get(second + 1).is_some_and(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her"));
+    let pronoun = body
+        .get(second + 1)
+        .is_some_and(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her"));
     if !pronoun {
         return body.to_vec();
     }
     let mut np_end = second;
-    while np_end > 1 && (matches!(body[np_end - 1].text.as_str(), "and" | "then") || body[np_end - 1].kind == TokenKind::Comma) {
+    while np_end > 1
+        && (matches!(body[np_end - 1].text.as_str(), "and" | "then")
+            || body[np_end - 1].kind == TokenKind::Comma)
+    {
         np_end -= 1;
     }
     let noun = body[1..np_end].iter().position(is_noun).map(|i| i + 1);
@@ -254,9 +277,14 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     let Some(first) = rest.first() else {
         return (body.to_vec(), None);
     };
-    if let Some(list) = UNWISH.iter().find(|l| rest.len() > l.len() && starts_with(rest, l)) {
+    if let Some(list) = UNWISH
+        .iter()
+        .find(|l| rest.len() > l.len() && starts_with(rest, l))
+    {
         let tail = strip(&rest[list.len()..], &[&["any", "more"], &["any"]]);
-        let end = tail.iter().rposition(|t| !matches!(t.text.as_str(), "please" | "anymore" | "more" | "any"));
+        let end = tail
+            .iter()
+            .rposition(|t| !matches!(t.text.as_str(), "please" | "anymore" | "more" | "any"));
         let tail = &tail[..end.map_or(tail.len(), |e| e + 1)];
         // "no more cones" means all of them, as "remove the cones" does
         return (with_verb("remove", first, tail), None);
@@ -270,9 +298,20 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (wished(wish, first), None);
     }
     // "everything away except the bus", "all out but the bus"
-    if matches!(first.text.as_str(), "everything" | "all" | "everyone" | "remove" | "delete" | "clear" | "erase" | "take") {
-        let cut = rest.iter().position(|t| matches!(t.text.as_str(), "except" | "but" | "excluding" | "bar" | "save" | "besides"));
-        let everything = rest.iter().take(cut.unwrap_or(0)).any(|t| matches!(t.text.as_str(), "everything" | "all" | "everyone"));
+    if matches!(
+        first.text.as_str(),
+        "everything" | "all" | "everyone" | "remove" | "delete" | "clear" | "erase" | "take"
+    ) {
+        let cut = rest.iter().position(|t| {
+            matches!(
+                t.text.as_str(),
+                "except" | "but" | "excluding" | "bar" | "save" | "besides"
+            )
+        });
+        let everything = rest
+            .iter()
+            .take(cut.unwrap_or(0))
+            .any(|t| matches!(t.text.as_str(), "everything" | "all" | "everyone"));
         if let Some(cut) = cut.filter(|_| everything) {
             let nouns = rest[..cut].iter().any(|t| is_noun(t) && t.text != "everything");
             let tail = strip(&rest[cut + 1..], &[&["for"], &["from"]]);
@@ -281,13 +320,20 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
             }
         }
     }
-    if is_verb(first) && first.text != "let" && !(first.text == "get" && rest.len() > 2) && first.text != "have" {
+    if is_verb(first)
+        && first.text != "let"
+        && !(first.text == "get" && rest.len() > 2)
+        && first.text != "have"
+    {
         return (rest.to_vec(), None);
     }
     // "let the cyclist ride behind me", "have the people stand on the right", "get the bus behind me"
     if matches!(first.text.as_str(), "let" | "have" | "get") && rest.len() > 2 && rest[1].text != "rid" {
         let tail = &rest[1..];
-        if matches!(tail[0].text.as_str(), "the" | "all" | "my" | "both" | "every" | "that") {
+        if matches!(
+            tail[0].text.as_str(),
+            "the" | "all" | "my" | "both" | "every" | "that"
+        ) {
             return (wished(tail, first), None);
         }
         if first.text == "have" {
@@ -300,9 +346,7 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
 
 /// "double the cars", "half as many cars", "two fewer pedestrians", "one pedestrian less".
 fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
-    let at = |words: &[&str]| -> Option<usize> {
-        (0..rest.len()).find(|i| starts_with(&rest[*i..], words))
-    };
+    let at = |words: &[&str]| -> Option<usize> { (0..rest.len()).find(|i| starts_with(&rest[*i..], words)) };
     let first = &rest[0];
     let times = [
         ("double", 2.0),
@@ -313,7 +357,17 @@ fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
         ("twice", 2.0),
         ("thrice", 3.0),
     ];
-    let lead = strip(rest, &[&["make"], &["make", "it"], &["put"], &["add"], &["have"], &["show"]]);
+    let lead = strip(
+        rest,
+        &[
+            &["make"],
+            &["make", "it"],
+            &["put"],
+            &["add"],
+            &["have"],
+            &["show"],
+        ],
+    );
     let mut factor = lead
         .first()
         .and_then(|t| times.iter().find(|(w, _)| t.text == *w))
@@ -330,21 +384,33 @@ fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
     let noun_from = |tokens: &[Token]| -> Option<usize> { tokens.iter().position(is_noun) };
     if let Some(f) = factor {
         let noun = noun_from(lead)?;
-        let double_decker = lead[0].text == "double" && lead.get(1).is_some_and(|t| t.text == "decker" || t.text == "parked");
+        let double_decker = lead[0].text == "double"
+            && lead
+                .get(1)
+                .is_some_and(|t| t.text == "decker" || t.text == "parked");
         if double_decker {
             return None;
         }
         // what is said between the number words and the noun belongs to it
         let small = ["the", "number", "of", "as", "many", "times", "a"];
         let mut from = noun;
-        while from > 1 && !small.contains(&lead[from - 1].text.as_str()) && number(&lead[from - 1]).is_none() {
+        while from > 1 && !small.contains(&lead[from - 1].text.as_str()) && number(&lead[from - 1]).is_none()
+        {
             from -= 1;
         }
-        let end = lead.iter().position(|t| matches!(t.text.as_str(), "in" if t.text == "half")).unwrap_or(lead.len());
-        return Some((with_verb("keep the", first, &lead[from.min(end)..end]), Change::Times(f)));
+        let end = lead
+            .iter()
+            .position(|t| matches!(t.text.as_str(), "in" if t.text == "half"))
+            .unwrap_or(lead.len());
+        return Some((
+            with_verb("keep the", first, &lead[from.min(end)..end]),
+            Change::Times(f),
+        ));
     }
     // fewer and less; more, where it comes after the noun
-    let fewer = rest.iter().position(|t| matches!(t.text.as_str(), "fewer" | "less"))?;
+    let fewer = rest
+        .iter()
+        .position(|t| matches!(t.text.as_str(), "fewer" | "less"))?;
     let n = rest[..fewer]
         .iter()
         .rev()
@@ -357,7 +423,10 @@ fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
     }
     let mut tokens: Vec<Token> = Vec::new();
     for (i, t) in rest.iter().enumerate() {
-        let skip = i == fewer || (i < noun && (number(t).is_some() || matches!(t.text.as_str(), "a" | "an" | "make" | "it" | "one" | "have")));
+        let skip = i == fewer
+            || (i < noun
+                && (number(t).is_some()
+                    || matches!(t.text.as_str(), "a" | "an" | "make" | "it" | "one" | "have")));
         if !skip {
             tokens.push(t.clone());
         }
@@ -371,10 +440,16 @@ fn wished(wish: &[Token], first: &Token) -> Vec<Token> {
         return new;
     }
     // "four people rather than three"
-    let than = (0..wish.len()).find(|i| starts_with(&wish[*i..], &["rather", "than"]) || starts_with(&wish[*i..], &["instead", "of"]) || wish[*i].text == "not");
+    let than = (0..wish.len()).find(|i| {
+        starts_with(&wish[*i..], &["rather", "than"])
+            || starts_with(&wish[*i..], &["instead", "of"])
+            || wish[*i].text == "not"
+    });
     if let Some(than) = than
         && wish.first().and_then(number).is_some()
-        && wish.get(than + 1..).is_some_and(|t| t.iter().take(2).any(|t| number(t).is_some()))
+        && wish
+            .get(than + 1..)
+            .is_some_and(|t| t.iter().take(2).any(|t| number(t).is_some()))
     {
         return with_verb("keep exactly", first, &wish[..than]);
     }
@@ -385,12 +460,24 @@ fn stated(rest: &[Token]) -> Option<Vec<Token>> {
     let first = rest.first()?;
     // "one cyclist is enough"
     let last = rest.last()?;
-    if number(first).is_some() && matches!(last.text.as_str(), "enough" | "suffices" | "suffice" | "plenty" | "do" | "sufficient" | "only") {
-        let end = rest.iter().position(|t| matches!(t.text.as_str(), "is" | "are" | "will" | "would" | "suffices" | "suffice"))?;
+    if number(first).is_some()
+        && matches!(
+            last.text.as_str(),
+            "enough" | "suffices" | "suffice" | "plenty" | "do" | "sufficient" | "only"
+        )
+    {
+        let end = rest.iter().position(|t| {
+            matches!(
+                t.text.as_str(),
+                "is" | "are" | "will" | "would" | "suffices" | "suffice"
+            )
+        })?;
         return Some(with_verb("keep only", first, &rest[..end]));
     }
     let m = rest.iter().position(|t| MODALS.contains(&t.text.as_str()))?;
-    let named = rest[..m].iter().any(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"));
+    let named = rest[..m]
+        .iter()
+        .any(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"));
     if !named || m == 0 {
         // "there should be six cones" is read as it is
         return None;
@@ -400,13 +487,26 @@ fn stated(rest: &[Token]) -> Option<Vec<Token>> {
 
 /// A noun phrase and what shall become of it, as a command.
 fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
-    let noun = rest.iter().position(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"))?;
-    let definite = rest[..noun].iter().any(|t| matches!(t.text.as_str(), "the" | "my" | "that" | "all" | "both" | "every" | "this"))
-        || matches!(rest[noun].text.as_str(), "everything" | "everyone");
+    let noun = rest
+        .iter()
+        .position(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"))?;
+    let definite = rest[..noun].iter().any(|t| {
+        matches!(
+            t.text.as_str(),
+            "the" | "my" | "that" | "all" | "both" | "every" | "this"
+        )
+    }) || matches!(rest[noun].text.as_str(), "everything" | "everyone");
     // Words of the noun phrase end where a modal or a verb begins.
-    let small = ["to", "be", "not", "also", "now", "just", "get", "got", "instead", "rather", "please"];
+    let small = [
+        "to", "be", "not", "also", "now", "just", "get", "got", "instead", "rather", "please",
+    ];
     let modal = (noun..rest.len()).find(|i| MODALS.contains(&rest[*i].text.as_str()));
-    let last_word = rest.iter().rposition(|t| !matches!(t.text.as_str(), "please" | "now" | "instead" | "from" | "here" | "scene"))?;
+    let last_word = rest.iter().rposition(|t| {
+        !matches!(
+            t.text.as_str(),
+            "please" | "now" | "instead" | "from" | "here" | "scene"
+        )
+    })?;
     let gone = GONE.contains(&rest[last_word].text.as_str());
     if gone && definite && last_word > noun {
         let end = modal.unwrap_or(last_word).min(last_word);
@@ -418,7 +518,8 @@ fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
     let mut tail_from = match modal {
         Some(m) => m + 1,
         // "let the cyclist ride behind me", "I want the bus behind me"
-        None => (noun + 1..rest.len()).find(|i| is_place_word(&rest[*i]) || matches!(sense(&rest[*i]), Some(Sense::State(..))))?,
+        None => (noun + 1..rest.len())
+            .find(|i| is_place_word(&rest[*i]) || matches!(sense(&rest[*i]), Some(Sense::State(..))))?,
     };
     let np_end = modal.unwrap_or(tail_from);
     while tail_from < rest.len()
@@ -429,7 +530,8 @@ fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
     let np = &rest[..np_end];
     let end = (tail_from..rest.len())
         .find(|i| {
-            matches!(rest[*i].text.as_str(), "instead" | "please") || starts_with(&rest[*i..], &["rather", "than"])
+            matches!(rest[*i].text.as_str(), "instead" | "please")
+                || starts_with(&rest[*i..], &["rather", "than"])
         })
         .unwrap_or(rest.len());
     let tail = rest.get(tail_from..end)?;
@@ -443,10 +545,16 @@ fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
     if article && tail.iter().any(is_noun) {
         return join("make", np, tail); // "the taxi ought to be a bus"
     }
-    if matches!(head.text.as_str(), "face" | "turn" | "look" | "point" | "rotate" | "spin") {
+    if matches!(
+        head.text.as_str(),
+        "face" | "turn" | "look" | "point" | "rotate" | "spin"
+    ) {
         return join("turn", np, tail);
     }
-    if matches!(head.text.as_str(), "moved" | "move" | "shifted" | "pushed" | "placed" | "put") {
+    if matches!(
+        head.text.as_str(),
+        "moved" | "move" | "shifted" | "pushed" | "placed" | "put"
+    ) {
         return join("move", np, &tail[1..]);
     }
     if matches!(sense(head), Some(Sense::State(..))) && tail.get(1).is_some() {
@@ -457,7 +565,11 @@ fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
     if is_place_word(head) {
         return join("move", np, tail);
     }
-    if number(head).is_some() && tail.get(1).is_some_and(|t| look_up(&t.text).is_some_and(|s| matches!(s, Sense::Unit(_)))) {
+    if number(head).is_some()
+        && tail
+            .get(1)
+            .is_some_and(|t| look_up(&t.text).is_some_and(|s| matches!(s, Sense::Unit(_))))
+    {
         return join("move", np, tail);
     }
     None
@@ -469,7 +581,11 @@ mod tests {
     use super::*;
 
     fn said(text: &str) -> String {
-        let list: Vec<String> = rephrase(&tokens(text)).tokens.into_iter().map(|t| t.text).collect();
+        let list: Vec<String> = rephrase(&tokens(text))
+            .tokens
+            .into_iter()
+            .map(|t| t.text)
+            .collect();
         list.join(" ")
     }
 
@@ -478,13 +594,19 @@ mod tests {
         assert_eq!(said("The bus should go"), "remove the bus");
         assert_eq!(said("I want the bus gone"), "remove the bus");
         assert_eq!(said("the taxi ought to be a van"), "make the taxi a van");
-        assert_eq!(said("let the cyclist ride behind me instead"), "move the cyclist behind me");
+        assert_eq!(
+            said("let the cyclist ride behind me instead"),
+            "move the cyclist behind me"
+        );
         assert_eq!(said("everything away except the bus"), "keep only the bus");
         assert_eq!(said("could you remove the bus?"), "remove the bus .");
         assert_eq!(said("add a bus behind me"), "add a bus behind me");
         let less = rephrase(&tokens("one pedestrian less"));
         assert_eq!(less.changes, [(less.tokens[0].span.start, Change::Plus(-1))]);
-        assert_eq!(rephrase(&tokens("double the number of parked cars")).changes[0].1, Change::Times(2.0));
+        assert_eq!(
+            rephrase(&tokens("double the number of parked cars")).changes[0].1,
+            Change::Times(2.0)
+        );
         assert_eq!(rephrase(&tokens("remove the second truck")).ordinals.len(), 1);
         assert!(rephrase(&[]).tokens.is_empty());
     }

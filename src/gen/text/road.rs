@@ -100,8 +100,8 @@ pub fn misplaced(layout: &BevLayout, boxes: &[crate::scene::SceneBox]) -> usize 
     let wrong = |b: &&crate::scene::SceneBox| {
         let p = b.center_m.truncate();
         let off = !b.footprint().iter().all(|c| map.has(road, *c));
-        let against = b.velocity_mps.length() > 0.5
-            && map.nearest(p).is_some_and(|l| l.dir.dot(b.heading()) < 0.9);
+        let against =
+            b.velocity_mps.length() > 0.5 && map.nearest(p).is_some_and(|l| l.dir.dot(b.heading()) < 0.9);
         off || against
     };
     boxes

@@ -176,7 +176,11 @@ pub fn in_order(
     let mut fit = fitting(map, boxes, m, all);
     let range = |id: &BoxId| boxes[id].center_m.truncate().length();
     fit.sort_by(|a, b| range(a).total_cmp(&range(b)));
-    let index = if nth == 0 { fit.len().wrapping_sub(1) } else { nth - 1 };
+    let index = if nth == 0 {
+        fit.len().wrapping_sub(1)
+    } else {
+        nth - 1
+    };
     match fit.get(index) {
         Some(id) => Chosen::These(vec![*id]),
         None if fit.is_empty() => Chosen::None(m.spec.noun.clone()),

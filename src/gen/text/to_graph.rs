@@ -73,7 +73,9 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                 (r.relation, r.anchor, r.distance_m)
                 && j != i
                 && d.foreground.get(j).is_some_and(|x| x.relations.is_empty())
-                && o.relations.iter().any(|x| x.anchor == Anchor::Ego && x.distance_m.is_some())
+                && o.relations
+                    .iter()
+                    .any(|x| x.anchor == Anchor::Ego && x.distance_m.is_some())
                 && let Some(&to) = out.nodes.get(i).and_then(|n| n.first())
             {
                 for from in out.nodes[j].clone() {

@@ -20,8 +20,14 @@ use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in three sets that were written one after another; the grammar was mended after each was judged once.
 const SETS: [(&str, &str); 3] = [
-    ("prompts.jsonl", include_str!("../../../../tests/data/prompts.jsonl")),
-    ("strangers.jsonl", include_str!("../../../../tests/data/strangers.jsonl")),
+    (
+        "prompts.jsonl",
+        include_str!("../../../../tests/data/prompts.jsonl"),
+    ),
+    (
+        "strangers.jsonl",
+        include_str!("../../../../tests/data/strangers.jsonl"),
+    ),
     (
         "strangers_2.jsonl",
         include_str!("../../../../tests/data/strangers_2.jsonl"),
@@ -229,7 +235,8 @@ impl Eval {
         let mut cases: Vec<Case> = Vec::new();
         match &self.prompts {
             Some(path) => {
-                let text = std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?;
+                let text =
+                    std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?;
                 cases.extend(cases_of(&path.display().to_string(), &text)?);
             }
             None => {

@@ -70,7 +70,8 @@ impl Eval {
                     }
                 }
             }
-            let mean = |f: fn(&(f64, f64)) -> f64| spread.iter().map(f).sum::<f64>() / spread.len().max(1) as f64;
+            let mean =
+                |f: fn(&(f64, f64)) -> f64| spread.iter().map(f).sum::<f64>() / spread.len().max(1) as f64;
             let mut report = tally.report();
             report["objects"] = objects.into();
             report["rows"] = json!(figures.rows());

@@ -46,7 +46,10 @@ pub const VERBS: &[(Verb, &str)] = &[
         Verb::Paint,
         "paint|recolour|recolor|colour|color|repaint|dye|tint",
     ),
-    (Verb::Keep, "keep|leave|only keep|only leave|just keep|just leave|reduce|lower|cut to|trim|bring down|bump|raise|increase|bring up to|limit|restrict|retain|cut down"),
+    (
+        Verb::Keep,
+        "keep|leave|only keep|only leave|just keep|just leave|reduce|lower|cut to|trim|bring down|bump|raise|increase|bring up to|limit|restrict|retain|cut down",
+    ),
     (
         Verb::Make,
         "make|set|change|switch|let|turn it|make it|set it|get|i want it|alter|adjust",
@@ -87,7 +90,10 @@ pub const PICKS: &[(Pick, &str)] = &[
         Pick::All,
         "all|every|each of the|all of the|all the|all of|every single|every one of the",
     ),
-    (Pick::Nearest, "nearest|closest|nearest to me|closest to me|nearest to us|closest to us|nearest to the ego|closest by|nearest one|closest one"),
+    (
+        Pick::Nearest,
+        "nearest|closest|nearest to me|closest to me|nearest to us|closest to us|nearest to the ego|closest by|nearest one|closest one",
+    ),
     (
         Pick::Farthest,
         "farthest|furthest|remotest|furthest from me|farthest from me|furthest off|most remote|furthest out|farthest out|furthest from us|most distant|farthest away|furthest away",

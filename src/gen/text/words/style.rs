@@ -159,7 +159,10 @@ pub const COUNTS: &[(Count, &str)] = &[
         Count { min: 3, n: 3, max: 3 },
         "three|a trio of|a threesome of|trio of|trio|triple",
     ),
-    (Count { min: 4, n: 4, max: 4 }, "four|a quartet of|quartet of|a foursome of|fou"),
+    (
+        Count { min: 4, n: 4, max: 4 },
+        "four|a quartet of|quartet of|a foursome of|fou",
+    ),
     (Count { min: 5, n: 5, max: 5 }, "five"),
     (
         Count { min: 6, n: 6, max: 6 },
