@@ -92,17 +92,22 @@ fn main() {
         let mut added = Vec::new();
         let in_int8 = timed(&mut int8, || {
             let (mut kept, middle) = (KeysValues::default(), Middle::Kept(&mut added));
-            models.dit.forward_in(&latent, 500.0, &prepared, &mut kept, Precision::Int8, middle)
+            models
+                .dit
+                .forward_in(&latent, 500.0, &prepared, &mut kept, Precision::Int8, middle)
         })
         .expect("finite");
         timed(&mut reused, || {
             let (mut kept, middle) = (KeysValues::default(), Middle::Reused(&added));
-            models.dit.forward_in(&latent, 500.0, &prepared, &mut kept, Precision::F32, middle)
+            models
+                .dit
+                .forward_in(&latent, 500.0, &prepared, &mut kept, Precision::F32, middle)
         })
         .expect("finite");
         if run == 0 {
             let exact = models.dit.forward(&latent, 500.0, &prepared).expect("finite");
-            let square = |v: &mut dyn Iterator<Item = f32>| v.map(|v| f64::from(v).powi(2)).sum::<f64>().sqrt();
+            let square =
+                |v: &mut dyn Iterator<Item = f32>| v.map(|v| f64::from(v).powi(2)).sum::<f64>().sqrt();
             let error = square(&mut in_int8.iter().zip(&exact).map(|(a, b)| a - b));
             println!(
                 "eight bits: relative RMS error of v {:.4}",

@@ -384,7 +384,14 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
     let folder = Folder::new();
     let [out, plot, stops] = ["t.json", "t.png", "stops.json"].map(|n| folder.path(n));
     let common = ["trade", "--frames", "1", "--repeats", "1", "-o", &out];
-    let only = ["--parts", "edit,vae", "--only", "2 steps;4 steps, int8", "--reference-steps", "4"];
+    let only = [
+        "--parts",
+        "edit,vae",
+        "--only",
+        "2 steps;4 steps, int8",
+        "--reference-steps",
+        "4",
+    ];
     let files = ["--processes", "2", "--plot", &plot, "--stops", &stops];
     let (report, code) = run(&[&common[..], &only, &files].concat());
     assert_eq!(code, 0);
@@ -393,8 +400,14 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
     assert_eq!(edits.len(), 2);
     for p in &edits {
         let zero = Some(0);
-        assert_eq!((p["untouched_voxels_changed"].as_u64(), p["failed"].as_u64()), (zero, zero));
-        assert!(p["wall_s"]["median"].as_f64() > Some(0.0) && p["runs"].as_u64() == Some(6), "{p}");
+        assert_eq!(
+            (p["untouched_voxels_changed"].as_u64(), p["failed"].as_u64()),
+            (zero, zero)
+        );
+        assert!(
+            p["wall_s"]["median"].as_f64() > Some(0.0) && p["runs"].as_u64() == Some(6),
+            "{p}"
+        );
     }
     let error = |name: &str| {
         let point = edits.iter().find(|p| p["name"] == name).expect("measured");

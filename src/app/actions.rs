@@ -452,9 +452,13 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", |_| {
         Some(Command::Workspace(Workspace::Trade))
     }),
-    action(Generation, "calibrate", "Calibrate the quality slider", "", |_| {
-        Some(Command::Calibrate)
-    }),
+    action(
+        Generation,
+        "calibrate",
+        "Calibrate the quality slider",
+        "",
+        |_| Some(Command::Calibrate),
+    ),
     action(Generation, "refine", "Measure the last edit's error", "", |_| {
         Some(Command::Refine)
     }),
@@ -485,9 +489,13 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
         Some(Command::CancelGeneration)
     }),
-    action(Generation, "cancel_waiting", "Drop the edit that waits", "", |_| {
-        Some(Command::CancelWaiting)
-    }),
+    action(
+        Generation,
+        "cancel_waiting",
+        "Drop the edit that waits",
+        "",
+        |_| Some(Command::CancelWaiting),
+    ),
     action(
         Generation,
         "cancel_all",
@@ -555,9 +563,7 @@ pub const ACTIONS: &[ActionDef] = &[
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
         Some(Command::TogglePalette)
     }),
-    action(File, "keys", "Sheet of keys", "?", |_| {
-        Some(Command::ToggleKeys)
-    }),
+    action(File, "keys", "Sheet of keys", "?", |_| Some(Command::ToggleKeys)),
     action(File, "settings", "Settings", "Ctrl+,", |_| {
         Some(Command::ToggleSettings)
     }),

@@ -212,7 +212,10 @@ impl SceneloomApp {
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
         // Whoever starts the window without settings names its parameters.
-        let quality = tuning.stops.named(&settings.quality).filter(|_| config.settings_file.is_some());
+        let quality = tuning
+            .stops
+            .named(&settings.quality)
+            .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
         Ok(Self {
             tuning,
@@ -760,9 +763,15 @@ pub(super) fn one_line(error: &anyhow::Error) -> String {
 
 impl eframe::App for SceneloomApp {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        self.frame_begins(frame.info().cpu_usage);
+        // A frame that is laid out twice comes here twice; it is one frame.
+        let first = ctx.current_pass_index() == 0;
+        if first {
+            self.frame_begins(frame.info().cpu_usage);
+        }
         self.update(ctx);
-        self.perf.logic_done(self.now_s());
+        if first {
+            self.perf.logic_done(self.now_s());
+        }
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {

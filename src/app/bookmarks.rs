@@ -103,7 +103,10 @@ mod tests {
         let again: Bookmark = serde_json::from_str(&text).expect("read");
         assert_eq!(again, bookmark);
         let there = again.camera();
-        assert_eq!((there.target_m, there.distance_m), (camera.target_m, camera.distance_m));
+        assert_eq!(
+            (there.target_m, there.distance_m),
+            (camera.target_m, camera.distance_m)
+        );
         assert!((there.yaw_rad - 1.2).abs() < 1e-9 && (there.pitch_rad + 0.3).abs() < 1e-9);
         let bad = Bookmark {
             distance_m: f64::INFINITY,

@@ -108,7 +108,11 @@ impl Dock {
                 let strip = t.insert_pane(Pane::Cameras);
                 let center = join(&mut t, Vertical, &[(views, 700.0), (strip, 150.0)]);
                 let (tools, trade) = (t.insert_pane(Pane::Tools), t.insert_pane(Pane::Trade));
-                join(&mut t, Horizontal, &[(tools, 232.0), (center, 940.0), (trade, 430.0)])
+                join(
+                    &mut t,
+                    Horizontal,
+                    &[(tools, 232.0), (center, 940.0), (trade, 430.0)],
+                )
             }
             Workspace::Label => {
                 let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);

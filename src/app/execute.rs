@@ -283,7 +283,9 @@ impl SceneloomApp {
 
     /// Puts a stop's settings to use, from the next edit on.
     pub(super) fn set_quality(&mut self, stop: usize) {
-        let Some(stop) = self.tuning.stops.stops.get(stop) else { return };
+        let Some(stop) = self.tuning.stops.stops.get(stop) else {
+            return;
+        };
         self.live.params = stop.knobs.on(self.live.params);
         self.settings.quality.clone_from(&stop.name);
         // The source's trajectory belongs to its settings.

@@ -337,8 +337,7 @@ pub fn choice<T: Copy + PartialEq>(
         .width(72.0)
         .show_ui(ui, |ui| {
             for (value, name, hint) in choices {
-                ui.selectable_value(chosen, *value, *name)
-                    .on_hover_text(*hint);
+                ui.selectable_value(chosen, *value, *name).on_hover_text(*hint);
             }
         })
         .response

@@ -195,7 +195,9 @@ mod tests {
             }],
             ..Default::default()
         };
-        let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, &mut state, false, &mut out));
+        let _ = ctx.run_ui(input, |ui| {
+            commands(ui.ctx(), &keymap, &mut state, false, &mut out)
+        });
         assert_eq!(out, [Command::CycleCompare]);
     }
 

@@ -3,8 +3,8 @@
 
 use std::collections::VecDeque;
 
-use crate::generation::job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
 use super::guard::{self, Pace, Pause};
+use crate::generation::job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
 use crate::generation::region::Region;
 use crate::scene::{Scene, SceneRev};
 
@@ -380,7 +380,11 @@ mod tests {
             (0..200).for_each(|y| scene.frame_mut().layout.set(BevLayer::DrivableArea, x, y, true));
         }
         assert_eq!(live.advise(&scene, false, 1.0), Advice::Rest);
-        assert!(matches!(live.paused, Some(Pause::Large(share)) if share > 0.6), "{:?}", live.paused);
+        assert!(
+            matches!(live.paused, Some(Pause::Large(share)) if share > 0.6),
+            "{:?}",
+            live.paused
+        );
         assert!(!live.has_waiting(scene.rev));
         // Undone, nothing is said any more.
         live.advise(&before, false, 1.1);

@@ -38,7 +38,8 @@ impl SceneloomApp {
     }
 
     /// What was edited in this frame is shown by this frame: the panels are laid out again, and only that is painted.
-    /// False if the window does not lay them out again (it has done so already).
+    /// False if the window does not lay them out again (it has done so already). Generation, sensors and checks learn of
+    /// the edit in the second pass.
     pub(super) fn show_at_once(&mut self, ctx: &egui::Context) -> bool {
         if ctx.current_pass_index() > 0 {
             return false;
@@ -48,8 +49,6 @@ impl SceneloomApp {
             return false;
         }
         self.perf.shown_at_once();
-        // What comes with a new frame otherwise: generation, sensors and checks learn of the edit.
-        self.update(ctx);
         true
     }
 

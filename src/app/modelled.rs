@@ -21,13 +21,22 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
             let at = |i: usize| GridSpec::MIN_M[0] + i as f64 * GridSpec::VOXEL_M;
             map.to_screen(dvec2(at(x), at(y)))
         };
-        Rect::from_two_pos(corner(x * columns, y * columns), corner((x + 1) * columns, (y + 1) * columns))
+        Rect::from_two_pos(
+            corner(x * columns, y * columns),
+            corner((x + 1) * columns, (y + 1) * columns),
+        )
     };
     let blue = Color32::from_rgb(70, 150, 255);
     let side = GridSpec::NX / TOKENS;
     for token in &last.tokens {
         let rect = squares(token / TOKENS, token % TOKENS, side);
-        painter.rect(rect, 0.0, blue.gamma_multiply(0.16), Stroke::new(1.0, blue.gamma_multiply(0.6)), StrokeKind::Inside);
+        painter.rect(
+            rect,
+            0.0,
+            blue.gamma_multiply(0.16),
+            Stroke::new(1.0, blue.gamma_multiply(0.6)),
+            StrokeKind::Inside,
+        );
     }
     let yellow = Color32::from_rgb(255, 200, 40).gamma_multiply(0.35);
     for (i, _) in last.region.columns.iter().enumerate().filter(|(_, c)| **c) {
@@ -35,7 +44,12 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
     }
     let green = Stroke::new(1.5, Color32::from_rgb(60, 220, 120));
     for brick in &last.bricks {
-        painter.rect_stroke(squares(brick / BRICKS, brick % BRICKS, BRICK), 0.0, green, StrokeKind::Inside);
+        painter.rect_stroke(
+            squares(brick / BRICKS, brick % BRICKS, BRICK),
+            0.0,
+            green,
+            StrokeKind::Inside,
+        );
     }
     let text = format!(
         "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",

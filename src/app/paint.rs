@@ -13,7 +13,12 @@ struct Texture {
 }
 
 /// What `show` draws on `points` (width, height) at so many pixels per point.
-pub fn picture(ctx: &Context, points: [f32; 2], pixels_per_point: f32, mut show: impl FnMut(&mut Ui)) -> Picture {
+pub fn picture(
+    ctx: &Context,
+    points: [f32; 2],
+    pixels_per_point: f32,
+    mut show: impl FnMut(&mut Ui),
+) -> Picture {
     let input = || RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, points.into())),
         ..RawInput::default()
@@ -52,7 +57,14 @@ pub fn picture(ctx: &Context, points: [f32; 2], pixels_per_point: f32, mut show:
             if let (Primitive::Mesh(mesh), clip) = (&primitive.primitive, primitive.clip_rect)
                 && let Some(texture) = textures.get(&mesh.texture_id)
             {
-                draw(mesh, texture, clip, pixels_per_point, [width, height], &mut pixels);
+                draw(
+                    mesh,
+                    texture,
+                    clip,
+                    pixels_per_point,
+                    [width, height],
+                    &mut pixels,
+                );
             }
         }
     }
@@ -64,7 +76,14 @@ pub fn picture(ctx: &Context, points: [f32; 2], pixels_per_point: f32, mut show:
 }
 
 /// Triangles with colours and texture coordinates at their corners, blended over what is there (both premultiplied).
-fn draw(mesh: &Mesh, texture: &Texture, clip: Rect, scale: f32, [width, height]: [usize; 2], out: &mut [[f32; 4]]) {
+fn draw(
+    mesh: &Mesh,
+    texture: &Texture,
+    clip: Rect,
+    scale: f32,
+    [width, height]: [usize; 2],
+    out: &mut [[f32; 4]],
+) {
     for triangle in mesh.indices.chunks_exact(3) {
         let corners = [0, 1, 2].map(|i| mesh.vertices[triangle[i] as usize]);
         let [a, b, c] = corners.map(|v| pos2(v.pos.x * scale, v.pos.y * scale));
@@ -73,11 +92,17 @@ fn draw(mesh: &Mesh, texture: &Texture, clip: Rect, scale: f32, [width, height]:
             continue;
         }
         let bound = Rect::from_points(&[a, b, c]).intersect(clip * scale);
-        let range = |low: f32, high: f32, n: usize| low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n);
+        let range = |low: f32, high: f32, n: usize| {
+            low.floor().max(0.0) as usize..(high.ceil().max(0.0) as usize).min(n)
+        };
         for y in range(bound.min.y, bound.max.y, height) {
             for x in range(bound.min.x, bound.max.x, width) {
                 let p = pos2(x as f32 + 0.5, y as f32 + 0.5);
-                let weights = [cross(b, c, p) / area, cross(c, a, p) / area, cross(a, b, p) / area];
+                let weights = [
+                    cross(b, c, p) / area,
+                    cross(c, a, p) / area,
+                    cross(a, b, p) / area,
+                ];
                 if weights.iter().any(|w| *w < 0.0) || !bound.contains(p) {
                     continue;
                 }
@@ -115,7 +140,9 @@ fn sample(texture: &Texture, [u, v]: [f32; 2]) -> [f32; 4] {
     };
     let (fx, fy) = (x - x0, y - y0);
     let [a, b, c, d] = [texel(0.0, 0.0), texel(1.0, 0.0), texel(0.0, 1.0), texel(1.0, 1.0)];
-    std::array::from_fn(|i| (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy)
+    std::array::from_fn(|i| {
+        (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy
+    })
 }
 
 #[cfg(test)]
@@ -130,19 +157,25 @@ mod tests {
             let painter = ui.painter();
             let rect = Rect::from_min_size(pos2(10.0, 10.0), vec2(20.0, 10.0));
             painter.rect_filled(rect, 0.0, Color32::from_rgb(200, 30, 10));
-            painter.with_clip_rect(Rect::from_min_size(pos2(0.0, 0.0), vec2(50.0, 35.0))).hline(
-                0.0..=60.0,
-                30.0,
-                Stroke::new(2.0, Color32::WHITE),
+            painter
+                .with_clip_rect(Rect::from_min_size(pos2(0.0, 0.0), vec2(50.0, 35.0)))
+                .hline(0.0..=60.0, 30.0, Stroke::new(2.0, Color32::WHITE));
+            painter.text(
+                pos2(40.0, 2.0),
+                egui::Align2::LEFT_TOP,
+                "M",
+                egui::FontId::default(),
+                Color32::WHITE,
             );
-            painter.text(pos2(40.0, 2.0), egui::Align2::LEFT_TOP, "M", egui::FontId::default(), Color32::WHITE);
         });
         assert_eq!((shot.width, shot.height), (120, 80));
         let at = |x: usize, y: usize| &shot.rgba[(y * 120 + x) * 4..][..4];
         assert_eq!(at(40, 30), [200, 30, 10, 255]);
         assert_eq!(at(70, 30), [0, 0, 0, 0]);
         assert!(at(90, 60)[0] > 240 && at(110, 60)[3] == 0, "clipped at 50 points");
-        let ink = (80..110).flat_map(|x| (4..36).map(move |y| (x, y))).filter(|(x, y)| at(*x, *y)[3] > 128);
+        let ink = (80..110)
+            .flat_map(|x| (4..36).map(move |y| (x, y)))
+            .filter(|(x, y)| at(*x, *y)[3] > 128);
         assert!(ink.count() > 20, "a letter");
     }
 }

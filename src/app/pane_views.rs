@@ -149,7 +149,9 @@ impl SceneloomApp {
         in_rect(ui, rect, |ui| {
             canvas.show(ui, &input, state, commands);
         });
-        if let (true, Some(last), Some(map)) = (self.tuning.show_modelled, &self.tuning.last, &self.canvas.map) {
+        if let (true, Some(last), Some(map)) =
+            (self.tuning.show_modelled, &self.tuning.last, &self.canvas.map)
+        {
             super::modelled::draw(ui, rect, map, last);
         }
         let (Some(before), Some(map)) = (self.compare.before.clone(), self.canvas.map) else {
@@ -190,7 +192,10 @@ impl SceneloomApp {
         let rect = if mode == CompareMode::Side { right } else { area };
         let shows_before = self.shows_before(scene);
         let marked = match mode {
-            CompareMode::Difference => self.compare.difference(ui, scene).map(|(d, _)| d.cells.as_slice()),
+            CompareMode::Difference => self
+                .compare
+                .difference(ui, scene)
+                .map(|(d, _)| d.cells.as_slice()),
             _ => None,
         };
         let input = View3dInput {
@@ -203,7 +208,9 @@ impl SceneloomApp {
         let (view, state) = (&mut self.view3d, &mut self.state);
         if shows_before {
             let (camera, options) = (view.camera, view.options.clone());
-            clipped(ui, area, |ui| view.still(ui, area, (&camera, &options), &input, state));
+            clipped(ui, area, |ui| {
+                view.still(ui, area, (&camera, &options), &input, state)
+            });
             return;
         }
         in_rect(ui, rect, |ui| {

@@ -216,7 +216,9 @@ impl Perf {
     /// changed the scene, `active` if something works in the background. True if another frame is wanted, to see when
     /// this one reached the screen.
     pub fn drawn(&mut self, now_s: f64, events: usize, edited: bool, active: bool, working: bool) -> bool {
-        let Some(frame) = &mut self.frame else { return false };
+        let Some(frame) = &mut self.frame else {
+            return false;
+        };
         frame.draw_s += (now_s - frame.began_s - frame.logic_s - frame.draw_s).max(0.0);
         frame.events += events;
         frame.working = working;
@@ -288,7 +290,9 @@ impl Perf {
         if self.cpu.is_some_and(|(at_s, _)| now_s - at_s < EVERY_S) {
             return;
         }
-        let Some(used_s) = super::trace::cpu_time_s() else { return };
+        let Some(used_s) = super::trace::cpu_time_s() else {
+            return;
+        };
         if let Some((at_s, before_s)) = self.cpu {
             self.cpu_share = Some((used_s - before_s) / (now_s - at_s));
         }

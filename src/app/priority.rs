@@ -52,7 +52,9 @@ mod tests {
     #[test]
     fn a_thread_gives_way_alone() {
         let Some(before) = nice() else { return };
-        let inside = std::thread::spawn(|| (give_way(), nice())).join().expect("no panic");
+        let inside = std::thread::spawn(|| (give_way(), nice()))
+            .join()
+            .expect("no panic");
         match inside {
             (true, Some(after)) => assert!(after > before || before >= 15, "{before} {after}"),
             (_, after) => assert_eq!(after, Some(before), "nothing has changed"),

@@ -158,7 +158,11 @@ mod tests {
         );
         settings.save(&path).expect("written");
         assert!(Settings::load(&path).expect("read") == settings);
-        std::fs::write(&path, "{\"ui_scale\": 1e9, \"history_mb\": 1, \"of_a_newer_version\": 3}").expect("written");
+        std::fs::write(
+            &path,
+            "{\"ui_scale\": 1e9, \"history_mb\": 1, \"of_a_newer_version\": 3}",
+        )
+        .expect("written");
         let read = Settings::load(&path).expect("read");
         assert_eq!((read.ui_scale, read.history_mb), (3.0, 16));
         std::fs::write(&path, "{ \"ui_scale\": ").expect("written");

@@ -64,7 +64,9 @@ impl Frame {
     fn new(primitives: Vec<ClippedPrimitive>) -> Self {
         let mut out = Self::default();
         for ClippedPrimitive { clip_rect, primitive } in primitives {
-            let Primitive::Mesh(mesh) = primitive else { continue };
+            let Primitive::Mesh(mesh) = primitive else {
+                continue;
+            };
             let (first, base_vertex) = (out.indices.len() as u32, out.vertices.len() as i32);
             out.vertices.extend(mesh.vertices.iter().map(|v| PanelVertex {
                 position: [v.pos.x, v.pos.y],
@@ -127,7 +129,13 @@ impl CallbackTrait for Painted {
             .iter()
             .filter_map(|(rect, texture, mesh)| {
                 let scissor = scissor(*rect, info.pixels_per_point, info.screen_size_px)?;
-                Some((PanelMesh { scissor, ..mesh.clone() }, *texture))
+                Some((
+                    PanelMesh {
+                        scissor,
+                        ..mesh.clone()
+                    },
+                    *texture,
+                ))
             })
             .collect();
         let parts = cut.iter().map(|(mesh, texture)| {
@@ -147,9 +155,15 @@ mod tests {
     #[test]
     fn rectangles_are_cut_to_the_window() {
         let rect = |x: f32, y: f32, w: f32, h: f32| Rect::from_min_size(pos2(x, y), vec2(w, h));
-        assert_eq!(scissor(rect(1.0, 2.0, 3.0, 4.0), 2.0, [100, 100]), Some([2, 4, 6, 8]));
+        assert_eq!(
+            scissor(rect(1.0, 2.0, 3.0, 4.0), 2.0, [100, 100]),
+            Some([2, 4, 6, 8])
+        );
         assert_eq!(scissor(Rect::EVERYTHING, 1.0, [30, 20]), Some([0, 0, 30, 20]));
-        assert_eq!(scissor(rect(-5.0, -5.0, 8.0, 8.0), 1.0, [30, 20]), Some([0, 0, 3, 3]));
+        assert_eq!(
+            scissor(rect(-5.0, -5.0, 8.0, 8.0), 1.0, [30, 20]),
+            Some([0, 0, 3, 3])
+        );
         assert_eq!(scissor(rect(40.0, 0.0, 5.0, 5.0), 1.0, [30, 20]), None);
         assert_eq!(scissor(Rect::NOTHING, 1.0, [30, 20]), None);
     }

@@ -97,7 +97,9 @@ pub struct Tuning {
 impl Tuning {
     /// With what was measured on this machine before, if its file (beside the settings) is of this build.
     pub fn new(settings_file: Option<&Path>) -> Self {
-        let file = settings_file.and_then(Path::parent).map(|f| f.join("calibration.json"));
+        let file = settings_file
+            .and_then(Path::parent)
+            .map(|f| f.join("calibration.json"));
         let shipped = Stops::bundled();
         let text = file.as_ref().and_then(|f| std::fs::read_to_string(f).ok());
         let kept = text.and_then(|t| Stops::parse(&t, shipped.weights).ok());
@@ -116,7 +118,9 @@ impl Tuning {
 
     /// What is being measured, and how far it is.
     pub fn measuring(&self) -> Option<(Measuring, usize, usize)> {
-        self.running.as_ref().map(|(what, _, (done, all))| (*what, *done, *all))
+        self.running
+            .as_ref()
+            .map(|(what, _, (done, all))| (*what, *done, *all))
     }
 
     /// Starts timing the stops.
@@ -198,7 +202,9 @@ impl Tuning {
 
     /// Tokens of an edit like the last one, or of a typical one until there was one.
     pub fn tokens_of_next(&self) -> f64 {
-        self.last.as_ref().map_or(TYPICAL_TOKENS, |l| l.report.tokens as f64)
+        self.last
+            .as_ref()
+            .map_or(TYPICAL_TOKENS, |l| l.report.tokens as f64)
     }
 
     /// Name of each stop, and what it is foretold to cost.
@@ -220,7 +226,10 @@ impl Tuning {
         self.stability.fallbacks += usize::from(!report.notes.is_empty());
         self.stability.untouched_changed += report.untouched_voxels_changed;
         // A measurement of the edit before says nothing about this one.
-        if self.measuring().is_some_and(|(what, ..)| what == Measuring::Error) {
+        if self
+            .measuring()
+            .is_some_and(|(what, ..)| what == Measuring::Error)
+        {
             self.running = None;
         }
         let stop = self.current(&params).map(|i| &self.stops.stops[i]);
@@ -233,7 +242,11 @@ impl Tuning {
         };
         self.last = Some(LastEdit {
             predicted_s: stop.map(|s| {
-                let inverted = if report.inversion_calls > 0 { s.invert_s } else { 0.0 };
+                let inverted = if report.inversion_calls > 0 {
+                    s.invert_s
+                } else {
+                    0.0
+                };
                 s.cost.wall_s(report.tokens as f64) + inverted
             }),
             predicted_error: stop.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
@@ -259,7 +272,10 @@ impl Tuning {
     /// Forgets the last edit: another scene was opened.
     pub fn reset(&mut self) {
         self.last = None;
-        if self.measuring().is_some_and(|(what, ..)| what == Measuring::Error) {
+        if self
+            .measuring()
+            .is_some_and(|(what, ..)| what == Measuring::Error)
+        {
             self.running = None;
         }
     }

@@ -303,7 +303,12 @@ impl View3d {
             return;
         }
         // A change is seen at once, coarse, and fine a moment later.
-        if self.painted.replace(input.scene.rev).is_some_and(|rev| rev != input.scene.rev) && self.is_software() {
+        if self
+            .painted
+            .replace(input.scene.rev)
+            .is_some_and(|rev| rev != input.scene.rev)
+            && self.is_software()
+        {
             self.last_motion_s = now_s;
         }
         let moving = now_s - self.last_motion_s < SETTLE_S;

@@ -430,7 +430,11 @@ fn the_history_is_bounded_by_bytes() {
     assert_eq!(small.history().len(), 201, "nothing had to go");
     // Every brick twice, occupancy and paint: 1.4 MB a step.
     let mut large = run(true, 40);
-    assert_eq!(large.position(), Document::LEAST_UNDO, "the last ones can be undone in any case");
+    assert_eq!(
+        large.position(),
+        Document::LEAST_UNDO,
+        "the last ones can be undone in any case"
+    );
     let mut undone = 0;
     while large.undo().is_some() {
         undone += 1;
@@ -443,7 +447,11 @@ fn the_history_is_bounded_by_bytes() {
     }
     assert_eq!(large.position(), 20);
     large.set_history_limit(16 << 20);
-    assert!(large.history_bytes() <= 16 << 20 && (9..15).contains(&large.position()), "{}", large.position());
+    assert!(
+        large.history_bytes() <= 16 << 20 && (9..15).contains(&large.position()),
+        "{}",
+        large.position()
+    );
     // A result that is adopted counts with its step, and what comes after it too.
     let mut grid = large.scene().frame().occupancy.clone();
     (0..GridSpec::NX).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));

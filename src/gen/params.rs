@@ -166,7 +166,15 @@ impl Default for GenParams {
 
 /// Counts, numbers, named numbers, choices.
 type Bits = ([u32; 5], [u64; 4], [Option<u32>; 4], Choices);
-type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, DitVariant, [bool; 2]);
+type Choices = (
+    SolverKind,
+    RegionMode,
+    RedrawMask,
+    Quality,
+    Precision,
+    DitVariant,
+    [bool; 2],
+);
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.

@@ -43,7 +43,8 @@ fn source(source: &SourceFrame, frame: &Frame, other: Option<&SourceFrame>) -> u
     let beside = |of: Option<&SourceFrame>| {
         grid(&source.occupancy, of.map(|s| &s.occupancy)) + layout(&source.layout, of.map(|s| &s.layout))
     };
-    let beside_frame = grid(&source.occupancy, Some(&frame.occupancy)) + layout(&source.layout, Some(&frame.layout));
+    let beside_frame =
+        grid(&source.occupancy, Some(&frame.occupancy)) + layout(&source.layout, Some(&frame.layout));
     size_of::<SourceFrame>() + boxes(source.boxes.len()) + beside(other).min(beside_frame)
 }
 

@@ -35,8 +35,8 @@ pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use pose::Pose;
 pub use rig::{Camera, LidarPattern, SensorRig};
-pub use waiver::Waiver;
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
+pub use waiver::Waiver;
 
 /// Names one state of a scene: two scenes with the same `SceneRev` are equal.
 /// It travels in the snapshot, so undo brings it back. Compare for equality only.

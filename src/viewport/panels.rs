@@ -84,7 +84,10 @@ impl Panels {
                 entry(2, fragment, uniform(16)), // flags that only egui's shader reads
             ],
         });
-        let source = SHADERS.iter().find(|s| s.name == "panels").map_or("", |s| s.source);
+        let source = SHADERS
+            .iter()
+            .find(|s| s.name == "panels")
+            .map_or("", |s| s.source);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("panels"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -161,7 +164,8 @@ impl Panels {
     ) {
         let [w, h] = size_points;
         queue.write_buffer(&self.screen, 0, bytemuck::cast_slice(&[w, h, 0.0, 0.0]));
-        let (vertices, indices): (&[u8], &[u8]) = (bytemuck::cast_slice(vertices), bytemuck::cast_slice(indices));
+        let (vertices, indices): (&[u8], &[u8]) =
+            (bytemuck::cast_slice(vertices), bytemuck::cast_slice(indices));
         let room = |bytes: &[u8]| (bytes.len() as u64).next_power_of_two();
         if self.vertices.size() < vertices.len() as u64 {
             let usage = wgpu::BufferUsages::VERTEX;

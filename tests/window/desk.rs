@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use sceneloom::app::Command;
 use sceneloom::editor::{Edit, Shape as Area};
+use sceneloom::formats::project;
 use sceneloom::generation::job::RegionMode;
 use sceneloom::scene::{BevLayer, BoxId};
 use sceneloom::viewport::{ViewCamera, ViewPreset};
@@ -75,7 +76,9 @@ fn edits_show_in_the_frame_that_takes_them() {
     let mut bench = Bench::new();
     bench.off();
     bench.click("Box 7 car");
-    let x = |b: &Bench| b.harness.query_by_value("14.10").is_some() || b.harness.query_by_label("14.10").is_some();
+    let x = |b: &Bench| {
+        b.harness.query_by_value("14.10").is_some() || b.harness.query_by_label("14.10").is_some()
+    };
     assert!(!x(&bench));
     bench.harness.key_press_modifiers(Modifiers::NONE, Key::ArrowUp);
     bench.steps(1);
@@ -103,7 +106,10 @@ fn views_are_kept_and_gone_back_to() {
     assert_eq!(bench.app().view3d.camera, ViewCamera::preset(ViewPreset::Top));
     bench.key(Modifiers::NONE, Key::F3);
     let now = bench.app().view3d.camera;
-    assert!((now.distance_m, now.ortho) == (17.0, false) && (now.yaw_rad - here.yaw_rad).abs() < 1e-9, "{now:?}");
+    assert!(
+        (now.distance_m, now.ortho) == (17.0, false) && (now.yaw_rad - here.yaw_rad).abs() < 1e-9,
+        "{now:?}"
+    );
     assert_eq!(bench.app().canvas.place(), (DVec2::new(5.0, -3.0), 11.0));
     let kept = serde_json::to_string(&bench.app().settings).expect("JSON");
     assert!(kept.contains("\"bookmarks\":{\"3\":{"), "{kept}");
@@ -144,8 +150,16 @@ fn the_history_keeps_to_its_memory() {
         bench.run_command(Command::Apply("Paint", vec![edit]));
     }
     let document = &bench.app().document;
-    assert!(document.history_bytes() <= 16 << 20, "{}", document.history_bytes());
-    assert!((9..80).contains(&document.history().len()), "{}", document.history().len());
+    assert!(
+        document.history_bytes() <= 16 << 20,
+        "{}",
+        document.history_bytes()
+    );
+    assert!(
+        (9..80).contains(&document.history().len()),
+        "{}",
+        document.history().len()
+    );
 }
 
 #[test]
@@ -165,7 +179,10 @@ fn while_the_state_before_is_shown_nothing_answers() {
     bench.drag(&[at, at + egui::vec2(60.0, 0.0)], Modifiers::NONE);
     bench.key(Modifiers::CTRL, Key::Z);
     assert_eq!(bench.app().state.selected, None);
-    assert_eq!((bench.history().len(), bench.frame().boxes[&BoxId(7)]), (steps, car()));
+    assert_eq!(
+        (bench.history().len(), bench.frame().boxes[&BoxId(7)]),
+        (steps, car())
+    );
     bench.harness.key_up(Key::Backslash);
     bench.steps(3);
     bench.drag(&[at, at + egui::vec2(60.0, 0.0)], Modifiers::NONE);
@@ -250,6 +267,13 @@ fn a_finding_is_waived_with_a_reason_and_taken_back() {
     bench.checked();
     assert!(bench.sees("All is well, but for what was waived."));
     assert_eq!(&*bench.frame().waivers[0].reason, "it turns round");
+    let bytes = project::to_bytes(bench.app().document.scene()).expect("written");
+    let again = project::from_bytes(&bytes).expect("read");
+    assert_eq!(
+        again.frame().waivers,
+        bench.frame().waivers,
+        "kept in the project"
+    );
     assert!(bench.sees(&format!("{finding}  ·  it turns round")));
     bench.click(&format!("Take back: {finding}"));
     bench.checked();

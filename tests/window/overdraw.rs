@@ -55,7 +55,9 @@ fn pixels_are_not_painted_over_and_over() {
     let mut all = 0.0;
     let mut large = Vec::new();
     for primitive in ctx.tessellate(shapes, ctx.pixels_per_point()) {
-        let Primitive::Mesh(mesh) = &primitive.primitive else { continue };
+        let Primitive::Mesh(mesh) = &primitive.primitive else {
+            continue;
+        };
         let clip = primitive.clip_rect.intersect(screen);
         for corners in mesh.indices.chunks_exact(3) {
             let at = |i: usize| mesh.vertices[corners[i] as usize].pos;

@@ -91,7 +91,8 @@ impl Check {
         output::report(&self.common, &report, || {
             let line = |f: &Finding| {
                 let p = f.where_m;
-                let waived = waive::of(scene.frame(), f).map_or_else(String::new, |w| format!(" (waived: {})", w.reason));
+                let waived = waive::of(scene.frame(), f)
+                    .map_or_else(String::new, |w| format!(" (waived: {})", w.reason));
                 format!(
                     "{}: {} [{}] at {:.1}, {:.1}, {:.1} m{waived}",
                     f.severity.name(),

@@ -127,7 +127,12 @@ impl Row {
             stages.entry(name).or_default().push(*s);
         }
         let stages: BTreeMap<_, _> = stages.into_iter().map(|(k, v)| (k, median(&v))).collect();
-        let mut notes: Vec<&str> = self.outcomes.iter().flat_map(|o| &o.notes).map(String::as_str).collect();
+        let mut notes: Vec<&str> = self
+            .outcomes
+            .iter()
+            .flat_map(|o| &o.notes)
+            .map(String::as_str)
+            .collect();
         notes.sort_unstable();
         notes.dedup();
         json!({
@@ -172,7 +177,8 @@ impl Trade {
     }
 
     fn reference_steps(&self) -> u32 {
-        self.reference_steps.unwrap_or(if self.full() { 1000 } else { 200 })
+        self.reference_steps
+            .unwrap_or(if self.full() { 1000 } else { 200 })
     }
 
     fn settings(&self, part: &str, models: &OccModels) -> (GenParams, Vec<Setting>) {
@@ -209,7 +215,9 @@ impl Trade {
             return Ok(found);
         }
         let worlds = 0..self.frames() as u64;
-        Ok(worlds.flat_map(|i| of(cases::held_out(i), format!("world {i}"), i)).collect())
+        Ok(worlds
+            .flat_map(|i| of(cases::held_out(i), format!("world {i}"), i))
+            .collect())
     }
 
     /// Measures in this process.
@@ -248,13 +256,20 @@ impl Trade {
     /// Measures in processes of their own, one after another, and puts their times together. Errors must not differ.
     fn measure_in_processes(&self, processes: usize, progress: &Progress) -> anyhow::Result<Raw> {
         let dir = tempfile::tempdir().context("make a folder for the processes' reports")?;
-        let references = self.keep_references.clone().unwrap_or_else(|| dir.path().join("references"));
+        let references = self
+            .keep_references
+            .clone()
+            .unwrap_or_else(|| dir.path().join("references"));
         let mut all: Option<Raw> = None;
         for i in 0..processes {
             progress.at("process", i, processes);
             let file = dir.path().join(format!("{i}.json"));
-            let mut command = std::process::Command::new(std::env::current_exe().context("find this program")?);
-            command.arg("trade").args(&self.scene).args(["--raw", "--suite", &self.suite]);
+            let mut command =
+                std::process::Command::new(std::env::current_exe().context("find this program")?);
+            command
+                .arg("trade")
+                .args(&self.scene)
+                .args(["--raw", "--suite", &self.suite]);
             let numbers = [
                 ("--frames", self.frames().to_string()),
                 ("--repeats", self.repeats().to_string()),
@@ -270,11 +285,18 @@ impl Trade {
             if !self.only.is_empty() {
                 command.args(["--only", &self.only.join(";")]);
             }
-            command.arg("--keep-references").arg(&references).arg("-o").arg(&file);
+            command
+                .arg("--keep-references")
+                .arg(&references)
+                .arg("-o")
+                .arg(&file);
             if let Some(weights) = &self.common.weights {
                 command.arg("--weights").arg(weights);
             }
-            let ended = command.stdout(std::process::Stdio::null()).status().context("start a process")?;
+            let ended = command
+                .stdout(std::process::Stdio::null())
+                .status()
+                .context("start a process")?;
             if !ended.success() {
                 bail!("process {i} ended with {ended}");
             }
@@ -293,7 +315,9 @@ impl Trade {
             return Err(anyhow::anyhow!("--parts {unknown}: expected {}", PARTS.join(", ")).into());
         }
         if !(2..=100_000).contains(&self.reference_steps()) || self.reference_steps() > 1000 {
-            return Err(anyhow::anyhow!("--reference-steps {}: expected 2 to 1000", self.reference_steps()).into());
+            return Err(
+                anyhow::anyhow!("--reference-steps {}: expected 2 to 1000", self.reference_steps()).into(),
+            );
         }
         for (name, number) in [("--frames", self.frames()), ("--repeats", self.repeats())] {
             if !(1..=1000).contains(&number) {
@@ -302,7 +326,10 @@ impl Trade {
         }
         let load = Load::now();
         if load.is_busy() && !self.raw {
-            let line = format!("the machine is busy ({}): times will be too long", load.describe());
+            let line = format!(
+                "the machine is busy ({}): times will be too long",
+                load.describe()
+            );
             if self.refuse_if_busy {
                 return Err(Ending::Short(line));
             }
@@ -363,7 +390,9 @@ impl Trade {
         points.extend(sensors.iter().map(sensor_json));
         if let Some(stops) = &stops {
             for mark in &mut marks {
-                let stop = stops.stops.iter().find(|s| settings::name_of(&s.knobs, &StopKnobs::of(&GenParams::default())) == mark.name);
+                let stop = stops.stops.iter().find(|s| {
+                    settings::name_of(&s.knobs, &StopKnobs::of(&GenParams::default())) == mark.name
+                });
                 mark.stop = stop.map(|s| s.name.clone());
             }
         }
@@ -387,7 +416,12 @@ impl Trade {
             "seeds": { "test": cases::TEST_SEED, "turns": self.seed },
             "file": self.output,
         });
-        output::write_file(&self.output, serde_json::to_string_pretty(&report).context("write report")?.as_bytes())?;
+        output::write_file(
+            &self.output,
+            serde_json::to_string_pretty(&report)
+                .context("write report")?
+                .as_bytes(),
+        )?;
         if let Some(path) = &self.plot {
             let picture = plot::picture(&marks, [820.0, 480.0]);
             output::write_png(path, picture.width, picture.height, &picture.rgba)?;
@@ -446,7 +480,9 @@ impl Trade {
     fn stops_of(&self, rows: &[&Row], reference: GenParams, models: &OccModels) -> Stops {
         let placed: Vec<Placed> = rows.iter().map(|r| r.placed()).collect();
         let on_front = front(&placed);
-        let mut order: Vec<usize> = (0..rows.len()).filter(|i| on_front[*i] && rows[*i].cost().is_some()).collect();
+        let mut order: Vec<usize> = (0..rows.len())
+            .filter(|i| on_front[*i] && rows[*i].cost().is_some())
+            .collect();
         order.sort_by(|a, b| placed[*a].wall_s.median.total_cmp(&placed[*b].wall_s.median));
         // Only those whose time rises and whose error falls by enough to be felt.
         let mut kept: Vec<usize> = Vec::new();
@@ -465,7 +501,10 @@ impl Trade {
             0 => "draft".to_owned(),
             k if k == last => "accurate".into(),
             k if k == middle => "balanced".into(),
-            k => settings::name_of(&StopKnobs::of(&rows[kept[k]].setting.params), &StopKnobs::of(&GenParams::default())),
+            k => settings::name_of(
+                &StopKnobs::of(&rows[kept[k]].setting.params),
+                &StopKnobs::of(&GenParams::default()),
+            ),
         };
         let mut stops: Vec<Stop> = Vec::new();
         for (k, i) in kept.iter().enumerate() {
@@ -479,7 +518,12 @@ impl Trade {
                     error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
                     cost,
                     invert_s: median(&row.all(|o| o.invert_s)),
-                    probe: row.outcomes.iter().take(cases::KINDS.len()).map(|o| o.result_hash).collect(),
+                    probe: row
+                        .outcomes
+                        .iter()
+                        .take(cases::KINDS.len())
+                        .map(|o| o.result_hash)
+                        .collect(),
                 });
             }
         }
@@ -490,7 +534,10 @@ impl Trade {
         });
         if let Some(dense) = dense {
             let step_s = |o: &Outcome| o.stages_s.get("denoise").copied().unwrap_or(0.0) / 10.0;
-            let (step, total) = (median(&dense.all(step_s)), median(&dense.all(|o| median(&o.wall_s))));
+            let (step, total) = (
+                median(&dense.all(step_s)),
+                median(&dense.all(|o| median(&o.wall_s))),
+            );
             let none = crate::generation::trade::Interval {
                 median: 0.0,
                 low: 0.0,
@@ -533,7 +580,10 @@ pub fn write_stops(path: &Path, stops: &Stops) -> anyhow::Result<()> {
 
 /// True if all settings left the same voxels outside the region.
 fn untouched_the_same(outcomes: &[Outcome], rows: &[Row]) -> bool {
-    let same_region = outcomes.iter().zip(rows).filter(|(o, r)| !r.setting.other_target && o.error.is_finite());
+    let same_region = outcomes
+        .iter()
+        .zip(rows)
+        .filter(|(o, r)| !r.setting.other_target && o.error.is_finite());
     let mut hashes = same_region.map(|(o, _)| (o.untouched_hash, o.untouched_voxels_changed));
     let first = hashes.next();
     first.is_none_or(|(hash, changed)| changed == 0 && hashes.all(|h| h == (hash, 0)))
@@ -542,14 +592,23 @@ fn untouched_the_same(outcomes: &[Outcome], rows: &[Row]) -> bool {
 /// Adds the times of another process; everything else must be the same.
 fn add_times(all: &mut Raw, more: Raw) -> anyhow::Result<()> {
     for (part, cases) in more.parts {
-        let known = all.parts.get_mut(&part).context("a process measured another part")?;
+        let known = all
+            .parts
+            .get_mut(&part)
+            .context("a process measured another part")?;
         for ((name, known), (other, outcomes)) in known.iter_mut().zip(cases) {
             if *name != other || known.len() != outcomes.len() {
                 bail!("processes measured different cases: {name}, {other}");
             }
             for (known, outcome) in known.iter_mut().zip(outcomes) {
-                if known.error.to_bits() != outcome.error.to_bits() || known.untouched_hash != outcome.untouched_hash {
-                    bail!("{name}: two processes disagree ({} and {} of the voxels differ)", known.error, outcome.error);
+                if known.error.to_bits() != outcome.error.to_bits()
+                    || known.untouched_hash != outcome.untouched_hash
+                {
+                    bail!(
+                        "{name}: two processes disagree ({} and {} of the voxels differ)",
+                        known.error,
+                        outcome.error
+                    );
                 }
                 known.wall_s.extend(outcome.wall_s);
             }
@@ -572,7 +631,10 @@ fn sensor_json(m: &Measured) -> Value {
 
 /// The report for a person.
 fn table(report: &Value) -> String {
-    let mut lines = vec![format!("{:<44} {:>9} {:>19} {:>9}", "setting", "time", "differs (95 %)", "memory")];
+    let mut lines = vec![format!(
+        "{:<44} {:>9} {:>19} {:>9}",
+        "setting", "time", "differs (95 %)", "memory"
+    )];
     let points = report["points"].as_array().cloned().unwrap_or_default();
     let mut part = String::new();
     for p in &points {

@@ -158,7 +158,11 @@ impl BoxViewsPane {
         if view.up.0 == 2 {
             // The physical ground.
             let y = to_screen(DVec3::Z * -frame.center_m.z).y;
-            painter.hline(rect.x_range(), y, Stroke::new(1.0, theme::text_weak().gamma_multiply(0.6)));
+            painter.hline(
+                rect.x_range(),
+                y,
+                Stroke::new(1.0, theme::text_weak().gamma_multiply(0.6)),
+            );
         }
         let (center, half) = (frame.to_local(b.center_m), b.size_m / 2.0);
         let outline = Rect::from_two_pos(to_screen(center - half), to_screen(center + half));

@@ -314,7 +314,9 @@ impl CameraStrip {
                 let text = response
                     .hover_pos()
                     .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
-                ui.label(text.unwrap_or_else(|| "Move over the picture to read a pixel; a click chooses the box there".into()));
+                ui.label(text.unwrap_or_else(|| {
+                    "Move over the picture to read a pixel; a click chooses the box there".into()
+                }));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if ui.button("Look through in 3D").clicked() {
                         commands.push(Command::LookThrough(index));

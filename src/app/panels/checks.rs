@@ -43,9 +43,8 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
         });
         return;
     };
-    let (open, waived): (Vec<&Finding>, Vec<&Finding>) = findings
-        .iter()
-        .partition(|f| waive::of(input.frame, f).is_none());
+    let (open, waived): (Vec<&Finding>, Vec<&Finding>) =
+        findings.iter().partition(|f| waive::of(input.frame, f).is_none());
     if open.is_empty() {
         ui.horizontal(|ui| {
             let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
@@ -231,32 +230,37 @@ fn waived_ui(ui: &mut Ui, waived: &[&Finding], input: &ChecksInput<'_>, commands
                 .id_salt("waived")
                 .max_height(WAIVED_HEIGHT - 36.0)
                 .show(ui, |ui| {
-            for finding in waived {
-                let Some(waiver) = waive::of(input.frame, finding) else {
-                    continue;
-                };
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    let back = ui.add(egui::Button::new("Take back").small());
-                    back.widget_info(|| {
-                        WidgetInfo::labeled(Role::Button, true, format!("Take back: {}", finding.text))
-                    });
-                    if back.clicked() {
-                        commands.push(Command::Apply(
-                            "Take a waiver back",
-                            vec![Edit::Unwaive {
-                                check: waiver.check.to_string(),
-                                box_id: waiver.box_id,
-                                where_m: waiver.where_m,
-                            }],
-                        ));
+                    for finding in waived {
+                        let Some(waiver) = waive::of(input.frame, finding) else {
+                            continue;
+                        };
+                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                            let back = ui.add(egui::Button::new("Take back").small());
+                            back.widget_info(|| {
+                                WidgetInfo::labeled(
+                                    Role::Button,
+                                    true,
+                                    format!("Take back: {}", finding.text),
+                                )
+                            });
+                            if back.clicked() {
+                                commands.push(Command::Apply(
+                                    "Take a waiver back",
+                                    vec![Edit::Unwaive {
+                                        check: waiver.check.to_string(),
+                                        box_id: waiver.box_id,
+                                        where_m: waiver.where_m,
+                                    }],
+                                ));
+                            }
+                            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                                let text = format!("{}  ·  {}", finding.text, waiver.reason);
+                                let label =
+                                    egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
+                                ui.add(label.truncate()).on_hover_text(&text);
+                            });
+                        });
                     }
-                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                        let text = format!("{}  ·  {}", finding.text, waiver.reason);
-                        let label = egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
-                        ui.add(label.truncate()).on_hover_text(&text);
-                    });
-                });
-            }
                 });
         });
 }

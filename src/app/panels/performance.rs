@@ -89,7 +89,11 @@ fn bars(ui: &mut Ui, perf: &Perf) {
     for (i, s) in perf.frames.newest(SHOWN).enumerate() {
         let x = rect.left() + i as f32 * width;
         let bar = Rect::from_min_max(pos2(x, y(s)), pos2(x + width.max(1.0) - 0.4, rect.bottom()));
-        let color = if s > BLOCKED_S { theme::warn() } else { theme::accent() };
+        let color = if s > BLOCKED_S {
+            theme::warn()
+        } else {
+            theme::accent()
+        };
         painter.rect_filled(bar, 0.0, color);
     }
     let line: Color32 = theme::text_weak();

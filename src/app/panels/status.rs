@@ -109,7 +109,8 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = egui::RichText::new(input.hint).color(theme::text_weak().gamma_multiply(0.85));
                 ui.add_space(theme::GAP);
-                ui.add(egui::Label::new(text).truncate()).on_hover_text(input.hint);
+                ui.add(egui::Label::new(text).truncate())
+                    .on_hover_text(input.hint);
             });
         });
     });
@@ -136,11 +137,18 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     }
     if input.unsettled && input.waiting {
         dot(ui, theme::warn());
-        let why = if input.dragging { "Edited, generated when the drag ends" } else { "Edited, generated in a moment" };
+        let why = if input.dragging {
+            "Edited, generated when the drag ends"
+        } else {
+            "Edited, generated in a moment"
+        };
         say(ui, why, theme::text());
         let drop = ui.add(egui::Button::new("Drop").small());
         drop.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Drop the edit that waits"));
-        if drop.on_hover_text("This state is not generated; the next edit is").clicked() {
+        if drop
+            .on_hover_text("This state is not generated; the next edit is")
+            .clicked()
+        {
             commands.push(Command::CancelWaiting);
         }
         return;

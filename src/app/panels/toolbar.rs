@@ -198,10 +198,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
         on(item(ui, "Checks…", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
-        on(
-            item(ui, "Performance", "F10", true),
-            Command::TogglePerformance,
-        );
+        on(item(ui, "Performance", "F10", true), Command::TogglePerformance);
     });
     ui.menu_button("Generate", |ui| {
         on(
@@ -325,9 +322,11 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
         }
     });
     let label = format!("Quality: {name} menu");
-    menu.response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    menu.response
+        .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     let cost = current.map_or(String::new(), |(_, foretold)| format!("\n{foretold}"));
-    menu.response.on_hover_text(format!("How exactly edits are generated{cost}"));
+    menu.response
+        .on_hover_text(format!("How exactly edits are generated{cost}"));
 }
 
 /// A button with an icon and a name, of one height with the others.

@@ -13,21 +13,31 @@ use crate::generation::trade::Stop;
 
 /// Draws the panel. `params` are those of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {
-    egui::ScrollArea::vertical().id_salt("trade").auto_shrink(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 6.0;
-        slider(ui, tuning, params, commands);
-        calibration(ui, tuning, commands);
-        let current = tuning.current(params).map(|i| tuning.stops.stops[i].name.clone());
-        let last = tuning.last.as_ref().map(|l| (l.report.total_s(), l.measured_error));
-        let size = vec2(ui.available_width().max(120.0), 230.0);
-        front_plot(ui, &marks(tuning), current.as_deref(), last, size);
-        let from = format!("Errors: {} held-out edits against {}. X-Scene's time is the paper's.", edits(tuning), tuning.stops.reference);
-        ui.label(RichText::new(from).small().color(theme::text_weak()));
-        ui.separator();
-        receipt(ui, tuning, commands);
-        ui.separator();
-        stability(ui, tuning);
-    });
+    egui::ScrollArea::vertical()
+        .id_salt("trade")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 6.0;
+            slider(ui, tuning, params, commands);
+            calibration(ui, tuning, commands);
+            let current = tuning.current(params).map(|i| tuning.stops.stops[i].name.clone());
+            let last = tuning
+                .last
+                .as_ref()
+                .map(|l| (l.report.total_s(), l.measured_error));
+            let size = vec2(ui.available_width().max(120.0), 230.0);
+            front_plot(ui, &marks(tuning), current.as_deref(), last, size);
+            let from = format!(
+                "Errors: {} held-out edits against {}. X-Scene's time is the paper's.",
+                edits(tuning),
+                tuning.stops.reference
+            );
+            ui.label(RichText::new(from).small().color(theme::text_weak()));
+            ui.separator();
+            receipt(ui, tuning, commands);
+            ui.separator();
+            stability(ui, tuning);
+        });
 }
 
 fn edits(tuning: &Tuning) -> usize {
@@ -58,7 +68,9 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
         ui.label(RichText::new("Fast").color(theme::text_weak()));
         ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(60.0);
         let slider = Slider::new(&mut at, 0..=stops.len() - 1).show_value(false);
-        let response = ui.add(slider).on_hover_text("Each stop is a setting on the measured front");
+        let response = ui
+            .add(slider)
+            .on_hover_text("Each stop is a setting on the measured front");
         let name = stops[at].name.clone();
         response.widget_info(|| {
             let mut info = egui::WidgetInfo::slider(true, at as f64, format!("Quality: {name}"));
@@ -74,7 +86,11 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
     match current {
         Some(i) => {
             ui.label(RichText::new(theme::sentence(&stops[i].name)).strong());
-            let of = if tuning.last.is_some() { "An edit as large as the last one: " } else { "An edit of a few vehicles' size: " };
+            let of = if tuning.last.is_some() {
+                "An edit as large as the last one: "
+            } else {
+                "An edit of a few vehicles' size: "
+            };
             ui.label(RichText::new(of.to_owned() + &foretold(&stops[i], tokens)).small());
         }
         None => {
@@ -99,9 +115,18 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
             }
             let load = Load::now();
             let (line, color) = match (tuning.calibrated, load.is_busy()) {
-                (_, true) => (format!("busy: {}; times would be too long", load.describe()), theme::warn()),
-                (true, _) => (format!("times of this machine ({})", tuning.stops.machine), theme::text_weak()),
-                (false, _) => (format!("times of another machine ({})", tuning.stops.machine), theme::warn()),
+                (_, true) => (
+                    format!("busy: {}; times would be too long", load.describe()),
+                    theme::warn(),
+                ),
+                (true, _) => (
+                    format!("times of this machine ({})", tuning.stops.machine),
+                    theme::text_weak(),
+                ),
+                (false, _) => (
+                    format!("times of another machine ({})", tuning.stops.machine),
+                    theme::warn(),
+                ),
             };
             ui.label(RichText::new(line).small().color(color));
         }
@@ -134,10 +159,28 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
     let r = &last.report;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        row(ui, "Region", format!("{} columns ({})", r.region_columns, percent(r.region_share)));
-        row(ui, "Computed", format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls));
-        let foretold = last.predicted_s.map_or(String::new(), |s| format!(", foretold {}", seconds(s)));
-        row(ui, "Time", format!("{}{foretold}; on screen after {}", seconds(r.total_s()), seconds(last.settled_s)));
+        row(
+            ui,
+            "Region",
+            format!("{} columns ({})", r.region_columns, percent(r.region_share)),
+        );
+        row(
+            ui,
+            "Computed",
+            format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls),
+        );
+        let foretold = last
+            .predicted_s
+            .map_or(String::new(), |s| format!(", foretold {}", seconds(s)));
+        row(
+            ui,
+            "Time",
+            format!(
+                "{}{foretold}; on screen after {}",
+                seconds(r.total_s()),
+                seconds(last.settled_s)
+            ),
+        );
         row(ui, "Stages", stages(last));
         let error = match (last.measured_error, last.predicted_error) {
             (Some(e), Some([_, low, high])) => {
@@ -146,10 +189,17 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
                     e if e <= high => "as foretold",
                     _ => "more than foretold",
                 };
-                format!("{} measured, {where_} ({} to {})", percent(e), percent(low), percent(high))
+                format!(
+                    "{} measured, {where_} ({} to {})",
+                    percent(e),
+                    percent(low),
+                    percent(high)
+                )
             }
             (Some(e), None) => format!("{} measured", percent(e)),
-            (None, Some([e, low, high])) => format!("{} foretold ({} to {})", percent(e), percent(low), percent(high)),
+            (None, Some([e, low, high])) => {
+                format!("{} foretold ({} to {})", percent(e), percent(low), percent(high))
+            }
             (None, None) => "unknown for own settings".into(),
         };
         row(ui, "Differs", error);
@@ -170,9 +220,14 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
                 }
             }
             _ => {
-                let about = tuning.stops.named("reference").map(|s| s.invert_s + s.cost.fixed_s);
+                let about = tuning
+                    .stops
+                    .named("reference")
+                    .map(|s| s.invert_s + s.cost.fixed_s);
                 let about = about.map_or(String::new(), |s| format!(" About {}.", seconds(s)));
-                let text = format!("Runs the reference on the same edit in the background and says how much differs.{about}");
+                let text = format!(
+                    "Runs the reference on the same edit in the background and says how much differs.{about}"
+                );
                 if ui.button("Refine").on_hover_text(text).clicked() {
                     commands.push(Command::Refine);
                 }
@@ -186,7 +241,10 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
 /// Stages that took a millisecond or more.
 fn stages(last: &LastEdit) -> String {
     let parts = last.report.wall_s.iter().filter(|(_, s)| **s >= 1e-3);
-    parts.map(|(name, s)| format!("{name} {}", seconds(*s))).collect::<Vec<_>>().join(", ")
+    parts
+        .map(|(name, s)| format!("{name} {}", seconds(*s)))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn stability(ui: &mut Ui, tuning: &Tuning) {
@@ -198,15 +256,44 @@ fn stability(ui: &mut Ui, tuning: &Tuning) {
             && let (Some(std), Some(max)) = (r.noise_std, r.noise_max_abs)
         {
             let sound = (0.9..=1.1).contains(&std) && max < 6.0;
-            let verdict = if sound { "as a draw would be" } else { "unlike a draw (std 0.9 to 1.1, max 6)" };
-            row(ui, "Inverted noise", format!("std {std:.2}, max {max:.1}: {verdict}"));
+            let verdict = if sound {
+                "as a draw would be"
+            } else {
+                "unlike a draw (std 0.9 to 1.1, max 6)"
+            };
+            row(
+                ui,
+                "Inverted noise",
+                format!("std {std:.2}, max {max:.1}: {verdict}"),
+            );
         }
-        row(ui, "Generations", format!("{}, {} with a fallback or warning", s.runs, s.fallbacks));
-        row(ui, "Failed", format!("{}, {} by a number that was not finite", s.failures, s.not_finite));
-        let color = if s.untouched_changed == 0 { theme::text() } else { theme::bad() };
-        row(ui, "Untouched", RichText::new(format!("{} voxels changed", s.untouched_changed)).color(color));
+        row(
+            ui,
+            "Generations",
+            format!("{}, {} with a fallback or warning", s.runs, s.fallbacks),
+        );
+        row(
+            ui,
+            "Failed",
+            format!("{}, {} by a number that was not finite", s.failures, s.not_finite),
+        );
+        let color = if s.untouched_changed == 0 {
+            theme::text()
+        } else {
+            theme::bad()
+        };
+        row(
+            ui,
+            "Untouched",
+            RichText::new(format!("{} voxels changed", s.untouched_changed)).color(color),
+        );
     });
-    if let Some(notes) = tuning.last.as_ref().map(|l| &l.report.notes).filter(|n| !n.is_empty()) {
+    if let Some(notes) = tuning
+        .last
+        .as_ref()
+        .map(|l| &l.report.notes)
+        .filter(|n| !n.is_empty())
+    {
         for note in notes {
             ui.label(RichText::new(note).small().color(theme::warn()));
         }

@@ -7,8 +7,8 @@ use crate::app::canvas::ScreenMap;
 use crate::app::canvas_tools::Gesture;
 use crate::app::state::{Tool, UiState};
 use crate::app::theme;
-use crate::editor::{Shape as Area, measure};
 use crate::editor::transform::{Axis, Kind};
+use crate::editor::{Shape as Area, measure};
 use crate::scene::{GridSpec, Scene};
 
 use super::bev::{BevGesture, pull};
@@ -242,7 +242,10 @@ mod tests {
         assert_eq!(rects.len(), 3);
         let area: f64 = rects.iter().map(|[a, b]| (*b - *a).element_product()).sum();
         assert!((area - 4.0 * 0.16).abs() < 1e-9);
-        assert!((rects[0][0] - DVec2::new(-38.8, -38.0)).length() < 1e-9, "{rects:?}");
+        assert!(
+            (rects[0][0] - DVec2::new(-38.8, -38.0)).length() < 1e-9,
+            "{rects:?}"
+        );
         assert!(runs(&[]).is_empty());
     }
 }

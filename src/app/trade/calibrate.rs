@@ -67,19 +67,21 @@ impl Background {
         let (out, news) = unbounded();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
-        std::thread::Builder::new().name("measure".into()).spawn(move || {
-            let told = Told { out, wake: &wake };
-            let should_stop = || stopped.load(Ordering::Relaxed);
-            let answer = match task {
-                Task::Calibrate(stops) => calibrate(stops, &should_stop, &told),
-                Task::Refine(refine) => refined(&refine, &should_stop, &told),
-            };
-            match answer {
-                Ok(news) => told.say(news),
-                Err(GenError::Superseded) => {}
-                Err(error) => told.say(News::Failed(error.to_string())),
-            }
-        })?;
+        std::thread::Builder::new()
+            .name("measure".into())
+            .spawn(move || {
+                let told = Told { out, wake: &wake };
+                let should_stop = || stopped.load(Ordering::Relaxed);
+                let answer = match task {
+                    Task::Calibrate(stops) => calibrate(stops, &should_stop, &told),
+                    Task::Refine(refine) => refined(&refine, &should_stop, &told),
+                };
+                match answer {
+                    Ok(news) => told.say(news),
+                    Err(GenError::Superseded) => {}
+                    Err(error) => told.say(News::Failed(error.to_string())),
+                }
+            })?;
         Ok(Self { news, stop })
     }
 
@@ -115,7 +117,12 @@ struct Ready {
     times: Vec<Vec<SizedTime>>, // by case
 }
 
-fn run(pipeline: &OccPipeline, case: &Case, params: GenParams, ctx: &JobCtx<'_>) -> Result<(SizedTime, u64), GenError> {
+fn run(
+    pipeline: &OccPipeline,
+    case: &Case,
+    params: GenParams,
+    ctx: &JobCtx<'_>,
+) -> Result<(SizedTime, u64), GenError> {
     let mut pipeline = pipeline.clone();
     let job = Job {
         scene: case.after.clone(),
@@ -136,7 +143,9 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
     let deadline = Instant::now() + AT_MOST;
     let models = OccModels::bundled().map_err(GenError::failed)?;
     let cases = cases::of_scene(&cases::held_out(0), "world 0", 0);
-    let timed: Vec<usize> = (0..stops.stops.len()).filter(|i| stops.stops[*i].name != "reference").collect();
+    let timed: Vec<usize> = (0..stops.stops.len())
+        .filter(|i| stops.stops[*i].name != "reference")
+        .collect();
     let parts = timed.len() + 1;
     let mut same = true;
     let mut ready: Vec<Ready> = Vec::new();
@@ -161,7 +170,11 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
                 times[c].push(time);
             }
         }
-        ready.push(Ready { stop: i, pipeline, times });
+        ready.push(Ready {
+            stop: i,
+            pipeline,
+            times,
+        });
     }
     told.say(News::Progress(parts - 1, parts));
     let mut draw = Draw::new(0, "calibration");
@@ -188,7 +201,12 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
         }
         step_s = of.invert_s / f64::from(of.knobs.steps.max(1));
     }
-    if let Some(reference) = stops.stops.iter_mut().find(|s| s.name == "reference").filter(|_| step_s.is_finite()) {
+    if let Some(reference) = stops
+        .stops
+        .iter_mut()
+        .find(|s| s.name == "reference")
+        .filter(|_| step_s.is_finite())
+    {
         reference.invert_s = step_s * f64::from(reference.knobs.steps);
         reference.cost = Cost {
             fixed_s: reference.invert_s,
@@ -244,6 +262,13 @@ fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Re
         occupancy: truth.occupancy,
         latent: Vec::new(),
     };
-    let outcome = Bench::compare(&case, &of.params, &of.result, None, &GenReport::default(), &reference);
+    let outcome = Bench::compare(
+        &case,
+        &of.params,
+        &of.result,
+        None,
+        &GenReport::default(),
+        &reference,
+    );
     Ok(News::Refined(outcome.error))
 }

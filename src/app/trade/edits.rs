@@ -17,8 +17,8 @@ use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeli
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::model::{LATENT, OccModels};
 use crate::generation::pipeline::OccPipeline;
-use crate::generation::region::Region;
 use crate::generation::redraw;
+use crate::generation::region::Region;
 use crate::generation::world::draw::{Draw, hash};
 use crate::scene::{Class, GridSpec, Scene, VoxelGrid};
 
@@ -215,7 +215,9 @@ impl Bench {
         mut at: impl FnMut(usize),
     ) -> anyhow::Result<Vec<Vec<Outcome>>> {
         let mut pipeline = OccPipeline::new(self.models.clone());
-        let references = cases.iter().map(|case| self.reference(&mut pipeline, case, base, ctx));
+        let references = cases
+            .iter()
+            .map(|case| self.reference(&mut pipeline, case, base, ctx));
         let references = references.collect::<anyhow::Result<Vec<_>>>()?;
         drop(pipeline);
         let mut outcomes: Vec<Vec<Outcome>> = vec![vec![Outcome::default(); settings.len()]; cases.len()];

@@ -43,9 +43,15 @@ impl Load {
 /// Names this machine: processor, threads, what our kernels find.
 pub fn machine() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = text.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": "));
+    let name = text
+        .lines()
+        .find_map(|l| l.strip_prefix("model name")?.split_once(": "));
     let threads = rayon::current_num_threads();
-    let bytes = if crate::generation::model::int8::fast_here() { ", VNNI" } else { "" };
+    let bytes = if crate::generation::model::int8::fast_here() {
+        ", VNNI"
+    } else {
+        ""
+    };
     format!(
         "{}, {threads} threads{bytes}",
         name.map_or("unknown processor", |(_, name)| name.trim())

@@ -62,7 +62,10 @@ fn decades(low: f64, high: f64) -> Vec<GridMark> {
         for (factor, size) in [(1.0, 1.0), (2.0f64, 0.3), (5.0, 0.3)] {
             let value = f64::from(decade) + factor.log10();
             if (low..=high).contains(&value) {
-                marks.push(GridMark { value, step_size: size });
+                marks.push(GridMark {
+                    value,
+                    step_size: size,
+                });
             }
         }
     }
@@ -70,7 +73,13 @@ fn decades(low: f64, high: f64) -> Vec<GridMark> {
 }
 
 /// Draws the plot; `current` is the stop in use, `last` what the last edit took and, if it was measured, its error.
-pub fn front_plot(ui: &mut Ui, marks: &[Mark], current: Option<&str>, last: Option<(f64, Option<f64>)>, size: Vec2) {
+pub fn front_plot(
+    ui: &mut Ui,
+    marks: &[Mark],
+    current: Option<&str>,
+    last: Option<(f64, Option<f64>)>,
+    size: Vec2,
+) {
     let plot = Plot::new("trade")
         .width(size.x)
         .height(size.y)
@@ -94,35 +103,71 @@ pub fn front_plot(ui: &mut Ui, marks: &[Mark], current: Option<&str>, last: Opti
     let (weak, strong, accent) = (theme::text_weak(), theme::text_strong(), theme::accent());
     plot.show(ui, |plot| {
         for (s, name) in ANCHORS {
-            plot.vline(VLine::new(name, log(s)).color(weak.gamma_multiply(0.5)).width(1.0));
-            let top = marks.iter().map(|m| log(m.error[2])).fold(f64::NEG_INFINITY, f64::max);
+            plot.vline(
+                VLine::new(name, log(s))
+                    .color(weak.gamma_multiply(0.5))
+                    .width(1.0),
+            );
+            let top = marks
+                .iter()
+                .map(|m| log(m.error[2]))
+                .fold(f64::NEG_INFINITY, f64::max);
             let at = PlotPoint::new(log(s) - 0.02, top);
-            plot.text(Text::new(name, at, RichText::new(name).small()).color(weak).anchor(Align2::RIGHT_TOP));
+            plot.text(
+                Text::new(name, at, RichText::new(name).small())
+                    .color(weak)
+                    .anchor(Align2::RIGHT_TOP),
+            );
         }
         let whisker = |from: [f64; 2], to: [f64; 2], color: Color32| {
-            Line::new("interval", PlotPoints::from(vec![from, to])).color(color).width(1.0).allow_hover(false)
+            Line::new("interval", PlotPoints::from(vec![from, to]))
+                .color(color)
+                .width(1.0)
+                .allow_hover(false)
         };
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
-            let color = if mark.on_front { accent } else { weak.gamma_multiply(0.6) };
+            let color = if mark.on_front {
+                accent
+            } else {
+                weak.gamma_multiply(0.6)
+            };
             let [s, s_low, s_high] = mark.wall_s.map(log);
             let [e, e_low, e_high] = mark.error.map(log);
             let faint = color.gamma_multiply(0.5);
             plot.line(whisker([s_low, e], [s_high, e], faint));
             plot.line(whisker([s, e_low], [s, e_high], faint));
             let radius = if mark.stop.is_some() { 5.0 } else { 2.5 };
-            plot.points(Points::new(mark.name.clone(), vec![[s, e]]).color(color).radius(radius));
+            plot.points(
+                Points::new(mark.name.clone(), vec![[s, e]])
+                    .color(color)
+                    .radius(radius),
+            );
             if let Some(stop) = &mark.stop {
                 let here = current == Some(stop.as_str());
                 if here {
-                    let ring = Points::new(stop.clone(), vec![[s, e]]).filled(false).color(strong).radius(8.0);
+                    let ring = Points::new(stop.clone(), vec![[s, e]])
+                        .filled(false)
+                        .color(strong)
+                        .radius(8.0);
                     plot.points(ring);
                 }
-                let text = RichText::new(format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])));
+                let text = RichText::new(format!(
+                    "{stop}\n{}, {}",
+                    seconds(mark.wall_s[0]),
+                    percent(mark.error[0])
+                ));
                 let text = if here { text.small().strong() } else { text.small() };
                 // Where the name has room: to the left of the last ones.
-                let right = marks.iter().map(|m| log(m.wall_s[0])).fold(ANCHORS[0].0.log10(), f64::max);
+                let right = marks
+                    .iter()
+                    .map(|m| log(m.wall_s[0]))
+                    .fold(ANCHORS[0].0.log10(), f64::max);
                 let late = s > right - 0.35;
-                let (dx, anchor) = if late { (-0.03, Align2::RIGHT_BOTTOM) } else { (0.03, Align2::LEFT_BOTTOM) };
+                let (dx, anchor) = if late {
+                    (-0.03, Align2::RIGHT_BOTTOM)
+                } else {
+                    (0.03, Align2::LEFT_BOTTOM)
+                };
                 let at = PlotPoint::new(s + dx, e + 0.02);
                 plot.text(
                     Text::new(stop.clone(), at, text)
@@ -137,11 +182,18 @@ pub fn front_plot(ui: &mut Ui, marks: &[Mark], current: Option<&str>, last: Opti
             .map(|m| [log(m.wall_s[0]), log(m.error[0])])
             .collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        plot.line(Line::new("front", PlotPoints::from(front)).color(accent.gamma_multiply(0.5)).width(1.5).allow_hover(false));
+        plot.line(
+            Line::new("front", PlotPoints::from(front))
+                .color(accent.gamma_multiply(0.5))
+                .width(1.5)
+                .allow_hover(false),
+        );
         if let Some((s, error)) = last {
             match error {
                 Some(e) => plot.points(
-                    Points::new("last edit", vec![[log(s), log(e)]]).color(theme::warn()).radius(5.0),
+                    Points::new("last edit", vec![[log(s), log(e)]])
+                        .color(theme::warn())
+                        .radius(5.0),
                 ),
                 None => plot.vline(VLine::new("last edit", log(s)).color(theme::warn()).width(1.5)),
             }

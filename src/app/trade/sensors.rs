@@ -15,9 +15,9 @@ use crate::generation::model::lidar::field::Sampling;
 use crate::generation::model::lidar::{LearnedRay, LidarNet};
 use crate::generation::model::{OccModels, fine_vae};
 use crate::generation::sensors::cloud::GaussianCloud;
+use crate::generation::sensors::learned;
 use crate::generation::sensors::lidar;
 use crate::generation::sensors::splat::{SplatOptions, VIEW_SIZE, render_rig};
-use crate::generation::sensors::learned;
 use crate::generation::trade::{Interval, bootstrap_median};
 use crate::scene::raster::bev_channels;
 use crate::scene::{CameraMaps, SensorRig};
@@ -94,7 +94,11 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
                 .map(|(a, b)| f64::from(a.met.median_m - b.met.median_m).abs())
                 .collect();
             errors[k].push(quantile(&gaps, 0.95));
-            let flipped = some.iter().zip(&exact).filter(|(a, b)| a.is_hit() != b.is_hit()).count();
+            let flipped = some
+                .iter()
+                .zip(&exact)
+                .filter(|(a, b)| a.is_hit() != b.is_hit())
+                .count();
             flips[k].push(flipped as f64 / some.len() as f64);
             let off: Vec<f64> = few
                 .iter()
@@ -177,7 +181,10 @@ pub fn splats(frames: usize, repeats: usize) -> Vec<Measured> {
     for i in 0..frames as u64 {
         let scene = held_out(i);
         let frame = scene.frame();
-        let cloud = GaussianCloud::from_grid(&frame.occupancy, &bev_channels(&frame.layout, frame.boxes.values()));
+        let cloud = GaussianCloud::from_grid(
+            &frame.occupancy,
+            &bev_channels(&frame.layout, frame.boxes.values()),
+        );
         let truth = render_rig(&cloud, &rig, w, h, &exact);
         for (k, (_, options)) in ways.iter().enumerate() {
             forget_peak_memory();
@@ -209,7 +216,12 @@ fn map_errors(maps: &[CameraMaps], truth: &[CameraMaps]) -> (f64, f64) {
     for (a, b) in maps.iter().zip(truth) {
         pixels += a.semantic.len();
         other += a.semantic.iter().zip(&b.semantic).filter(|(a, b)| a != b).count();
-        for (a, b) in a.depth_m.iter().zip(&b.depth_m).filter(|(a, b)| **a > 0.0 && **b > 0.0) {
+        for (a, b) in a
+            .depth_m
+            .iter()
+            .zip(&b.depth_m)
+            .filter(|(a, b)| **a > 0.0 && **b > 0.0)
+        {
             square += f64::from(a - b).powi(2);
             deep += 1;
         }
@@ -230,7 +242,9 @@ pub fn vaes(models: &Arc<OccModels>, frames: usize, repeats: usize) -> anyhow::R
         forget_peak_memory();
         for i in 0..frames as u64 {
             let grid = held_out(i).frame().occupancy.clone();
-            let (back, times) = timed(repeats, || vae.encode(&grid).and_then(|latent| vae.decode(&latent)));
+            let (back, times) = timed(repeats, || {
+                vae.encode(&grid).and_then(|latent| vae.decode(&latent))
+            });
             let back = back?;
             walls.extend(times);
             errors.push(grid.count_different(&back) as f64 / grid.count_set().max(1) as f64);

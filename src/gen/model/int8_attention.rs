@@ -58,7 +58,11 @@ impl Int8Head {
                 for (r, sums) in sums.iter().enumerate() {
                     let (_, scales) = self.values.of(first, columns);
                     // A total is at least 255: the largest score's weight is.
-                    let whole = if steps[r].is_nan() { f32::NAN } else { 1.0 / totals[r] as f32 };
+                    let whole = if steps[r].is_nan() {
+                        f32::NAN
+                    } else {
+                        1.0 / totals[r] as f32
+                    };
                     let out = &mut out[r * out_stride + first..][..columns];
                     for ((o, s), scale) in out.iter_mut().zip(sums).zip(scales) {
                         *o = *s as f32 * (scale * whole);
@@ -134,7 +138,10 @@ mod tests {
             let max = f64::from(scores.iter().copied().fold(f32::MIN, f32::max));
             for (step, score) in steps.iter().zip(&scores) {
                 let truth = 255.0 * (f64::from(*score) - max).exp();
-                assert!((f64::from(*step) - truth).abs() <= 0.5 + 0.26, "{step}, expected {truth}");
+                assert!(
+                    (f64::from(*step) - truth).abs() <= 0.5 + 0.26,
+                    "{step}, expected {truth}"
+                );
             }
         }
     }
@@ -155,7 +162,9 @@ mod tests {
             assert_eq!(alone, out[10 * width..]);
             for r in 0..11 {
                 let dot = |t: usize| -> f64 {
-                    (0..width).map(|c| f64::from(queries[r * width + c]) * f64::from(kv[t * stride + c])).sum()
+                    (0..width)
+                        .map(|c| f64::from(queries[r * width + c]) * f64::from(kv[t * stride + c]))
+                        .sum()
                 };
                 let scores: Vec<f64> = (0..tokens).map(dot).collect();
                 let max = scores.iter().copied().fold(f64::MIN, f64::max);
@@ -165,7 +174,10 @@ mod tests {
                         .map(|t| (scores[t] - max).exp() / total * f64::from(kv[t * stride + width + c]))
                         .sum();
                     let found = f64::from(out[r * width + c]);
-                    assert!((found - truth).abs() < 0.02, "{tokens}: {found}, expected {truth}");
+                    assert!(
+                        (found - truth).abs() < 0.02,
+                        "{tokens}: {found}, expected {truth}"
+                    );
                 }
             }
         }

@@ -311,7 +311,11 @@ mod tests {
         let mut rough = x.clone();
         gelu_all_roughly(&mut rough);
         for (x, found) in x.iter().zip(&rough) {
-            assert!((found - gelu(*x)).abs() < 3e-4, "{x}: {found}, expected {}", gelu(*x));
+            assert!(
+                (found - gelu(*x)).abs() < 3e-4,
+                "{x}: {found}, expected {}",
+                gelu(*x)
+            );
         }
         let mut ends = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 3e38, -3e38, 0.0];
         gelu_all_roughly(&mut ends);

@@ -155,7 +155,10 @@ impl OccModels {
         let mut models = Self::parse(&vae?, &dit?)?;
         let student = folder.join(STUDENT);
         if student.exists() {
-            models.distilled = Some(OccDit::new(WeightFile::parse(STUDENT, &weights::read(&student)?)?)?);
+            models.distilled = Some(OccDit::new(WeightFile::parse(
+                STUDENT,
+                &weights::read(&student)?,
+            )?)?);
         }
         Ok(Arc::new(models))
     }

@@ -342,8 +342,12 @@ impl OccDit {
         let modulations: Vec<Vec<f32>> = self.blocks.par_iter().map(|b| b.ada.vector(&time)).collect();
         let last = self.blocks.len() - 1;
         let mut before = Vec::new();
-        for (i, ((block, ada), keys_values)) in
-            self.blocks.iter().zip(&modulations).zip(&mut keys_values.0).enumerate()
+        for (i, ((block, ada), keys_values)) in self
+            .blocks
+            .iter()
+            .zip(&modulations)
+            .zip(&mut keys_values.0)
+            .enumerate()
         {
             match &mut middle {
                 Middle::Reused(added) if i == 1 && added.len() == tokens.len() && last > 1 => {
@@ -358,7 +362,14 @@ impl OccDit {
             }
             let skipped = matches!(&middle, Middle::Reused(added) if added.len() == tokens.len());
             if !skipped || i == 0 || i == last {
-                block.apply(&mut tokens, ada, self.config.heads, places, keys_values, precision);
+                block.apply(
+                    &mut tokens,
+                    ada,
+                    self.config.heads,
+                    places,
+                    keys_values,
+                    precision,
+                );
             }
         }
         let ada = self.final_ada.vector(&time);

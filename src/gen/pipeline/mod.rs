@@ -16,10 +16,10 @@ use crate::generation::job::{
 };
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
+use crate::generation::params::{DitVariant, Precision};
 use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::{RegionNoise, edit_with_replay};
-use crate::generation::params::{DitVariant, Precision};
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::{Guidance, Sampler, SolverKind};
 use crate::generation::world::draw::hash;

@@ -97,14 +97,9 @@ impl Denoiser for Network {
         let (dit, step) = (self.models.dit_of(self.variant)?, t as f32);
         let mut fresh = KeysValues::default();
         let v = match (branch, &self.without) {
-            (Branch::Unconditional, Some(without)) => dit.forward_in(
-                &x,
-                step,
-                without,
-                &mut fresh,
-                self.precision,
-                Middle::Computed,
-            ),
+            (Branch::Unconditional, Some(without)) => {
+                dit.forward_in(&x, step, without, &mut fresh, self.precision, Middle::Computed)
+            }
             _ => {
                 let kept = match &mut self.keys_values {
                     Some(kept) => kept.entry(t.to_bits()).or_default(),

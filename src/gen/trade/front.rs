@@ -57,7 +57,9 @@ pub fn knee(points: &[Placed]) -> Option<usize> {
     let log_s = |p: &Placed| p.wall_s.median.max(1e-9).ln();
     let span = |of: &dyn Fn(&Placed) -> f64| {
         let values = points.iter().map(of);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        });
         (low, (high - low).max(1e-12))
     };
     let error = |p: &Placed| p.error.median;
@@ -88,7 +90,7 @@ mod tests {
         let points = [
             at(0.1, 9.0, 0.05),
             at(0.2, 4.0, 0.05),
-            at(0.4, 4.1, 0.05), // slower and no better
+            at(0.4, 4.1, 0.05),  // slower and no better
             at(0.21, 4.1, 0.05), // about the same as the second
             at(1.0, 1.0, 0.05),
             at(1.0, f64::INFINITY, 0.05),
@@ -107,7 +109,10 @@ mod tests {
         }
         let by_hand = 100f64.log10() * 1.0 + 50f64.log10() * 5.0 + 10f64.log10() * 3.0;
         assert!((all - by_hand).abs() < 1e-12);
-        assert_eq!(hypervolume(&[at(20.0, 1.0, 0.0), at(1.0, f64::NAN, 0.0)], 10.0, 10.0), 0.0);
+        assert_eq!(
+            hypervolume(&[at(20.0, 1.0, 0.0), at(1.0, f64::NAN, 0.0)], 10.0, 10.0),
+            0.0
+        );
         assert_eq!(knee(&points), Some(1));
         assert_eq!(knee(&[]), None);
     }

@@ -106,6 +106,9 @@ mod tests {
         let bad = bootstrap_median(&[1.0, f64::NAN, f64::NAN], 0);
         assert_eq!(bad.median, f64::INFINITY);
         assert!(bad.low <= bad.high);
-        assert_eq!(bootstrap_median(&[1.0, 2.0, 5.0], 7), bootstrap_median(&[5.0, 1.0, 2.0], 7));
+        assert_eq!(
+            bootstrap_median(&[1.0, 2.0, 5.0], 7),
+            bootstrap_median(&[5.0, 1.0, 2.0], 7)
+        );
     }
 }

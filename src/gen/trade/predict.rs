@@ -25,12 +25,17 @@ impl Cost {
     /// By least squares of relative errors, neither part below 0; `None` without a positive time. Times of one size
     /// alone give no slope: then all is fixed.
     pub fn fit(times: &[SizedTime]) -> Option<Self> {
-        let usable = times.iter().filter(|t| t.wall_s > 0.0 && t.wall_s.is_finite() && t.tokens >= 0.0);
+        let usable = times
+            .iter()
+            .filter(|t| t.wall_s > 0.0 && t.wall_s.is_finite() && t.tokens >= 0.0);
         // Weights 1 / wall^2 make errors relative.
         let mut sums = [0.0; 5];
         for t in usable {
             let w = 1.0 / (t.wall_s * t.wall_s);
-            for (sum, v) in sums.iter_mut().zip([1.0, t.tokens, t.tokens * t.tokens, t.wall_s, t.tokens * t.wall_s]) {
+            for (sum, v) in
+                sums.iter_mut()
+                    .zip([1.0, t.tokens, t.tokens * t.tokens, t.wall_s, t.tokens * t.wall_s])
+            {
                 *sum += w * v;
             }
         }
@@ -39,7 +44,11 @@ impl Cost {
             return None;
         }
         let spread = n * xx - x * x;
-        let slope = if spread > 1e-9 * n * xx { (n * xy - x * y) / spread } else { 0.0 };
+        let slope = if spread > 1e-9 * n * xx {
+            (n * xy - x * y) / spread
+        } else {
+            0.0
+        };
         let fixed = (y - slope * x) / n;
         Some(if slope < 0.0 {
             Self {
@@ -70,7 +79,12 @@ mod tests {
     use super::*;
 
     fn times(of: &[(f64, f64)]) -> Vec<SizedTime> {
-        of.iter().map(|(tokens, wall_s)| SizedTime { tokens: *tokens, wall_s: *wall_s }).collect()
+        of.iter()
+            .map(|(tokens, wall_s)| SizedTime {
+                tokens: *tokens,
+                wall_s: *wall_s,
+            })
+            .collect()
     }
 
     #[test]

@@ -121,8 +121,17 @@ impl Stops {
             return Err("measured with other weights".into());
         }
         let sound = |s: &Stop| {
-            let ends = [s.error.low, s.error.median, s.error.high, s.invert_s, s.cost.fixed_s, s.cost.per_token_s];
-            ends.iter().chain(&s.error_of_one).all(|v| v.is_finite() && *v >= 0.0)
+            let ends = [
+                s.error.low,
+                s.error.median,
+                s.error.high,
+                s.invert_s,
+                s.cost.fixed_s,
+                s.cost.per_token_s,
+            ];
+            ends.iter()
+                .chain(&s.error_of_one)
+                .all(|v| v.is_finite() && *v >= 0.0)
                 && s.knobs.on(GenParams::default()).check().is_ok()
         };
         match read.stops.iter().find(|s| !sound(s)) {
@@ -155,7 +164,12 @@ mod tests {
         let stops = Stops::bundled();
         assert!(stops.stops.len() >= 5);
         for pair in stops.stops.windows(2) {
-            assert!(pair[0].error.median > pair[1].error.median, "{} {}", pair[0].name, pair[1].name);
+            assert!(
+                pair[0].error.median > pair[1].error.median,
+                "{} {}",
+                pair[0].name,
+                pair[1].name
+            );
             for tokens in [20.0, 60.0] {
                 assert!(pair[0].cost.wall_s(tokens) < pair[1].cost.wall_s(tokens));
             }
@@ -174,7 +188,11 @@ mod tests {
     #[test]
     fn the_shipped_stops_were_measured_with_the_shipped_weights() {
         let models = OccModels::bundled().expect("weights");
-        assert_eq!(Stops::bundled().weights, models.card.hashes, "run `sceneloom trade --stops`");
+        assert_eq!(
+            Stops::bundled().weights,
+            models.card.hashes,
+            "run `sceneloom trade --stops`"
+        );
     }
 
     #[test]

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::app::cli::trials::{KINDS, Reached, Trial};
 use super::{Bar, Eval, scene, with_interval};
 use crate::app::cli::progress::Progress;
+use crate::app::cli::trials::{KINDS, Reached, Trial};
 use crate::editor::Document;
 use crate::generation::job::{GenParams, GenReport, Job, JobCtx, Pipeline};
 use crate::generation::metrics::stats::{mean_ci95, median};

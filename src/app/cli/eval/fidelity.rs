@@ -5,9 +5,9 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::editing::edited;
-use crate::app::cli::trials::{KINDS, Trial};
 use super::{Eval, scene, with_interval};
 use crate::app::cli::progress::Progress;
+use crate::app::cli::trials::{KINDS, Trial};
 use crate::editor::Document;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::iou::Confusion;
