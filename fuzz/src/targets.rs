@@ -448,7 +448,7 @@ pub fn prompt(bytes: &[u8]) {
     if let Err(error) = app_text::read(&text) {
         one_line(error);
     }
-    if bytes.len() % 4 == 0 {
+    if bytes.len().is_multiple_of(4) {
         let placement = place_with(&graphed.graph, street(), 1, &graphed.sizes_m, &[]);
         assert!(placement.boxes.iter().all(|b| b.problem().is_none()));
     }

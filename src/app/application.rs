@@ -415,7 +415,7 @@ impl SceneloomApp {
             JobUpdate::Finished(result) => {
                 let now_s = self.now_s();
                 if let Some(running) = self.live.ended(event.id) {
-                    let settled_s = (running.purpose == Purpose::Edit).then(|| now_s - running.edited_s);
+                    let settled_s = (running.purpose == Purpose::Edit).then_some(now_s - running.edited_s);
                     self.perf.job_ended(now_s, settled_s, "finished");
                     let full = running.purpose == Purpose::Full;
                     if running.purpose == Purpose::WarmUp {

@@ -126,7 +126,8 @@ fn erfc(x: f64) -> f64 {
 #[test]
 fn row_14_activations() {
     let softplus = |x: f32| x.max(0.0) + neus::tail(x);
-    let functions: [(&str, &dyn Fn(f32) -> f32, &dyn Fn(f64) -> f64); 4] = [
+    type Pair<'a> = (&'a str, &'a dyn Fn(f32) -> f32, &'a dyn Fn(f64) -> f64);
+    let functions: [Pair<'_>; 4] = [
         ("gelu", &gelu, &|x| 0.5 * x * erfc(-x / 2f64.sqrt())),
         ("silu", &silu, &|x| x / (1.0 + (-x).exp())),
         ("sigmoid", &drop_probability, &|x| 1.0 / (1.0 + (-x).exp())),

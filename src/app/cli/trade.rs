@@ -487,24 +487,39 @@ impl Trade {
         // Only those whose time rises and whose error falls by enough to be felt.
         let mut kept: Vec<usize> = Vec::new();
         for i in order {
-            let far = kept.last().is_none_or(|k| {
-                placed[i].error.median < 0.85 * placed[*k].error.median
-                    && placed[i].wall_s.median > 1.1 * placed[*k].wall_s.median
-            });
-            if far {
-                kept.push(i);
+            let of = |k: usize| (placed[k].wall_s.median, placed[k].error.median);
+            match kept.last().map(|k| of(*k)) {
+                Some((_, error)) if of(i).1 >= 0.85 * error => {}
+                // Nearly as fast and much nearer: nobody would choose the other.
+                Some((wall_s, error)) if of(i).0 <= 1.1 * wall_s => {
+                    if of(i).1 < 0.5 * error {
+                        kept.pop();
+                        kept.push(i);
+                    }
+                }
+                _ => kept.push(i),
             }
         }
         let middle = knee(&kept.iter().map(|i| placed[*i]).collect::<Vec<_>>()).unwrap_or(0);
         let last = kept.len().saturating_sub(1);
+        let middle = if last >= 2 {
+            middle.clamp(1, last - 1)
+        } else {
+            middle
+        };
+        let numbered = |name: &str, nth: usize| {
+            if nth == 0 {
+                name.to_owned()
+            } else {
+                format!("{name} {}", nth + 1)
+            }
+        };
         let name = |k: usize| match k {
             0 => "draft".to_owned(),
             k if k == last => "accurate".into(),
             k if k == middle => "balanced".into(),
-            k => settings::name_of(
-                &StopKnobs::of(&rows[kept[k]].setting.params),
-                &StopKnobs::of(&GenParams::default()),
-            ),
+            k if k < middle => numbered("quick", k - 1),
+            k => numbered("fine", k - middle - 1),
         };
         let mut stops: Vec<Stop> = Vec::new();
         for (k, i) in kept.iter().enumerate() {

@@ -23,7 +23,10 @@ const VARIANTS: u64 = 4;
 
 /// What the last scene from words was made with, told by the thread that made it.
 #[derive(Clone, Debug, Default)]
-pub struct Told(Arc<Mutex<Option<(Option<Remembered>, Option<Diffused>, Vec<String>)>>>);
+pub struct Told(Arc<Mutex<Option<WhatWasTold>>>);
+
+/// What memory filled in, what the network placed, what fell short.
+type WhatWasTold = (Option<Remembered>, Option<Diffused>, Vec<String>);
 
 impl Told {
     /// Tells how a layout came about.

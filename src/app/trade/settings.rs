@@ -60,41 +60,119 @@ pub fn of_edits(base: GenParams, distilled: bool, draws: usize, seed: u64) -> Ve
     for steps in [2, 4, 6, 10, 20, 33, 50] {
         add(GenParams { steps, ..base }, false, "");
         let precision = Precision::Int8;
-        add(GenParams { steps, precision, ..base }, false, "");
+        add(
+            GenParams {
+                steps,
+                precision,
+                ..base
+            },
+            false,
+            "",
+        );
     }
     for steps in [4, 10, 20] {
         for solver in [SolverKind::DpmPp2M, SolverKind::UniPc, SolverKind::OBelm] {
-            add(GenParams { steps, solver, ..base }, false, "");
+            add(
+                GenParams {
+                    steps,
+                    solver,
+                    ..base
+                },
+                false,
+                "",
+            );
         }
     }
-    add(GenParams { inversion_iterations: 1, ..base }, false, "");
+    add(
+        GenParams {
+            inversion_iterations: 1,
+            ..base
+        },
+        false,
+        "",
+    );
     for steps in [4, 6, 10, 20, 33] {
         let inversion_iterations = 3;
-        add(GenParams { steps, inversion_iterations, ..base }, false, "");
+        add(
+            GenParams {
+                steps,
+                inversion_iterations,
+                ..base
+            },
+            false,
+            "",
+        );
         let precision = Precision::Int8;
-        add(GenParams { steps, inversion_iterations, precision, ..base }, false, "");
+        add(
+            GenParams {
+                steps,
+                inversion_iterations,
+                precision,
+                ..base
+            },
+            false,
+            "",
+        );
     }
     for halo_tokens in [0, 2, 4] {
         add(GenParams { halo_tokens, ..base }, false, "");
     }
     for steps in [4, 10, 20] {
-        add(GenParams { steps, local: false, ..base }, false, "");
+        add(
+            GenParams {
+                steps,
+                local: false,
+                ..base
+            },
+            false,
+            "",
+        );
     }
     for reuse_steps in [2, 3] {
         add(GenParams { reuse_steps, ..base }, false, "");
-        add(GenParams { reuse_steps, steps: 20, ..base }, false, "");
+        add(
+            GenParams {
+                reuse_steps,
+                steps: 20,
+                ..base
+            },
+            false,
+            "",
+        );
     }
     if distilled {
-        for (steps, precision) in [(1, Precision::F32), (2, Precision::F32), (4, Precision::F32), (4, Precision::Int8)] {
+        for (steps, precision) in [
+            (1, Precision::F32),
+            (2, Precision::F32),
+            (4, Precision::F32),
+            (4, Precision::Int8),
+        ] {
             let network = DitVariant::Distilled;
-            add(GenParams { network, steps, precision, ..base }, false, "");
+            add(
+                GenParams {
+                    network,
+                    steps,
+                    precision,
+                    ..base
+                },
+                false,
+                "",
+            );
         }
     }
     for guidance in [1.5, 3.0] {
-        add(GenParams { guidance, ..base }, true, &format!(", guidance {guidance}"));
+        add(
+            GenParams { guidance, ..base },
+            true,
+            &format!(", guidance {guidance}"),
+        );
     }
     for halo_columns in [1, 4] {
-        add(GenParams { halo_columns, ..base }, true, &format!(", {halo_columns} columns around"));
+        add(
+            GenParams { halo_columns, ..base },
+            true,
+            &format!(", {halo_columns} columns around"),
+        );
     }
     let mut draw = Draw::new(seed, "hypercube");
     let mut columns: [Vec<usize>; 6] = std::array::from_fn(|_| (0..draws).collect());
@@ -139,11 +217,23 @@ pub fn of_scenes(base: GenParams) -> Vec<Setting> {
     add(base);
     for steps in [4, 6, 10, 20, 40] {
         add(GenParams { steps, ..base });
-        add(GenParams { steps, precision: Precision::Int8, ..base });
+        add(GenParams {
+            steps,
+            precision: Precision::Int8,
+            ..base
+        });
     }
     for steps in [6, 10, 20] {
-        add(GenParams { steps, solver: SolverKind::DpmPp2M, ..base });
-        add(GenParams { steps, reuse_steps: 2, ..base });
+        add(GenParams {
+            steps,
+            solver: SolverKind::DpmPp2M,
+            ..base
+        });
+        add(GenParams {
+            steps,
+            reuse_steps: 2,
+            ..base
+        });
     }
     out
 }
