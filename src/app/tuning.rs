@@ -1,6 +1,7 @@
 //! The quality slider: its stops, what they are predicted to cost, what the last edit really cost, and the work beside
 //! the window that measures both.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -8,18 +9,21 @@ use super::trade::calibrate::{Background, News, Refine, Task, build};
 use super::trade::load::machine;
 use super::trade::plot::{percent, seconds};
 use crate::generation::job::{GenParams, GenReport, GenResult};
+use crate::generation::metrics::stats::median;
 use crate::generation::model::{OccModels, tokens_of};
 use crate::generation::redraw;
 use crate::generation::region::Region;
 use crate::generation::trade::{Stop, Stops};
 use crate::scene::Scene;
 
+/// Edits that the window's own pace is taken from.
+const REMEMBERED: usize = 9;
 /// Tokens of an edit of one vehicle.
 const TYPICAL_TOKENS: f64 = 36.0;
 
 /// One line: what a stop is foretold to take and to miss.
-pub fn foretold(stop: &Stop, tokens: f64) -> String {
-    let time = seconds(stop.cost.wall_s(tokens));
+pub fn foretold(stop: &Stop, wall_s: f64) -> String {
+    let time = seconds(wall_s);
     if stop.error.high == 0.0 {
         return format!("{time}  ·  what the others are measured against");
     }
@@ -90,6 +94,8 @@ pub struct Tuning {
     pub show_modelled: bool,
     /// What became of the last measurement, one line.
     pub message: Option<String>,
+    /// How many times longer than in quiet the last edits took: the window draws on the same cores.
+    slower: VecDeque<f64>,
     running: Option<(Measuring, Background, (usize, usize))>,
     file: Option<PathBuf>,
 }
@@ -111,6 +117,7 @@ impl Tuning {
             stability: Stability::default(),
             show_modelled: false,
             message: None,
+            slower: VecDeque::new(),
             running: None,
             file,
         }
@@ -200,6 +207,20 @@ impl Tuning {
         write().map_err(|e| e.to_string())
     }
 
+    /// What this window's edits take, in times of what they take while nothing else runs: the median of the last ones.
+    pub fn window_factor(&self) -> f64 {
+        let known: Vec<f64> = self.slower.iter().copied().collect();
+        if known.is_empty() {
+            return 1.0;
+        }
+        median(&known).clamp(0.25, 20.0)
+    }
+
+    /// Wall time that an edit of so many tokens is foretold to take in this window, s.
+    pub fn foretold_s(&self, stop: &Stop, tokens: f64) -> f64 {
+        stop.cost.wall_s(tokens) * self.window_factor()
+    }
+
     /// Tokens of an edit like the last one, or of a typical one until there was one.
     pub fn tokens_of_next(&self) -> f64 {
         self.last
@@ -210,7 +231,7 @@ impl Tuning {
     /// Name of each stop, and what it is foretold to cost.
     pub fn foretold(&self) -> Vec<(String, String)> {
         let tokens = self.tokens_of_next();
-        let of = |s: &Stop| (s.name.clone(), foretold(s, tokens));
+        let of = |s: &Stop| (s.name.clone(), foretold(s, self.foretold_s(s, tokens)));
         self.stops.stops.iter().map(of).collect()
     }
 
@@ -232,7 +253,8 @@ impl Tuning {
         {
             self.running = None;
         }
-        let stop = self.current(&params).map(|i| &self.stops.stops[i]);
+        let stop = self.current(&params).map(|i| self.stops.stops[i].clone());
+        let stop = stop.as_ref();
         let region = redraw::region_of(edited.frame(), &params);
         let all = OccModels::TOKENS;
         let tokens = if report.tokens >= all {
@@ -240,15 +262,27 @@ impl Tuning {
         } else {
             tokens_of(&region.cells, params.halo_tokens as usize)
         };
+        let tokens_computed = report.tokens as f64;
+        let predicted_s = stop.map(|s| {
+            let inverted = if report.inversion_calls > 0 {
+                s.invert_s
+            } else {
+                0.0
+            };
+            self.foretold_s(s, tokens_computed) + inverted * self.window_factor()
+        });
+        if let Some(quiet_s) = stop.map(|s| s.cost.wall_s(tokens_computed))
+            && report.inversion_calls == 0
+            && quiet_s > 0.0
+            && report.network_calls > 0
+        {
+            self.slower.push_back(report.total_s() / quiet_s);
+            if self.slower.len() > REMEMBERED {
+                self.slower.pop_front();
+            }
+        }
         self.last = Some(LastEdit {
-            predicted_s: stop.map(|s| {
-                let inverted = if report.inversion_calls > 0 {
-                    s.invert_s
-                } else {
-                    0.0
-                };
-                s.cost.wall_s(report.tokens as f64) + inverted
-            }),
+            predicted_s,
             predicted_error: stop.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
             measured_error: None,
             bricks: edited.frame().source.occupancy.changed_bricks(&result.occupancy),

@@ -48,7 +48,7 @@ fn marks(tuning: &Tuning) -> Vec<Mark> {
     let tokens = tuning.tokens_of_next();
     let mark = |s: &Stop| Mark {
         name: s.name.clone(),
-        wall_s: [s.cost.wall_s(tokens); 3],
+        wall_s: [tuning.foretold_s(s, tokens); 3],
         error: [s.error.median, s.error.low, s.error.high],
         on_front: true,
         stop: Some(s.name.clone()),
@@ -91,7 +91,14 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
             } else {
                 "An edit of a few vehicles' size: "
             };
-            ui.label(RichText::new(of.to_owned() + &foretold(&stops[i], tokens)).small());
+            let foretold = foretold(&stops[i], tuning.foretold_s(&stops[i], tokens));
+            ui.label(RichText::new(of.to_owned() + &foretold).small());
+            let factor = tuning.window_factor();
+            if factor > 1.25 {
+                let text =
+                    format!("{factor:.1} times as long as in quiet: this window is drawn by the same cores");
+                ui.label(RichText::new(text).small().color(theme::text_weak()));
+            }
         }
         None => {
             ui.label(RichText::new("Own settings, not measured").strong());

@@ -125,6 +125,8 @@ pub fn front_plot(
                 .width(1.0)
                 .allow_hover(false)
         };
+        // Names of stops stand above and below the line by turns.
+        let mut nth = 0;
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
             let color = if mark.on_front {
                 accent
@@ -163,12 +165,14 @@ pub fn front_plot(
                     .map(|m| log(m.wall_s[0]))
                     .fold(ANCHORS[0].0.log10(), f64::max);
                 let late = s > right - 0.35;
-                let (dx, anchor) = if late {
-                    (-0.03, Align2::RIGHT_BOTTOM)
-                } else {
-                    (0.03, Align2::LEFT_BOTTOM)
+                let below = nth % 2 == 1;
+                nth += 1;
+                let (dx, dy, anchor) = match (late, below) {
+                    (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
+                    (_, true) => (-0.03, -0.02, Align2::RIGHT_TOP),
+                    _ => (0.03, 0.02, Align2::LEFT_BOTTOM),
                 };
-                let at = PlotPoint::new(s + dx, e + 0.02);
+                let at = PlotPoint::new(s + dx, e + dy);
                 plot.text(
                     Text::new(stop.clone(), at, text)
                         .color(if here { strong } else { theme::text() })
