@@ -660,6 +660,7 @@ fn table(report: &Value) -> String {
         }
         let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
         let error = match of {
+            "lidar" if p["error"]["median"].is_null() => "no hit".into(),
             "lidar" => format!("{:.3} m", number(&p["error"]["median"])),
             _ => format!(
                 "{} ({} to {})",

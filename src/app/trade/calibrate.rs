@@ -149,6 +149,7 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
     let parts = timed.len() + 1;
     let mut same = true;
     let mut ready: Vec<Ready> = Vec::new();
+    let mut slower = Vec::new(); // than where the stops were measured
     for (k, i) in timed.into_iter().enumerate() {
         told.say(News::Progress(k, parts));
         let of = &mut stops.stops[i];
@@ -160,7 +161,9 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
             params,
         };
         pipeline.prepare(&job, &ctx)?;
-        of.invert_s = start.elapsed().as_secs_f64();
+        let invert_s = start.elapsed().as_secs_f64();
+        slower.push(invert_s / of.invert_s);
+        of.invert_s = invert_s;
         let mut times = vec![Vec::new(); cases.len()];
         for (c, case) in cases.iter().enumerate() {
             let (time, hash) = run(&pipeline, case, params, &ctx)?;
@@ -184,7 +187,6 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
         let (time, _) = run(&ready[r].pipeline, &cases[c], params, &ctx)?;
         ready[r].times[c].push(time);
     }
-    let mut step_s = f64::NAN;
     for r in &ready {
         let middle: Vec<SizedTime> = r
             .times
@@ -199,19 +201,13 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
         if let Some(cost) = Cost::fit(&middle) {
             of.cost = cost;
         }
-        step_s = of.invert_s / f64::from(of.knobs.steps.max(1));
     }
-    if let Some(reference) = stops
-        .stops
-        .iter_mut()
-        .find(|s| s.name == "reference")
-        .filter(|_| step_s.is_finite())
-    {
-        reference.invert_s = step_s * f64::from(reference.knobs.steps);
-        reference.cost = Cost {
-            fixed_s: reference.invert_s,
-            per_token_s: 0.0,
-        };
+    // The reference takes minutes: its time is scaled as the others' inversions are.
+    let slower = median(&slower);
+    let reference = stops.stops.iter_mut().find(|s| s.name == "reference");
+    if let Some(reference) = reference.filter(|_| slower.is_finite()) {
+        reference.invert_s *= slower;
+        reference.cost.fixed_s *= slower;
     }
     stops.machine = machine();
     stops.build = build();

@@ -98,6 +98,7 @@ pub fn front_plot(
         .grid_spacing(6.0..=120.0)
         .grid_color(theme::text_weak().gamma_multiply(0.35))
         .include_x(ANCHORS[0].0.log10() + 0.12)
+        .include_x(marks.iter().map(|m| log(m.wall_s[0])).fold(-1.0, f64::min) - 0.45)
         .include_y(LEAST_ERROR.log10())
         .set_margin_fraction(vec2(0.05, 0.09));
     let (weak, strong, accent) = (theme::text_weak(), theme::text_strong(), theme::accent());
