@@ -221,7 +221,9 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
             (prepared, on_card)
         });
         let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        prepared.view(scene, camera, size, quick, card)
+        prepared
+            .view(scene, camera, size, quick, card)
+            .colored(wanted.mode)
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {

@@ -16,6 +16,7 @@ use crate::viewport::{
 
 use super::command::Command;
 use super::pointer::{self, Held, Step};
+use super::software_ui;
 use super::state::{Tool, UiState, VoxelVerb, position_text};
 use super::theme;
 use super::tools::VoxelMode;
@@ -357,9 +358,14 @@ impl View3d {
         };
         let [w, h] = if coarse { size.map(|s| s.div_ceil(2)) } else { size };
         let wgpu = &gpu.render_state;
-        gpu.viewport
+        let drawn = gpu
+            .viewport
             .render(&wgpu.device, &wgpu.queue, &self.camera, &view, w, h);
         let texture = register(gpu, options.samples);
+        if drawn && gpu.software {
+            let share = software_ui::share(gpu.viewport.drawn_rect(), gpu.viewport.size());
+            software_ui::picture_changed(ui.ctx(), texture, Some(share));
+        }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }

@@ -201,7 +201,7 @@ pub struct Viewport {
     pipelines: [Option<Pipelines>; 2], // 1 sample, 4 samples
     target: Target,
     drawn: Option<Drawn>,
-    drawn_px: u64,
+    drawn_rect: PixelRect,
     voxels: voxels::Voxels,
     ground: ground::Ground,
     lines: lines::Lines,
@@ -262,7 +262,7 @@ impl Viewport {
             pipelines: [None, None],
             target: Target::new(device, [1, 1], 1),
             drawn: None,
-            drawn_px: 0,
+            drawn_rect: [0; 4],
             voxels: voxels::Voxels::new(),
             ground: ground::Ground::default(),
             lines: lines::Lines::default(),
@@ -317,14 +317,15 @@ impl Viewport {
         };
         self.build_pipelines(device, samples);
         let whole = (camera, &now.uniforms, scene.options);
-        self.drawn_px = self.draw(device, queue, &self.target, whole, part);
+        self.draw(device, queue, &self.target, whole, part);
+        self.drawn_rect = part.unwrap_or([0, 0, size[0], size[1]]);
         self.drawn = Some(now);
         true
     }
 
-    /// Pixels that the last picture was drawn on: all of them, or those that a change touched.
-    pub fn drawn_px(&self) -> u64 {
-        self.drawn_px
+    /// What of the picture was drawn last, pixels: left, top, width, height of all of it or of what a change touched.
+    pub fn drawn_rect(&self) -> [u32; 4] {
+        self.drawn_rect
     }
 
     /// The picture drawn last, [`COLOR_FORMAT`]: sRGB-encoded, premultiplied alpha, not converted on
@@ -432,7 +433,7 @@ impl Viewport {
         });
     }
 
-    /// Draws all of a picture, or only what lies in a rectangle of it; the number of pixels of that.
+    /// Draws all of a picture, or only what lies in a rectangle of it.
     fn draw(
         &self,
         device: &wgpu::Device,
@@ -440,9 +441,9 @@ impl Viewport {
         target: &Target,
         (camera, uniforms, options): (&ViewCamera, &FrameUniforms, &ViewOptions),
         part: Option<PixelRect>,
-    ) -> u64 {
+    ) {
         let Some(pipelines) = &self.pipelines[usize::from(target.samples > 1)] else {
-            return 0;
+            return;
         };
         let [w, h] = target.size;
         let rect = part.unwrap_or([0, 0, w, h]);
@@ -489,7 +490,6 @@ impl Viewport {
             self.lines.draw_see_through(&mut pass, shared);
         }
         queue.submit([encoder.finish()]);
-        u64::from(rect[2]) * u64::from(rect[3])
     }
 }
 
