@@ -29,6 +29,17 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
     }
 }
 
+/// Shows frames when they are ready: the screen that a software driver would wait for is made up, and waiting for it takes
+/// longer than drawing a frame. Frames are drawn when something changes, so they do not run away.
+pub fn wait_for_no_screen(frame: &mut eframe::Frame) {
+    if let Some(config) = frame.wgpu_surface_config() {
+        frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig {
+            present_mode: if std::env::var_os("SL_V").is_some() {wgpu::PresentMode::AutoVsync} else {wgpu::PresentMode::AutoNoVsync},
+            ..config
+        });
+    }
+}
+
 /// Says that a texture which egui does not own was drawn into; `share` is the part of it, 0 to 1, none: all.
 pub fn picture_changed(ctx: &Context, texture: TextureId, share: Option<Rect>) {
     ctx.data_mut(|data| {
