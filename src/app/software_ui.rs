@@ -2,6 +2,7 @@
 //! that egui is about to hand over are replaced by one callback, which brings a picture of the window up to date and
 //! shows it.
 
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::epaint::ClippedShape;
@@ -25,6 +26,7 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
             render_state: render_state.clone(),
             before: Before::default(),
             touched: Vec::new(),
+            sizes: HashMap::new(),
         });
     }
 }
@@ -34,7 +36,7 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
 pub fn wait_for_no_screen(frame: &mut eframe::Frame) {
     if let Some(config) = frame.wgpu_surface_config() {
         frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig {
-            present_mode: if std::env::var_os("SL_V").is_some() {wgpu::PresentMode::AutoVsync} else {wgpu::PresentMode::AutoNoVsync},
+            present_mode: wgpu::PresentMode::AutoNoVsync,
             ..config
         });
     }
@@ -87,6 +89,7 @@ struct SoftwareUi {
     render_state: RenderState,
     before: Before,
     touched: Vec<Touched>,
+    sizes: HashMap<TextureId, [usize; 2]>, // of egui's textures
 }
 
 impl SoftwareUi {
@@ -105,7 +108,15 @@ impl SoftwareUi {
                 // New letters beside those there.
                 (true, Some(_)) => {}
                 (true, None) => fonts_stay = false,
-                _ => self.touched.push((*id, None)),
+                (false, None) => {
+                    self.sizes.insert(*id, delta.image.size());
+                    self.touched.push((*id, None));
+                }
+                (false, Some(at)) => {
+                    let size = self.sizes.get(id).copied();
+                    let part = size.map(|size| part_of(at, delta.image.size(), size));
+                    self.touched.push((*id, part));
+                }
             }
         }
         fonts_stay
@@ -246,6 +257,14 @@ impl CallbackTrait for Painted {
         });
         shared.panels.show(pass, size);
     }
+}
+
+/// Texels of a texture as shares of its width and height, with one more on each side: they may be averaged.
+fn part_of(at: [usize; 2], part: [usize; 2], size: [usize; 2]) -> Rect {
+    let low = at.map(|v| v.saturating_sub(1));
+    let high = [0, 1].map(|i| (at[i] + part[i] + 1).min(size[i]));
+    let [x, y, w, h] = [low[0], low[1], high[0] - low[0], high[1] - low[1]].map(|v| v as u32);
+    share([x, y, w, h], size.map(|s| s as u32))
 }
 
 /// Pixels of a picture of `size` as shares of its width and height.
