@@ -7,6 +7,7 @@
 mod packet;
 mod scan;
 mod walk;
+mod wide;
 
 use glam::DVec3;
 
