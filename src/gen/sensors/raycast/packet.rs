@@ -3,8 +3,6 @@
 //! united once, and each ray compares them with the heights it passes. Where a ray may meet something it is
 //! settled alone, with the sums of the walk, so it finds what a cast of its own finds, bit for bit.
 
-use std::array::from_fn;
-
 use glam::DVec3;
 
 use super::walk::{Start, inverse_of, walk};
@@ -113,15 +111,25 @@ impl Lanes {
     fn new(packet: &Packet, max_t: f64) -> Self {
         let lead = packet.directions[LANES / 2];
         let main = usize::from(lead.y.abs() > lead.x.abs());
-        let axes = [main, 1 - main, 2];
-        let origin = axes.map(|axis| packet.origin[axis]);
+        let axes = if main == 0 { [0, 1, 2] } else { [1, 0, 2] };
+        let given = packet.origin.to_array();
+        let origin = [given[axes[0]], given[axes[1]], given[2]];
         let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ].map(|n| n as f64);
         // Written so that NaN ends here too.
         let inside = (0..3).all(|axis| origin[axis] >= 0.0 && origin[axis] < n[axis]) && max_t >= 0.0;
-        let direction: [[f64; LANES]; 3] = match main {
-            0 => from_fn(|axis| from_fn(|lane| packet.directions[lane].to_array()[axis])),
-            _ => from_fn(|axis| from_fn(|lane| packet.directions[lane].to_array()[[1, 0, 2][axis]])),
-        };
+        // Loops and not closures: they are sure to become code for wide registers.
+        let (mut direction, mut inverse) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for lane in 0..LANES {
+            let [x, y, z] = packet.directions[lane].to_array();
+            direction[0][lane] = if main == 0 { x } else { y };
+            direction[1][lane] = if main == 0 { y } else { x };
+            direction[2][lane] = z;
+        }
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                inverse[axis][lane] = inverse_of(direction[axis][lane]);
+            }
+        }
         let forward = lead[main] > 0.0;
         let sign = if forward { 1.0 } else { -1.0 };
         let first_cell = if inside { origin[0] as usize } else { 0 };
@@ -132,7 +140,7 @@ impl Lanes {
             origin,
             first_cell,
             direction,
-            inverse: from_fn(|axis| from_fn(|lane| inverse_of(direction[axis][lane]))),
+            inverse,
             t_end: [0.0; LANES],
             slabs: [0; LANES],
             across: [0; LANES],
@@ -144,9 +152,8 @@ impl Lanes {
         let end = max_t.next_up();
         let mut fits = [false; LANES];
         for lane in 0..LANES {
-            let [along, across, up] = from_fn(|axis| direction[axis][lane]);
-            let inverse: [f64; 3] = from_fn(|axis| lanes.inverse[axis][lane]);
-            let along = along * sign;
+            let (along, across, up) = (direction[0][lane] * sign, direction[1][lane], direction[2][lane]);
+            let inverse = [inverse[0][lane], inverse[1][lane], inverse[2][lane]];
             // Written so that NaN and infinity end here too.
             let fit = inside & (along > 1e-9) & (along < 1e9) & (across.abs() <= ASKEW * along) & (up.abs() <= along);
             // As in the span of a single ray: the plane ahead on each axis.

@@ -81,7 +81,7 @@ mod avx2 {
     use std::arch::x86_64::__m256i;
 
     use pulp::x86::V3;
-    use pulp::{Simd, cast};
+    use pulp::cast;
 
     use super::*;
 
