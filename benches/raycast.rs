@@ -4,7 +4,11 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use sceneloom::generation::sensors::{caster::Caster, lidar, raycast::{ColumnMasks, LANES, Packet}};
+use sceneloom::generation::sensors::{
+    caster::Caster,
+    lidar,
+    raycast::{ColumnMasks, LANES, Packet},
+};
 use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
 
 #[path = "timing.rs"]
@@ -59,12 +63,17 @@ fn main() {
         hits
     });
     for i in 0..1084 * 4 {
-        masks.cast_packets(1, f64::INFINITY, |_| packet(i), |_, met| {
-            for (lane, met) in met.iter().enumerate() {
-                let d = packet(i).directions[lane];
-                assert_eq!(*met, masks.cast_in_voxels(origin, d, f64::INFINITY), "{d}");
-            }
-        });
+        masks.cast_packets(
+            1,
+            f64::INFINITY,
+            |_| packet(i),
+            |_, met| {
+                for (lane, met) in met.iter().enumerate() {
+                    let d = packet(i).directions[lane];
+                    assert_eq!(*met, masks.cast_in_voxels(origin, d, f64::INFINITY), "{d}");
+                }
+            },
+        );
     }
     let mut ranges = vec![0.0f32; rays.len()];
     timing::time("cast, all threads", 60, || {

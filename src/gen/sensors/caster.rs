@@ -154,7 +154,10 @@ impl Caster {
         let columns = self.columns.max(1);
         let beams = found.len() / columns;
         // Each task fills a few columns of all rows.
-        let mut rows: Vec<_> = found.chunks_mut(columns).map(|row| row.chunks_mut(TASK)).collect();
+        let mut rows: Vec<_> = found
+            .chunks_mut(columns)
+            .map(|row| row.chunks_mut(TASK))
+            .collect();
         let tasks: Vec<Vec<&mut [Found]>> = (0..columns.div_ceil(TASK))
             .map(|_| rows.iter_mut().filter_map(Iterator::next).collect())
             .collect();

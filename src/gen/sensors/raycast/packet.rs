@@ -150,18 +150,25 @@ impl Lanes {
             fits: 0,
         };
         let end = max_t.next_up();
+        let to_border = (if forward { GridSpec::NX - first_cell } else { first_cell + 1 }) as i32;
         let mut fits = [false; LANES];
         for lane in 0..LANES {
             let (along, across, up) = (direction[0][lane] * sign, direction[1][lane], direction[2][lane]);
             let inverse = [inverse[0][lane], inverse[1][lane], inverse[2][lane]];
             // Written so that NaN and infinity end here too.
-            let fit = inside & (along > 1e-9) & (along < 1e9) & (across.abs() <= ASKEW * along) & (up.abs() <= along);
+            let fit = inside
+                & (along > 1e-9)
+                & (along < 1e9)
+                & (across.abs() <= ASKEW * along)
+                & (up.abs() <= along);
             // As in the span of a single ray: the plane ahead on each axis.
-            let leave = |axis: usize| (if inverse[axis] > 0.0 { n[axis] } else { 0.0 } - origin[axis]) * inverse[axis];
+            let leave = |axis: usize| {
+                (if inverse[axis] > 0.0 { n[axis] } else { 0.0 } - origin[axis]) * inverse[axis]
+            };
             let less = |a: f64, b: f64| if a < b { a } else { b };
             let t_end = less(less(less(leave(0), leave(1)), leave(2)), end);
-            // Rounded, and the slab of the start; one more is empty space.
-            let slabs = ((along * t_end + (1u64 << 52) as f64).to_bits() as i32).wrapping_add(2);
+            // Rounded, and the slab of the start, but none past the grid.
+            let slabs = ((along * t_end + (1u64 << 52) as f64).to_bits() as i32).wrapping_add(2).min(to_border);
             let per_slab = inverse[0] * sign;
             let (across, up) = (across * per_slab, up * per_slab);
             lanes.t_end[lane] = t_end;
@@ -186,7 +193,12 @@ impl Lanes {
     fn leave_out(&mut self) {
         let one = self.fits.trailing_zeros() as usize % LANES;
         for lane in (0..LANES).filter(|lane| self.fits >> lane & 1 == 0) {
-            for values in [&mut self.across, &mut self.across_step, &mut self.height, &mut self.height_step] {
+            for values in [
+                &mut self.across,
+                &mut self.across_step,
+                &mut self.height,
+                &mut self.height_step,
+            ] {
                 values[lane] = values[one];
             }
         }
@@ -215,7 +227,14 @@ impl Lanes {
             let from = low.min(low + in_block * low_step) >> SHIFT;
             let to = high.max(high + in_block * high_step) >> SHIFT;
             let row = (cell + BORDER) / BLOCK * block_strides[0];
-            let union = united(&masks.blocks, row, block_strides[1], from, to, WIDE / BLOCK as i32);
+            let union = united(
+                &masks.blocks,
+                row,
+                block_strides[1],
+                from,
+                to,
+                WIDE / BLOCK as i32,
+            );
             if union == 0 || wide.touching(&height, &self.height_step, in_block, union << 1) & alive == 0 {
                 slab += in_block;
                 (low, high) = (low + in_block * low_step, high + in_block * high_step);
@@ -253,24 +272,32 @@ impl Lanes {
     fn end(&self, alive: u8) -> i32 {
         let mut end = 0;
         for lane in 0..LANES {
-            end = end.max(if u32::from(alive) >> lane & 1 == 1 { self.slabs[lane] } else { 0 });
+            end = end.max(if u32::from(alive) >> lane & 1 == 1 {
+                self.slabs[lane]
+            } else {
+                0
+            });
         }
         end
     }
 
-    /// Index along the main axis of a slab, counted from the first; held inside the grid.
+    /// Index along the main axis of a slab, counted from the first.
     #[inline(always)]
     fn cell(&self, slab: i32) -> usize {
-        if self.forward {
-            (self.first_cell + slab as usize).min(GridSpec::NX - 1)
-        } else {
-            self.first_cell.saturating_sub(slab as usize)
-        }
+        let slab = if self.forward { slab as isize } else { -(slab as isize) };
+        self.first_cell.wrapping_add_signed(slab)
     }
 
     /// Looks closely at one ray in one slab. True if it meets something there or has ended before.
     #[inline(always)]
-    fn settle(&self, masks: &ColumnMasks, lane: usize, slab: i32, strides: [usize; 2], met: &mut Met) -> bool {
+    fn settle(
+        &self,
+        masks: &ColumnMasks,
+        lane: usize,
+        slab: i32,
+        strides: [usize; 2],
+        met: &mut Met,
+    ) -> bool {
         let cell = self.cell(slab);
         let t = |axis: usize, plane: i32| (f64::from(plane) - self.origin[axis]) * self.inverse[axis][lane];
         let (t_in, t_out) = (
@@ -288,10 +315,16 @@ impl Lanes {
         // Entry and exit across, border included, and their cells, widened.
         let step = self.across_step[lane];
         let at = self.across[lane] + slab * step;
-        let (low, high) = (at.min(at + step) - MARGIN >> FRACTION, at.max(at + step) + MARGIN >> FRACTION);
+        let (low, high) = (
+            at.min(at + step) - MARGIN >> FRACTION,
+            at.max(at + step) + MARGIN >> FRACTION,
+        );
         let rise = self.height_step[lane];
         let height = self.height[lane] + slab * rise;
-        let (bottom, top) = (height.min(height + rise) - MARGIN, height.max(height + rise) + MARGIN);
+        let (bottom, top) = (
+            height.min(height + rise) - MARGIN,
+            height.max(height + rise) + MARGIN,
+        );
         let column = |across: i32| {
             let index = (cell + BORDER) * strides[0] + across as usize * strides[1];
             u32::from(masks.columns.get(index).copied().unwrap_or(0)) << 1
@@ -318,9 +351,17 @@ impl Lanes {
             if sure {
                 let (start, finish) = if rise < 0 { (top, bottom) } else { (bottom, top) };
                 let side_first = t_across < t_up;
-                let (t_1, t_2) = if side_first { (t_across, t_up) } else { (t_up, t_across) };
+                let (t_1, t_2) = if side_first {
+                    (t_across, t_up)
+                } else {
+                    (t_up, t_across)
+                };
                 // The second cell is beside the first or above or below it; the third is beside and above or below.
-                let (across_1, up_1) = if side_first { (then, start) } else { (first, finish) };
+                let (across_1, up_1) = if side_first {
+                    (then, start)
+                } else {
+                    (first, finish)
+                };
                 let occupied = |column: u32, height: i32| column >> (height + 1) & 1 == 1;
                 let (t_hit, across, up) = if occupied(near, start) {
                     (t_in, first, start)
@@ -332,7 +373,11 @@ impl Lanes {
                     return t_1 >= t_end;
                 };
                 let (along, across) = (cell as u8, (across - BORDER as i32) as u8);
-                let [x, y] = if self.main == 0 { [along, across] } else { [across, along] };
+                let [x, y] = if self.main == 0 {
+                    [along, across]
+                } else {
+                    [across, along]
+                };
                 *met = Some((t_hit, [x, y, up as u8]));
                 return true;
             }

@@ -80,8 +80,8 @@ impl Wide for Plain {
 mod avx2 {
     use std::arch::x86_64::__m256i;
 
-    use pulp::x86::V3;
     use pulp::cast;
+    use pulp::x86::V3;
 
     use super::*;
 
@@ -121,7 +121,9 @@ mod avx2 {
 
         #[inline(always)]
         fn climb(self, height: &mut [i32; LANES], step: &[i32; LANES], slabs: i32) {
-            let by = self.avx2._mm256_mullo_epi32(cast(*step), self.avx._mm256_set1_epi32(slabs));
+            let by = self
+                .avx2
+                ._mm256_mullo_epi32(cast(*step), self.avx._mm256_set1_epi32(slabs));
             *height = cast(self.avx2._mm256_add_epi32(cast(*height), by));
         }
 
@@ -134,7 +136,10 @@ mod avx2 {
                 let v = pick(v, i._mm256_shuffle_epi32::<0b10_11_00_01>(v));
                 cast::<__m256i, [i32; LANES]>(v)[0]
             };
-            (fold(&|a, b| i._mm256_min_epi32(a, b)), fold(&|a, b| i._mm256_max_epi32(a, b)))
+            (
+                fold(&|a, b| i._mm256_min_epi32(a, b)),
+                fold(&|a, b| i._mm256_max_epi32(a, b)),
+            )
         }
     }
 }
