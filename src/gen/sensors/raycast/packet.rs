@@ -150,7 +150,11 @@ impl Lanes {
             fits: 0,
         };
         let end = max_t.next_up();
-        let to_border = (if forward { GridSpec::NX - first_cell } else { first_cell + 1 }) as i32;
+        let to_border = (if forward {
+            GridSpec::NX - first_cell
+        } else {
+            first_cell + 1
+        }) as i32;
         let mut fits = [false; LANES];
         for lane in 0..LANES {
             let (along, across, up) = (direction[0][lane] * sign, direction[1][lane], direction[2][lane]);
@@ -168,7 +172,9 @@ impl Lanes {
             let less = |a: f64, b: f64| if a < b { a } else { b };
             let t_end = less(less(less(leave(0), leave(1)), leave(2)), end);
             // Rounded, and the slab of the start, but none past the grid.
-            let slabs = ((along * t_end + (1u64 << 52) as f64).to_bits() as i32).wrapping_add(2).min(to_border);
+            let slabs = ((along * t_end + (1u64 << 52) as f64).to_bits() as i32)
+                .wrapping_add(2)
+                .min(to_border);
             let per_slab = inverse[0] * sign;
             let (across, up) = (across * per_slab, up * per_slab);
             lanes.t_end[lane] = t_end;
@@ -284,7 +290,11 @@ impl Lanes {
     /// Index along the main axis of a slab, counted from the first.
     #[inline(always)]
     fn cell(&self, slab: i32) -> usize {
-        let slab = if self.forward { slab as isize } else { -(slab as isize) };
+        let slab = if self.forward {
+            slab as isize
+        } else {
+            -(slab as isize)
+        };
         self.first_cell.wrapping_add_signed(slab)
     }
 
