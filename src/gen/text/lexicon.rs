@@ -176,7 +176,7 @@ fn build() -> Table {
         for noun in list {
             put(noun, Sense::Place(Anchor::Lane(any), None));
             // "a bus stops" is no place
-            if !noun.ends_with("stop") {
+            if !["stop", "stand", "halt"].iter().any(|v| noun.ends_with(v)) {
                 put(&plural(noun), Sense::Place(Anchor::Lane(any), None));
             }
             for (side, names) in [(left, places::LEFT), (right, places::RIGHT)] {

@@ -83,17 +83,17 @@ pub const DOING: &[(ObjectState, &str)] = &[
         ObjectState::Moving,
         "move|drive/drove/driven|ride/rode/ridden|roll|travel|cruise|coast|glide|drift|trundle|rumble|thunder|roar|hurtle|barrel|speed/sped|race|zoom|whizz|whiz|zip|dart|dash|\
          hurry|rush|run/ran/run|sprint|jog|walk|stroll|amble|saunter|stride/strode|march|plod|trudge|shuffle|wander|meander|roam|hike|limp|hobble|waddle|toddle|tiptoe|pace|\
-         wheel|pedal|cycle|bike|scoot|skate|motor|chug|putter|potter|dawdle|crawl|creep/crept|inch|edge|nose|squeeze|proceed|advance|progress|head|steer|sail|fly/flew/flown|bounce|bump along|\
-         weave/wove/woven|swerve|veer|zigzag|wobble|accelerate|brake|slow down|slow|reverse|back up|back out|overtake/overtook/overtaken|undertake|pass|pass by|go/went/gone|come/came/come|come along|come up|\
-         go by|turn|turn left|turn right|turn off|turn in|merge|filter|pull out|pull away|pull over|pull in|pull off|set off|drive off|drive away|ride off|ride away|walk off|walk away|drive by|drive past|ride past|ride by|walk by|walk past|run past|\
-         roll past|roll along|move along|go past|speed past/sped past|speed along|hurry along|hurry past|stroll along|stroll past|walk along|drive along|ride along|cycle along|cycle past|trundle along|creep along/crept|crawl along|zoom past|zoom by|whizz past|whizz by|rattle past|\
-         approach|near|arrive|enter|leave/left|exit|emerge|appear|close in|catch up|cut in|barge in|squeeze past|squeeze through|weave through|circulate|circle|trot|bolt|scurry|scamper|rattle|clatter|lumber|slide/slid|skid|slip past|shoot past/shot|shoot by/shot|flow|stream|parade|commute|canter|step|step out|step off|chase around|play|frolic|skip|hop|jump|drive around|ride around|walk around|stagger|lurch|power along|plow through|plough through|travel along|coast along|wind/wound|snake|thread|make its way|make his way|make her way|make their way|proceed along",
+         wheel|pedal|cycle|bike|scoot|skate|motor|chug|putter|potter|dawdle|crawl|creep/crept|inch|edge|nose|squeeze|proceed|advance|progress|head|steer|sail|fly/flew/flown|bounce|\
+         weave/wove/woven|swerve|veer|zigzag|wobble|accelerate|brake|slow down|slow|reverse|back up|back out|overtake/overtook/overtaken|undertake|pass|go/went/gone|come/came/come|come up|\
+         go by|turn|turn left|turn right|turn off|turn in|merge|filter|pull out|pull away|pull over|pull in|pull off|set off|drive off|drive away|ride off|ride away|walk off|walk away|\
+         roll past|speed past/sped past|\
+         approach|near|arrive|enter|leave/left|exit|emerge|appear|close in|catch up|cut in|barge in|circulate|circle|trot|bolt|scurry|scamper|rattle|clatter|lumber|slide/slid|skid|flow|stream|parade|commute|canter|step|step out|play|frolic|skip|hop|jump|stagger|lurch|wind/wound|snake|thread|make its way/made|make his way/made|make her way/made|make their way/made",
     ),
     (
         ObjectState::Waiting,
-        "wait|stand/stood|stand still/stood|stand around/stood|stand by/stood|stand there/stood|stop|stop dead|halt|pause|idle|tarry|queue|queue up|line up|sit/sat|sit there/sat|rest|linger|loiter|loaf|lurk|lounge|dally|hover|hang around/hung|hang about/hung|hang out/hung|lean|squat|crouch|kneel|perch|lie/lay/lain|stay|remain|stay put|hold/held|\
-         chat|talk|gossip|smoke|gaze|stare|chatter|converse|confer|argue|laugh|wave|gather|assemble|congregate|huddle|cluster|mill about|mill around|stall|yield|give way/gave/given|pull up|draw up/drew/drawn|come to a stop/came/come|come to a halt/came/come|grind to a halt/ground|bide|dither|hesitate|tower|repose|work|dig/dug|repair|inspect|photograph|read/read/read|\
-         be lined up/was|be stuck/was|get stuck/got|be stopped/was|wait around|pile up|bunch up|back up",
+        "wait|stand/stood|stand still/stood|stand there/stood|stop|stop dead|halt|pause|idle|tarry|queue|queue up|line up|sit/sat|sit there/sat|rest|linger|loiter|loaf|lurk|lounge|dally|hover|hang about/hung|hang out/hung|lean|squat|crouch|kneel|perch|lie/lay/lain|stay|remain|stay put|hold/held|\
+         chat|talk|gossip|smoke|gaze|stare|chatter|converse|confer|argue|laugh|wave|gather|assemble|congregate|huddle|cluster|mill about|stall|yield|give way/gave/given|pull up|draw up/drew/drawn|come to a stop/came/come|come to a halt/came/come|grind to a halt/ground|bide|dither|hesitate|tower|repose|work|dig/dug|repair|inspect|photograph|read/read/read|\
+         be lined up/was|be stuck/was|get stuck/got|be stopped/was|pile up|bunch up|back up",
     ),
     (
         ObjectState::Parked,
