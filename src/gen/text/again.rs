@@ -213,6 +213,58 @@ impl Parser<'_> {
             && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
     }
 
+    /// "pedestrians: none", "buses: 0": takes back what was named `back` items before. True if it was that.
+    pub(super) fn none_of_it(&mut self, back: usize, span: Span) -> bool {
+        let named = matches!(
+            self.at.checked_sub(back).and_then(|i| self.sense(i)),
+            Some(Sense::Noun(..))
+        );
+        let Some(&i) = self.last.last().filter(|_| named && self.ends(self.at + 1)) else {
+            return false;
+        };
+        if !self.mentions[i].uncounted || self.mentions[i].is_anchor {
+            return false;
+        }
+        self.mentions[i].gone = true;
+        let (classes, whole) = (self.mentions[i].classes.to_vec(), self.mentions[i].spec.span.to(span));
+        self.absent(classes, None, whole);
+        self.head.retain(|h| *h != i);
+        self.last.retain(|h| *h != i);
+        true
+    }
+
+    /// "a car in front, one behind": true if a number without a noun means one more of what was named last.
+    pub(super) fn one_more_like_it(&self) -> bool {
+        let told = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
+        );
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        told && self.group_behind().is_none() && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
+    }
+
+    /// "the left lane has two cars": what follows stands there. True if it was that.
+    pub(super) fn place_has(&mut self, item: &super::tag::Item) -> bool {
+        use crate::scene::graph::LaneRole as L;
+        let Some((anchor, span)) = self.topic.filter(|_| self.head.is_empty() && self.pending.is_none()) else {
+            return false;
+        };
+        let fits = match anchor {
+            Anchor::Lane(L::Road | L::Cross) | Anchor::Ego | Anchor::Object(_) => false,
+            Anchor::Junction => item.words != "with",
+            _ => true,
+        };
+        if !fits || !self.noun_ahead(self.at + 1) {
+            return false;
+        }
+        self.topic = None;
+        self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+        self.anchor(anchor, span);
+        true
+    }
+
     /// What follows a colon stands where what is before it was said to be.
     pub(super) fn introduce(&mut self) {
         let Some(&first) = self.head.first() else {

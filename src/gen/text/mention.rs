@@ -224,6 +224,10 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     (R::Across, Lane(_) | Ego) => far_side(spec.class, parked, &mut out),
                     (R::Across, Crossing | Junction) => out.push((R::Near, anchor)),
                     (R::Blocking, Ego) => out.push((R::Blocking, Lane(L::Ego))),
+                    // What closes off something else stands by it.
+                    (R::Blocking, Object(_)) if matches!(spec.class, Class::TrafficCone | Class::Barrier) => {
+                        out.push((R::NextTo, anchor));
+                    }
                     (R::Blocking, Crossing | Junction) => out.push((R::On, anchor)),
                     (R::Facing, Crossing | Junction) => out.push((R::Near, anchor)),
                     (R::Facing | R::FacingAway, Lane(_)) => {}
@@ -236,6 +240,13 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     (R::Crossing, Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)) => {
                         out.push((R::On, anchor))
                     }
+                    (R::Crossing, Lane(L::LeftRoadside)) => {
+                        out.extend([(R::Crossing, Lane(L::Road)), (R::LeftOf, Ego)]);
+                    }
+                    (R::Crossing, Lane(L::RightRoadside)) => {
+                        out.extend([(R::Crossing, Lane(L::Road)), (R::RightOf, Ego)]);
+                    }
+                    (R::Crossing, Lane(L::Roadside)) => out.push((R::Crossing, Lane(L::Road))),
                     (R::Crossing, Ego | Object(_)) => out.push((R::Crossing, Lane(L::Road))),
                     _ => out.push((kind, anchor)),
                 }

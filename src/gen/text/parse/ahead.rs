@@ -65,9 +65,34 @@ impl Parser<'_> {
         ) || self.noun_ahead(j)
     }
 
+    /// True if a place, the ego vehicle or something that points back begins at item `i`.
+    pub(super) fn place_ahead(&self, i: usize) -> bool {
+        let mut j = i;
+        while matches!(
+            self.sense(j),
+            Some(Sense::Article(_) | Sense::Filler | Sense::Size(_) | Sense::Attribute(_) | Sense::Density(_))
+        ) {
+            j += 1;
+        }
+        matches!(
+            self.sense(j),
+            Some(Sense::Place(..) | Sense::RoadKind(..) | Sense::Pronoun | Sense::Part(_) | Sense::Width(_))
+        )
+    }
+
+    /// True if a preposition or a participle takes nothing: "drives past", "the lane is blocked".
+    pub(super) fn stands_alone(&self, item: &Item) -> bool {
+        let adverb = matches!(
+            item.words.as_str(),
+            "past" | "after" | "before" | "beyond" | "around" | "round" | "near" | "face" | "watch" | "mark" | "ring"
+        );
+        let participle = item.words.split(' ').next().is_some_and(|w| w.ends_with("ed"));
+        (adverb || participle) && !self.anchor_ahead(self.at + 1) || participle && self.after_is()
+    }
+
     pub(super) fn after_is(&self) -> bool {
         let before = self.item(self.at.wrapping_sub(1)).map(|i| i.words.as_str());
-        matches!(before, Some("is" | "are" | "was" | "looks"))
+        matches!(before, Some("is" | "are" | "was" | "were" | "looks" | "being" | "been"))
     }
 
     /// True if a list of denied things goes on after a comma: "no cars, buses or people".

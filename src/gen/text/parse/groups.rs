@@ -2,14 +2,14 @@
 
 use super::super::description::{Anchor, Count};
 use super::super::lexicon::Sense;
-use super::super::mention::Pre;
+use super::super::mention::{Pre, Prep};
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::{Parser, is_color};
 
 impl Parser<'_> {
     /// A group that a number without a noun can be a part of.
-    pub(super) fn group_behind(&self) -> Option<usize> {
+    pub(in super::super) fn group_behind(&self) -> Option<usize> {
         let next = self.item(self.at + 1)?;
         let told = matches!(
             next.tag,
@@ -157,6 +157,12 @@ impl Parser<'_> {
                 None if item.words == "that" => return true,
                 None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
                     self.anchor(Anchor::Ego, item.span)
+                }
+                // "the left lane has two cars in it"
+                None if !self.fronted.is_empty()
+                    && self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) =>
+                {
+                    self.pending = None;
                 }
                 None => {
                     let span = self.pending.take().map_or(item.span, |p| p.span.to(item.span));

@@ -30,6 +30,8 @@ pub(super) struct Pending {
     fresh: bool,
     anded: bool,
     pub(super) not: bool,
+    finite: bool, // said by "is": of the subject
+    ego: bool,    // the ego vehicle is the subject
     distance_m: Option<f64>,
 }
 
@@ -54,9 +56,10 @@ pub(super) struct Parser<'a> {
     pub(super) pre: Pre,
     not_goes_on: bool,
     distance: Option<(f64, Span)>,
-    topic: Option<(Anchor, Span)>,
+    pub(super) topic: Option<(Anchor, Span)>,
     reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
     relative: bool,
+    ego_subject: bool, // "I am behind a bus"
     with: bool,
     pub(super) edits: bool,
     denied: bool,                   // what follows says where something is not
@@ -108,6 +111,7 @@ impl<'a> Parser<'a> {
             topic: None,
             reversed: None,
             relative: false,
+            ego_subject: false,
             with: false,
             edits,
             denied: false,
@@ -208,7 +212,10 @@ impl<'a> Parser<'a> {
                 } else {
                     1
                 };
-                if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(_, true)))
+                if v == 0.0 && self.none_of_it(back, span) {
+                    return false;
+                }
+                if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(..)))
                     && !self.noun_ahead(self.at + 1)
                     && (1.0..1000.0).contains(&v)
                     && let Some(&i) = self.last.last()
@@ -246,6 +253,7 @@ impl<'a> Parser<'a> {
         self.fronted_state = None;
         self.reversed = None;
         self.relative = false;
+        self.ego_subject = false;
         self.with = false;
         self.chain = true;
     }

@@ -17,7 +17,7 @@ impl Parser<'_> {
         }
     }
 
-    pub(super) fn absent(&mut self, classes: Vec<Class>, state: Option<ObjectState>, span: Span) {
+    pub(in super::super) fn absent(&mut self, classes: Vec<Class>, state: Option<ObjectState>, span: Span) {
         let index = self.reading.description.absent.len();
         let names: Vec<String> = classes.iter().take(3).map(|c| c.label()).collect();
         self.phrase(
@@ -164,6 +164,10 @@ impl Parser<'_> {
                 self.head = vec![index];
             }
             self.last = vec![index];
+            if kind == RelationKind::NextTo {
+                // What is pushed goes where the one who pushes it goes.
+                self.last.extend(self.reversed.iter().flat_map(|r| r.2.clone()));
+            }
             return;
         }
         // A new subject, or one more of a list.

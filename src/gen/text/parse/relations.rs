@@ -8,7 +8,7 @@ use crate::scene::Class;
 use crate::scene::graph::{LaneRole, RelationKind};
 
 impl Parser<'_> {
-    pub(super) fn begin(&mut self, prep: Prep, span: Span) {
+    pub(in super::super) fn begin(&mut self, prep: Prep, span: Span) {
         self.flush();
         let not = std::mem::take(&mut self.pre.not) || self.denied;
         if !self.noun_ahead(self.at + 1) || self.pre.says_something() {
@@ -26,11 +26,13 @@ impl Parser<'_> {
             fresh: self.fresh,
             anded: self.anded || self.after_and(),
             not,
+            finite: self.after_is() && !self.relative,
+            ego: self.ego_subject && self.head.is_empty(),
             distance_m,
         });
     }
 
-    pub(super) fn anchor(&mut self, anchor: Anchor, span: Span) {
+    pub(in super::super) fn anchor(&mut self, anchor: Anchor, span: Span) {
         let Some(mut p) = self.pending.take() else {
             return;
         };
@@ -51,6 +53,21 @@ impl Parser<'_> {
             Some(first) => (first, Some(anchor)),
             None => (anchor, if between { Some(anchor) } else { None }),
         };
+        if let (true, Anchor::Object(i), Prep::Rels(kinds)) = (p.ego && and.is_none(), anchor, &p.prep) {
+            // "I am behind a bus": the bus is in front of the ego vehicle.
+            let frag = Frag {
+                prep: Prep::Rels(kinds.iter().map(|k| seen_from_other(*k)).collect()),
+                anchor: Anchor::Ego,
+                and: None,
+                distance_m: p.distance_m,
+                span: p.span.to(span),
+            };
+            let m = &mut self.mentions[i];
+            m.is_anchor = false;
+            apply(&mut m.spec, &frag);
+            self.last = vec![i];
+            return;
+        }
         let frag = Frag {
             prep: p.prep,
             anchor,
@@ -72,7 +89,7 @@ impl Parser<'_> {
             self.chain = true;
             return;
         }
-        let targets = if p.fresh {
+        let targets = if p.fresh || p.finite {
             self.head.clone()
         } else {
             self.targets()
@@ -179,5 +196,17 @@ impl Parser<'_> {
         } else {
             self.head.clone()
         }
+    }
+}
+
+/// What the other one is to the first.
+fn seen_from_other(kind: RelationKind) -> RelationKind {
+    use RelationKind as R;
+    match kind {
+        R::Behind | R::Following | R::Facing => R::InFrontOf,
+        R::InFrontOf | R::FacingAway => R::Behind,
+        R::LeftOf => R::RightOf,
+        R::RightOf => R::LeftOf,
+        other => other,
     }
 }

@@ -7,7 +7,7 @@ use super::super::tag::{Item, Tag};
 use super::super::words::edits::{Pick, Verb};
 use super::{Parser, is_color, is_prenominal, places_color};
 use crate::scene::Class;
-use crate::scene::graph::RelationKind;
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 
 impl<'a> Parser<'a> {
     pub(super) fn sense_step(&mut self, sense: Sense, item: &'a Item) -> bool {
@@ -16,9 +16,29 @@ impl<'a> Parser<'a> {
         match sense {
             Sense::Filler | Sense::Unit(_) | Sense::Away | Sense::Bound(_) => {
                 match item.words.as_str() {
+                    // "the left lane has two cars in it"
+                    "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
                     "with" | "has" | "have" | "having" => {
                         self.with = true;
                         self.topic = None;
+                    }
+                    // "a bus, behind which two cars wait"
+                    "which" | "who" | "whom"
+                        if self.pending.as_ref().is_some_and(|p| p.first.is_none())
+                            && self.last.first().or(self.head.first()).is_some() =>
+                    {
+                        let host = self.last.first().or(self.head.first()).copied();
+                        if let (Some(host), Some(p)) = (host, self.pending.as_mut()) {
+                            p.fresh = true;
+                            self.anchor(Anchor::Object(host), span);
+                        }
+                        return false;
+                    }
+                    "i am" | "im" | "we are" | "i drive" | "we drive" | "i am driving" | "im driving"
+                    | "we are driving" | "i am on" | "we are on" | "were"
+                        if self.pending.is_none() && self.head.is_empty() && !self.edits =>
+                    {
+                        self.ego_subject = true;
                     }
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
                     | "which are" | "thats" | "whos" => {
@@ -108,6 +128,8 @@ impl<'a> Parser<'a> {
                 self.not_goes_on = false;
                 return true;
             }
+            // "pedestrians: none"
+            Sense::Not if item.words == "none" && self.none_of_it(2, span) => {}
             Sense::Not => {
                 self.pre.not = true;
                 self.pre.cover(span);
@@ -174,6 +196,7 @@ impl<'a> Parser<'a> {
                 self.noun(noun, &word, plural, span);
             }
             Sense::Works => self.works(span),
+            Sense::Rel(_) if self.stands_alone(item) => return true,
             Sense::Rel(kind) => {
                 if kind == RelationKind::Near
                     && matches!(item.words.as_str(), "around" | "about")
@@ -220,13 +243,26 @@ impl<'a> Parser<'a> {
             Sense::Reversed(kind) => {
                 self.flush();
                 let subjects = self.subjects(false);
-                let topic = self.topic.take().map(|t| t.0);
+                let ego = self.ego_subject.then_some(Anchor::Ego);
+                let topic = self.topic.take().map(|t| t.0).or(ego);
                 self.reversed = Some((kind, span, subjects, topic));
             }
             Sense::Fixed(kind, anchor) => {
                 self.reading.description.road.crossing |= anchor == Anchor::Crossing;
                 self.begin(Prep::Rels(vec![kind]), span);
                 self.anchor(anchor, span);
+            }
+            // "hurries across the street"
+            Sense::FarSide
+                if (item.words.starts_with("across") || item.words.starts_with("over"))
+                    && matches!(
+                        self.sense(self.at.wrapping_sub(1)),
+                        Some(Sense::State(ObjectState::Moving, _) | Sense::Attribute(_))
+                    )
+                    && !self.last.is_empty() =>
+            {
+                self.begin(Prep::Rels(vec![RelationKind::Crossing]), span);
+                self.anchor(Anchor::Lane(LaneRole::Road), span);
             }
             Sense::FarSide => {
                 self.begin(Prep::FarSide, span);
@@ -244,6 +280,13 @@ impl<'a> Parser<'a> {
                     self.mentions[t].both = Some(each);
                     self.mentions[t].spec.span = self.mentions[t].spec.span.to(span);
                 }
+            }
+            // "drives off", "the sun is going down"
+            Sense::In
+                if matches!(item.words.as_str(), "up" | "down" | "off" | "over" | "through" | "line" | "lines")
+                    && !self.place_ahead(self.at + 1) =>
+            {
+                return true;
             }
             Sense::In => {
                 // "on" before a bound or a kind of road is a small word.
@@ -272,6 +315,7 @@ impl<'a> Parser<'a> {
                 if self.pending.is_some() {
                     self.anchor(Anchor::Ego, span);
                 } else {
+                    self.ego_subject |= self.head.is_empty() && !self.edits;
                     return true;
                 }
             }

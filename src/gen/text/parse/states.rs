@@ -10,7 +10,7 @@ impl Parser<'_> {
     pub(super) fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
         let span = item.span;
         if (item.words.starts_with("overtak") || item.words == "passing" || item.words == "passes")
-            && !self.head.is_empty()
+            && (!self.head.is_empty() || self.ego_subject)
             && self.pending.is_none()
             && self.anchor_ahead(self.at + 1)
         {
@@ -48,7 +48,18 @@ impl Parser<'_> {
             self.targets()
         };
         if targets.is_empty() {
-            self.fronted_state = Some(state);
+            if !self.ego_subject {
+                self.fronted_state = Some(state);
+            }
+            return;
+        }
+        // "waiting to turn left"
+        let aim = self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to");
+        let stands = |t: &usize| {
+            let state = self.mentions[*t].spec.state;
+            matches!(state, Some(ObjectState::Waiting | ObjectState::Parked))
+        };
+        if aim && targets.iter().any(stands) {
             return;
         }
         for t in targets.iter().copied() {
