@@ -12,6 +12,7 @@ mod mention;
 pub mod parse;
 pub mod place;
 mod rephrase;
+mod restate;
 pub mod road;
 mod select;
 mod spots;

@@ -2,6 +2,7 @@
 //! ought to be a van" is "make the taxi a van", "one pedestrian less" is "keep the pedestrians", with one fewer.
 
 use super::lexicon::{Sense, look_up};
+use super::restate::{clauses, restate};
 use super::tokens::{Token, TokenKind};
 use super::words::edits::VERBS;
 
@@ -194,13 +195,23 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
             _ => (sentence, None),
         };
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        if let Some(first) = body.first() {
-            let (new, change) = one(&body);
+        let parts = clauses(&body);
+        for (i, clause) in parts.iter().enumerate() {
+            let Some(first) = clause.first() else {
+                continue;
+            };
+            let (new, change) = one(clause);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));
             }
             out.tokens.extend(new);
+            if i + 1 < parts.len() {
+                out.tokens.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", first)
+                });
+            }
         }
         out.tokens.extend(stop.cloned());
     }
@@ -288,6 +299,9 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         let tail = &tail[..end.map_or(tail.len(), |e| e + 1)];
         // "no more cones" means all of them, as "remove the cones" does
         return (with_verb("remove", first, tail), None);
+    }
+    if let Some(found) = restate(rest) {
+        return found;
     }
     if let Some((tokens, change)) = arithmetic(rest) {
         return (tokens, Some(change));
