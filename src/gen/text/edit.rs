@@ -231,9 +231,7 @@ impl Editor<'_> {
             }
             Verb::Replace => {
                 if let Some(ids) = self.targets(c, false) {
-                    for id in ids {
-                        self.replace(id, c);
-                    }
+                    self.replace_all(&ids, c);
                     done.push("replaced".into());
                 }
             }
@@ -616,6 +614,30 @@ impl Editor<'_> {
         });
     }
 
+    /// One for one; where both sides are counted, those too many go and those too few are added.
+    fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
+        let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
+        let wanted = match &c.by {
+            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => by.spec.count.n as usize,
+            _ => ids.len(),
+        };
+        for id in ids.iter().skip(wanted.max(1)) {
+            self.push(TextEdit::Remove { id: *id });
+        }
+        for id in ids.iter().take(wanted.max(1)) {
+            self.replace(*id, c);
+        }
+        if let Some(by) = c.by.as_ref().filter(|_| wanted > ids.len()) {
+            let mut spec = by.spec.clone();
+            spec.count = super::description::Count::exactly((wanted - ids.len()) as u32);
+            spec.relations.retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            self.add(&Description {
+                foreground: vec![spec],
+                ..Description::default()
+            });
+        }
+    }
+
     fn replace(&mut self, id: BoxId, c: &Command) {
         let (Some(b), Some(by)) = (self.boxes.get(&id).copied(), &c.by) else {
             self.note(format!("{:?}: replaced by what?", c.text));
@@ -676,7 +698,7 @@ impl Editor<'_> {
     fn make(&mut self, c: &Command) -> bool {
         if c.by.is_some() {
             if let Some(ids) = self.targets(c, false) {
-                ids.into_iter().for_each(|id| self.replace(id, c));
+                self.replace_all(&ids, c);
             }
             return true;
         }

@@ -260,6 +260,11 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
             }
         }
         Prep::In => match anchor {
+            // Who is in a car park is parked, unless something else is said.
+            Lane(L::Carpark) if spec.state.is_none() && spec.class.is_vehicle() => {
+                spec.state = Some(ObjectState::Parked);
+                out.push((R::ParkedOn, anchor));
+            }
             Ego => {}
             Object(_) => out.push((R::NextTo, anchor)),
             Lane(L::Road) if parked => out.push((R::ParkedOn, Lane(L::Roadside))),

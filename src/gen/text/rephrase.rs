@@ -334,6 +334,13 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
             }
         }
     }
+    if matches!(first.text.as_str(), "let" | "have" | "make" | "get")
+        && rest.len() > 3
+        && !matches!(rest[1].text.as_str(), "rid" | "it" | "that")
+        && let Some(found) = restate(&rest[1..])
+    {
+        return found;
+    }
     if is_verb(first)
         && first.text != "let"
         && !(first.text == "get" && rest.len() > 2)
@@ -344,6 +351,9 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     // "let the cyclist ride behind me", "have the people stand on the right", "get the bus behind me"
     if matches!(first.text.as_str(), "let" | "have" | "get") && rest.len() > 2 && rest[1].text != "rid" {
         let tail = &rest[1..];
+        if let Some(found) = restate(tail) {
+            return found;
+        }
         if matches!(
             tail[0].text.as_str(),
             "the" | "all" | "my" | "both" | "every" | "that"

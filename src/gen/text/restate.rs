@@ -80,6 +80,21 @@ fn is_noun(t: &Token) -> bool {
     matches!(look_up(text(t)), Some(Sense::Noun(..)))
 }
 
+/// The first noun, which may be of several words: its first token, and one past its last.
+fn noun_in(tokens: &[Token]) -> Option<(usize, usize)> {
+    (0..tokens.len()).find_map(|i| {
+        (1..=4.min(tokens.len() - i)).rev().find_map(|n| {
+            let run = tokens[i..i + n].iter().map(text).collect::<Vec<_>>().join(" ");
+            let plain = tokens[i..i + n].iter().all(|t| t.kind == TokenKind::Word);
+            (plain && matches!(look_up(&run), Some(Sense::Noun(..)))).then_some((i, i + n))
+        })
+    })
+}
+
+fn has_noun(tokens: &[Token]) -> bool {
+    noun_in(tokens).is_some()
+}
+
 fn number(t: &Token) -> Option<i64> {
     match (&t.kind, look_up(text(t))) {
         (TokenKind::Number(v), _) if v.is_finite() && (0.0..1000.0).contains(v) => Some(v.round() as i64),
@@ -158,13 +173,12 @@ fn subject(tokens: &[Token]) -> Option<usize> {
     if matches!(text(first), "everyone" | "everybody" | "everything") {
         return Some(1);
     }
-    let noun = tokens.iter().take(8).position(is_noun)?;
+    let (noun, mut end) = noun_in(tokens).filter(|n| n.0 < 8)?;
     let blocked = tokens[..noun].iter().any(|t| HELPERS.contains(&text(t)) && !matches!(text(t), "both" | "all") || t.kind == TokenKind::Comma);
     if blocked {
         return None;
     }
     // "delivery van", "police car"
-    let mut end = noun + 1;
     while tokens.get(end).is_some_and(is_noun) {
         end += 1;
     }
@@ -202,7 +216,7 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
             }
         }
         if let Some(n) = leads(tail, BECOMES)
-            && tail[n..].iter().any(is_noun)
+            && has_noun(&tail[n..])
         {
             return Some(command("replace", first, &[np, &[by(first)], &tail[n..]]));
         }
@@ -252,7 +266,7 @@ fn exchanged(clause: &[Token]) -> Option<Vec<Token>> {
     let first = clause.first()?;
     let replace = |old: &[Token], new: &[Token]| {
         let (old, new) = (trimmed(old), trimmed(unwished(trimmed(new))));
-        let both = old.iter().any(is_noun) && new.iter().any(is_noun);
+        let both = has_noun(old) && has_noun(new);
         let fresh = new.first().is_some_and(|t| matches!(text(t), "a" | "an" | "another") || number(t).is_some() || is_noun(t));
         (both && fresh).then(|| command("replace", first, &[old, &[by(first)], new]))
     };
@@ -308,9 +322,11 @@ fn counted(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
         let tail = (1..clause.len()).rev().take(5).find(|k| matches!(text(&clause[*k]), "by" | "to"));
         if let Some(k) = tail {
             let n = clause[k + 1..].iter().find_map(number);
-            let noun_before = clause[1..k].iter().any(is_noun);
-            let noun_after = clause[k + 1..].iter().any(|t| is_noun(t) || matches!(look_up(text(t)), Some(Sense::Unit(_) | Sense::Place(..))));
-            let fits = k < last && noun_before && !noun_after && clause[k + 1..].len() <= 4;
+            let noun_before = has_noun(&clause[1..k]);
+            let noun_after = has_noun(&clause[k + 1..]) || clause[k + 1..].iter().any(|t| matches!(look_up(text(t)), Some(Sense::Unit(_) | Sense::Place(..))));
+            let small = |t: &Token| matches!(text(t), "just" | "only" | "exactly" | "a" | "single" | "merely");
+            let at_once = clause[k + 1..].iter().find(|t| !small(t)).is_some_and(|t| number(t).is_some()) && text(&clause[k - 1]) != "next";
+            let fits = at_once && k < last && noun_before && !noun_after && clause[k + 1..].len() <= 4;
             if let (Some(n), true) = (n, fits) {
                 let np = plain(&clause[1..k]);
                 if text(&clause[k]) == "by" && !matches!(text(first), "bring" | "get" | "take" | "set" | "make" | "change" | "turn" | "push" | "adjust") {
@@ -340,8 +356,8 @@ fn counted(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
         let n_at = (but + 1..clause.len().min(but + 4)).find(|k| number(&clause[*k]).is_some())?;
         let before: Vec<Token> = clause[all + 1..but].iter().filter(|t| !matches!(text(t), "the" | "of" | "my")).cloned().collect();
         let after: Vec<Token> = clause[n_at + 1..].iter().filter(|t| !matches!(text(t), "of" | "the" | "them" | "my")).cloned().collect();
-        let np = if before.iter().any(is_noun) { before } else { after };
-        if np.iter().any(is_noun) {
+        let np = if has_noun(&before) { before } else { after };
+        if has_noun(&np) {
             return Some((command("keep exactly", first, &[&[clause[n_at].clone()], &np]), None));
         }
     }
@@ -368,7 +384,7 @@ fn there(clause: &[Token]) -> Option<Vec<Token>> {
     }
     let rest = &clause[k..];
     let existential = clause[..k].iter().any(|t| text(t) == "there");
-    if !rest.iter().any(is_noun) {
+    if !has_noun(rest) {
         return None;
     }
     let no = rest.first().is_some_and(|t| matches!(text(t), "no" | "zero"));
@@ -392,7 +408,7 @@ fn sent_off(clause: &[Token]) -> Option<Vec<Token>> {
     if !matches!(text(first), "get" | "take" | "clear" | "chase" | "throw" | "kick" | "drive" | "haul" | "send" | "tow" | "move" | "bring" | "cart" | "pull") {
         return None;
     }
-    let noun = clause.iter().position(is_noun)?;
+    let noun = noun_in(clause)?.1 - 1;
     let tails: &[&[&str]] = &[
         &["out", "of", "here"], &["out", "of", "the", "scene"], &["out", "of", "the", "picture"], &["out", "of", "my", "way"], &["out", "of", "the", "way"], &["out", "of", "our", "way"], &["off", "the", "road"], &["off", "the", "street"], &["off", "the", "map"],
         &["out", "of", "my", "sight"], &["out", "of", "sight"], &["out", "of", "view"], &["away", "from", "here"], &["from", "the", "scene"], &["out", "of", "the", "view"], &["off", "the", "scene"], &["out", "of", "the", "image"], &["off"], &["away"], &["out"], &["home"], &["off", "the", "carriageway"], &["off", "the", "tarmac"],
