@@ -195,6 +195,41 @@ impl Parser<'_> {
         true
     }
 
+    /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
+    pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
+        if self.edits || self.pending.is_some() || !self.fronted.is_empty() || pre.count.is_some_and(|c| c.n > 1) {
+            return false;
+        }
+        let mut before = self.at;
+        while before > 0
+            && matches!(
+                self.sense(before - 1),
+                Some(Sense::Article(false) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(_, false))
+            )
+        {
+            before -= 1;
+        }
+        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let article = pre.article == Some(false);
+        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
+        let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
+            return false;
+        };
+        let m = &mut self.mentions[i];
+        if noun.classes.len() > 1 || !m.classes.contains(&noun.classes[0]) {
+            return false;
+        }
+        if m.classes.len() > 1 && m.spec.count.n == 1 && m.classes.len() < 10 {
+            m.classes = noun.classes;
+            m.spec.class = noun.classes[0];
+            m.spec.noun = word.to_string();
+            m.spec.size_m = noun.size_m;
+            return true;
+        }
+        // "the nearest one being a Golf"
+        m.classes.len() == 1 && lead != ":"
+    }
+
     /// "in front of the car", where no car was named: the ego vehicle.
     pub(super) fn is_ego_car(&self, index: usize) -> bool {
         let m = &self.mentions[index];

@@ -31,6 +31,8 @@ pub enum Sense {
     Rel(RelationKind),
     /// Relations to the ego vehicle.
     EgoRel(&'static [RelationKind]),
+    /// A side of what was named: "on its left".
+    Possessed(RelationKind),
     /// What follows stands in that relation to what was before.
     Reversed(RelationKind),
     /// A relation and its anchor in one phrase.
@@ -300,6 +302,9 @@ fn build() -> Table {
     for (relations, phrase) in phrases::sides() {
         put(&phrase, Sense::EgoRel(relations));
     }
+    for (relation, phrase) in phrases::possessed() {
+        put(&phrase, Sense::Possessed(relation));
+    }
     for (relations, phrase) in phrases::clock() {
         put(&phrase, Sense::EgoRel(relations));
     }
@@ -389,7 +394,15 @@ fn build() -> Table {
             for by in ["by", "with", "off by", "off with"] {
                 put(&format!("{} {by}", f.participle), Sense::Reversed(*relation));
             }
-            [&f.base, &f.s, &f.ing, &f.past].map(|w| put(w, Sense::Rel(*relation)));
+            for w in [&f.base, &f.s, &f.ing, &f.past] {
+                put(w, Sense::Rel(*relation));
+                // "pointed straight at", "walks slowly across"
+                if let Some((verb, tail)) = w.split_once(' ') {
+                    for adverb in ["straight", "directly", "right", "slowly", "quickly", "back"] {
+                        put(&format!("{verb} {adverb} {tail}"), Sense::Rel(*relation));
+                    }
+                }
+            }
             for have in ["has", "have", "had"] {
                 put(&format!("{have} {}", f.participle), Sense::Rel(*relation));
             }

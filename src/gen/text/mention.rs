@@ -30,6 +30,8 @@ pub struct Mention {
     pub is_anchor: bool,
     /// Who it was said to be with.
     pub host: Option<usize>,
+    /// An adjective said where it is: "oncoming".
+    pub said_where: bool,
     /// Used up by its parts.
     pub gone: bool,
 }
@@ -120,6 +122,7 @@ impl Mention {
             both: None,
             is_anchor: false,
             host: None,
+            said_where: false,
             gone: false,
         }
     }

@@ -45,6 +45,30 @@ impl Parser<'_> {
         if self.noun_ahead(self.at + 1) && !all {
             return; // "the other car", "another bus"
         }
+        let whole = (0..self.mentions.len()).rev().find(|&i| {
+            !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i)
+        });
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        if let (Some(whole), true, true) = (whole, of_them, self.pending.is_some()) {
+            // "between two of them", "next to one of them"
+            self.anchor(Anchor::Object(whole), span);
+            return;
+        }
+        // "two cars ahead and a third behind us" names one more
+        let said = span.of(self.prompt).to_lowercase();
+        let nth = ["second", "third", "fourth", "fifth", "sixth"].iter().position(|w| said.starts_with(&format!("a {w}"))).map(|k| k as u32 + 1);
+        let last = (0..self.mentions.len()).rev().find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let more = last.is_some_and(|i| {
+            let m = &self.mentions[i];
+            !self.edits && nth == Some(m.spec.count.n) && !m.spec.relations.is_empty() && m.spec.count.n > 1
+        });
+        if more && self.pending.is_none() {
+            if self.item(self.at + 1).is_some_and(|i| matches!(i.words.as_str(), "one")) {
+                self.at += 1;
+            }
+            self.again(Count::exactly(1), span);
+            return;
+        }
         let parent = (0..self.mentions.len()).rev().find(|&i| {
             !self.mentions[i].gone
                 && !self.mentions[i].is_anchor
@@ -138,6 +162,12 @@ impl Parser<'_> {
             let skip = |i: &usize| targets.contains(i) || self.mentions[*i].gone;
             let antecedent = match item.words.as_str() {
                 "that" | "this" => None,
+                // "it" is one thing.
+                "it" if self.ego_named => {
+                    let one = |i: &usize| !skip(i) && self.mentions[*i].spec.count.n == 1;
+                    let subject = self.head.iter().chain(&self.before).copied().find(one);
+                    subject.or_else(|| (0..self.mentions.len()).rev().find(one))
+                }
                 _ => {
                     let host = targets.first().and_then(|t| self.mentions[*t].host);
                     let subject = self.head.iter().chain(&self.before).copied().find(|i| !skip(i));
@@ -155,6 +185,7 @@ impl Parser<'_> {
             match antecedent {
                 Some(i) => self.anchor(Anchor::Object(i), item.span),
                 None if item.words == "that" => return true,
+                None if self.ego_named || self.ego_subject => self.anchor(Anchor::Ego, item.span),
                 None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
                     self.anchor(Anchor::Ego, item.span)
                 }

@@ -60,6 +60,8 @@ pub(super) struct Parser<'a> {
     reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
     relative: bool,
     ego_subject: bool, // "I am behind a bus"
+    ego_named: bool,   // "the host vehicle": "it" may mean it
+    pair: Vec<usize>,  // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
     denied: bool,                   // what follows says where something is not
@@ -112,6 +114,8 @@ impl<'a> Parser<'a> {
             reversed: None,
             relative: false,
             ego_subject: false,
+            ego_named: false,
+            pair: Vec::new(),
             with: false,
             edits,
             denied: false,
@@ -164,6 +168,10 @@ impl<'a> Parser<'a> {
                 return true;
             }
             Tag::Comma | Tag::Mark => {
+                let idle = self.pending.as_ref().is_some_and(|p| p.first.is_none());
+                if item.words == ":" && idle && self.mentions.is_empty() {
+                    self.pending = None; // "Follow-to-stop:" is a heading
+                }
                 self.flush();
                 if item.words == ":" {
                     self.introduce();
@@ -192,6 +200,16 @@ impl<'a> Parser<'a> {
                     if !self.noun_ahead(self.at + 1) && self.edits {
                         self.mention_by_id(span);
                     }
+                    return false;
+                }
+                let label = self.item(self.at + 1).is_some_and(|n| n.words == ":");
+                if !self.edits
+                    && label
+                    && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)))
+                    && let Some(&i) = self.last.last()
+                {
+                    // "Ped 1: on the crossing"
+                    self.mentions[i].uncounted = false;
                     return false;
                 }
                 if self.edits

@@ -49,8 +49,13 @@ impl Parser<'_> {
         if self.holds_others(noun, &pre)
             || self.rides(noun, word, &pre)
             || self.says_which(noun, word, plural, &pre)
+            || self.is_that(noun, word, &pre)
         {
             return;
+        }
+        if !self.edits && matches!(word, "thing" | "things" | "anything" | "everything") && pre.count.is_none() {
+            self.pending = None;
+            return; // "can barely see a thing"
         }
         if self.mentions.len() >= MOST_MENTIONS {
             self.unread(whole, Some(format!("more than {MOST_MENTIONS} things are named")));
@@ -96,6 +101,7 @@ impl Parser<'_> {
         if each {
             mention.both = None;
         }
+        let said = wheres.clone();
         for kinds in wheres {
             let kinds: Vec<RelationKind> = kinds
                 .split(',')
@@ -113,6 +119,7 @@ impl Parser<'_> {
         if matches!(word, "everything" | "anything") {
             mention.pick = mention.pick.or(Some(Pick::All));
         }
+        mention.said_where = !said.is_empty();
         let index = self.coreferent(&mention).unwrap_or_else(|| {
             self.mentions.push(mention.clone());
             self.mentions.len() - 1
@@ -164,6 +171,11 @@ impl Parser<'_> {
                 self.head = vec![index];
             }
             self.last = vec![index];
+            let walk = |i: &usize| self.mentions[*i].spec.class == Class::Pedestrian;
+            if kind == RelationKind::NextTo && walk(&index) && self.head.iter().all(walk) && !self.head.contains(&index) {
+                // Children accompanied by a teacher cross with them.
+                self.head.push(index);
+            }
             if kind == RelationKind::NextTo {
                 // What is pushed goes where the one who pushes it goes.
                 self.last.extend(self.reversed.iter().flat_map(|r| r.2.clone()));

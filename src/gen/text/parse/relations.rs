@@ -49,6 +49,9 @@ impl Parser<'_> {
                 return;
             }
         }
+        if let (true, Some(Anchor::Object(a)), Anchor::Object(b)) = (between, p.first, anchor) {
+            self.pair = vec![a, b];
+        }
         let (anchor, and) = match p.first {
             Some(first) => (first, Some(anchor)),
             None => (anchor, if between { Some(anchor) } else { None }),
@@ -94,6 +97,9 @@ impl Parser<'_> {
         } else {
             self.targets()
         };
+        // "three oncoming cars and a man on the crossing": where the cars are was said.
+        let open: Vec<usize> = targets.iter().copied().filter(|t| !self.mentions[*t].said_where).collect();
+        let targets = if targets.len() > 1 && !open.is_empty() { open } else { targets };
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()

@@ -1,5 +1,6 @@
 //! One tagged word: what it does to what was read so far.
 
+use super::super::words::objects::NOUNS;
 use super::super::description::{Anchor, Became, Count, Density};
 use super::super::lexicon::Sense;
 use super::super::mention::{Pre, Prep};
@@ -43,6 +44,12 @@ impl<'a> Parser<'a> {
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
                     | "which are" | "thats" | "whos" => {
                         self.relative = true;
+                    }
+                    "both of which" | "both of whom" | "all of which" | "all of whom" => {
+                        self.relative = true;
+                        if self.pair.len() == 2 {
+                            self.last = std::mem::take(&mut self.pair);
+                        }
                     }
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
@@ -161,6 +168,10 @@ impl<'a> Parser<'a> {
                 self.count(count, span);
             }
             Sense::State(state, finite) => self.state(state, finite, prenominal, item),
+            // "a Mini"
+            Sense::Size(_) if item.words == "mini" && !self.noun_ahead(self.at + 1) && self.pre.article.is_some() => {
+                self.noun(&NOUNS[0], "mini", false, span);
+            }
             Sense::Size(size) => {
                 if prenominal {
                     self.pre.size = Some(size);
@@ -196,6 +207,24 @@ impl<'a> Parser<'a> {
                 self.noun(noun, &word, plural, span);
             }
             Sense::Works => self.works(span),
+            // "the lead vehicle"
+            Sense::Rel(_)
+                if matches!(item.words.as_str(), "lead" | "leading" | "preceding" | "following" | "trailing")
+                    && self.pre.article.is_some()
+                    && self.noun_directly(self.at + 1) =>
+            {
+                let ahead = !matches!(item.words.as_str(), "following" | "trailing");
+                let kind = if ahead { RelationKind::InFrontOf } else { RelationKind::Behind };
+                self.fronted_once(&[kind], span);
+            }
+            Sense::Possessed(kind) => {
+                self.begin(Prep::Rels(vec![kind]), span);
+                let its = Item {
+                    words: "it".into(),
+                    ..item.clone()
+                };
+                return self.pronoun(&its);
+            }
             Sense::Rel(_) if self.stands_alone(item) => return true,
             Sense::Rel(kind) => {
                 if kind == RelationKind::Near
@@ -312,12 +341,15 @@ impl<'a> Parser<'a> {
                 self.drop_pending();
             }
             Sense::Ego => {
+                let third = !matches!(item.words.as_str(), "me" | "us" | "i" | "we" | "my car" | "our car" | "myself" | "you");
                 if self.pending.is_some() {
                     self.anchor(Anchor::Ego, span);
                 } else {
                     self.ego_subject |= self.head.is_empty() && !self.edits;
+                    self.ego_named |= third;
                     return true;
                 }
+                self.ego_named |= third;
             }
             Sense::Pronoun => return self.pronoun(item),
             Sense::Part(_) if self.pending.is_some() && !self.noun_ahead(self.at + 1) => {

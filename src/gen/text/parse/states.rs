@@ -9,6 +9,11 @@ use crate::scene::graph::{ObjectState, RelationKind};
 impl Parser<'_> {
     pub(super) fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
         let span = item.span;
+        self.denied &= !(finite || self.after_is());
+        let meant = self.item(self.at.wrapping_sub(1)).is_some_and(|b| matches!(b.words.as_str(), "to" | "wants to" | "want to"));
+        if meant && self.ego_subject && self.head.is_empty() {
+            return; // "we want to overtake a cyclist"
+        }
         if (item.words.starts_with("overtak") || item.words == "passing" || item.words == "passes")
             && (!self.head.is_empty() || self.ego_subject)
             && self.pending.is_none()

@@ -5,11 +5,20 @@ use super::super::mention::{Pre, Prep};
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::Parser;
-use crate::scene::graph::LaneRole;
+use crate::scene::graph::{LaneRole, RelationKind};
 
 impl Parser<'_> {
     pub(super) fn place(&mut self, anchor: Anchor, road: Option<Road>, item: &Item) {
         let span = item.span;
+        let own = item.words.starts_with("its ") || item.words.starts_with("their ") || item.words.starts_with("his ");
+        let against = |t: &usize| {
+            let relations = &self.mentions[*t].spec.relations;
+            relations.iter().any(|r| r.relation == RelationKind::OppositeDirection)
+        };
+        if own && self.pending.is_some() && self.targets().iter().any(against) {
+            self.pending = None; // its own lane is the oncoming one
+            return;
+        }
         let not = std::mem::take(&mut self.pre.not);
         let definite = self.pre.article == Some(true);
         self.pre = Pre::default();
@@ -69,6 +78,15 @@ impl Parser<'_> {
                 }
                 self.anchor(anchor, span);
             }
+            return;
+        }
+        let opened = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.tag, super::super::tag::Tag::Comma | super::super::tag::Tag::Mark));
+        if opened && self.ends(self.at + 1) && !self.head.is_empty() && !matches!(anchor, Anchor::Lane(LaneRole::Road)) {
+            // "Ped 2: left pavement", "a van, left lane, 20 m ahead"
+            self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+            self.anchor(anchor, span);
             return;
         }
         if road.is_some() || matches!(anchor, Anchor::Crossing | Anchor::Lane(LaneRole::Sidewalk)) {

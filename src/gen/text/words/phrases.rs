@@ -38,6 +38,27 @@ pub fn sides() -> Vec<(&'static [R], String)> {
     out
 }
 
+/// "on its left", "to their right".
+pub fn possessed() -> Vec<(R, String)> {
+    let mut out = Vec::new();
+    for prep in ["on", "to", "at", "along", "off to", "over on", "just to", "by"] {
+        for whose in ["its", "his", "her", "their"] {
+            for (side, relation) in [("left", R::LeftOf), ("right", R::RightOf)] {
+                for tail in ["", " side", " hand side", " flank", " hand"] {
+                    out.push((relation, format!("{prep} {whose} {side}{tail}")));
+                }
+            }
+            for (end, relation) in [("rear", R::Behind), ("back", R::Behind), ("tail", R::Behind), ("heels", R::Behind), ("bumper", R::Behind), ("wake", R::Behind), ("front", R::InFrontOf), ("side", R::NextTo)] {
+                out.push((relation, format!("{prep} {whose} {end}")));
+            }
+        }
+    }
+    for (whose, relation) in [("in its wake", R::Behind), ("hot on its heels", R::Behind), ("close on its heels", R::Behind), ("in their wake", R::Behind), ("by its side", R::NextTo), ("in its path", R::InFrontOf), ("in its way", R::InFrontOf), ("in his way", R::InFrontOf)] {
+        out.push((relation, whose.to_string()));
+    }
+    out
+}
+
 /// Which way an hour of the clock lies, from 1 to 12.
 pub fn hour(n: u32) -> &'static [R] {
     match n {

@@ -121,9 +121,9 @@ pub const RELATING: &[(R, &str)] = &[
     ),
     (
         R::Facing,
-        "face|confront|eye|watch|look at|look towards|gaze at|stare at|point at|point to|point towards|aim at|head for|head towards|head toward|make for/made for/made for|bear down on/bore down on|close in on|approach|near",
+        "face|confront|eye|watch|look at|look towards|gaze at|stare at|point at|point to|point straight at|point right at|point towards|aim at|head for|head towards|head toward|make for/made for/made for|bear down on/bore down on|close in on|approach|near",
     ),
-    (R::NextTo, "flank|adjoin|border|accompany|escort|abut|hug|skirt|pull alongside|pull up next to|pull up beside|draw level with/drew level with/drawn level with|draw alongside/drew alongside/drawn alongside|keep pace with/kept pace with|push|wheel"),
+    (R::NextTo, "join|flank|adjoin|border|accompany|escort|abut|hug|skirt|pull alongside|pull up next to|pull up beside|draw level with/drew level with/drawn level with|draw alongside/drew alongside/drawn alongside|keep pace with/kept pace with|push|wheel"),
     (R::Near, "surround|ring|encircle|enclose|fence in|hem in/hemmed in/hemmed in|protect|shield|secure|screen|mark|mark off|delimit|crowd around|crowd round|gather around|gather round|huddle around|cluster around|mill around|stand around/stood around|attend|attend to|tend to|work on|inspect|repair|look after|examine|talk to|chat with|speak to/spoke to/spoken to"),
 ];
 
