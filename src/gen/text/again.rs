@@ -195,6 +195,24 @@ impl Parser<'_> {
         true
     }
 
+    /// "Wrong-way driver: a car comes at us": a bare noun before a colon is a heading.
+    pub(super) fn heading(&mut self) {
+        let listed = matches!(
+            self.item(self.at + 1).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
+        );
+        if let [m] = self.mentions.as_mut_slice()
+            && listed
+            && m.uncounted
+            && m.bare
+            && !m.plural
+        {
+            m.gone = true;
+            self.head.clear();
+            self.last.clear();
+        }
+    }
+
     /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
     pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
         if self.edits || self.pending.is_some() || !self.fronted.is_empty() || pre.count.is_some_and(|c| c.n > 1) {

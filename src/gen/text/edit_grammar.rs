@@ -13,7 +13,7 @@ use super::tag::{Item, Tag, tag};
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::words::edits::{VERBS, Verb};
 use crate::scene::Class;
-use crate::scene::graph::{LaneRole, ObjectState};
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 
 /// Where a box is moved to.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,8 @@ pub enum Turn {
     FromEgo,
     /// Along its lane.
     WithLane,
+    /// Along its lane, the way the ego vehicle goes.
+    WithEgo,
 }
 
 /// One command.
@@ -290,7 +292,11 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         Some(Verb::Add) if only => Verb::Keep,
         // "put the bus behind the truck" moves it
         Some(Verb::Add)
-            if definite_next && matches!(first, "put" | "place" | "position" | "stick" | "set") =>
+            if definite_next
+                && !matches!(
+                    first,
+                    "add" | "insert" | "include" | "create" | "generate" | "show" | "bring" | "introduce" | "spawn" | "append" | "give" | "duplicate" | "drop"
+                ) =>
         {
             Verb::Move
         }
@@ -690,6 +696,10 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             "left" | "to the left" | "leftwards" | "counterclockwise" | "anticlockwise"
         )
     });
+    let our_way = items
+        .iter()
+        .skip(after_noun)
+        .any(|i| i.tag == Tag::Is(Sense::EgoRel(&[RelationKind::SameDirection])));
     let ego = items
         .iter()
         .skip(after_noun)
@@ -698,6 +708,7 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
     c.turn = match (degrees, left, right) {
         (Some(d), _, true) => Some(Turn::By(-d.to_radians())),
         (Some(d), ..) if d.is_finite() => Some(Turn::By(d.to_radians())),
+        _ if our_way => Some(Turn::WithEgo),
         _ if ego && away => Some(Turn::FromEgo),
         _ if ego => Some(Turn::ToEgo),
         _ if rest

@@ -30,6 +30,8 @@ pub struct Mention {
     pub is_anchor: bool,
     /// Who it was said to be with.
     pub host: Option<usize>,
+    /// Neither an article nor a number stood before it.
+    pub bare: bool,
     /// An adjective said where it is: "oncoming".
     pub said_where: bool,
     /// Used up by its parts.
@@ -122,6 +124,7 @@ impl Mention {
             both: None,
             is_anchor: false,
             host: None,
+            bare: pre.article.is_none() && pre.count.is_none(),
             said_where: false,
             gone: false,
         }

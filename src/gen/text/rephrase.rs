@@ -60,6 +60,48 @@ const POLITE: &[&[&str]] = &[
     &["go", "ahead", "and"],
     &["try", "to"],
     &["i", "think"],
+    &["id", "rather"],
+    &["i", "would", "rather"],
+    &["i", "d", "rather"],
+    &["i", "wish"],
+    &["i", "suggest"],
+    &["i", "propose"],
+    &["id", "prefer", "it", "if"],
+    &["i", "would", "prefer", "it", "if"],
+    &["i", "prefer", "that"],
+    &["it", "would", "be", "better", "if"],
+    &["it", "is", "better", "if"],
+    &["better", "if"],
+    &["would", "you", "mind"],
+    &["kindly"],
+    &["do"],
+    &["next"],
+    &["finally"],
+    &["afterwards"],
+    &["after", "that"],
+    &["in", "addition"],
+    &["additionally"],
+    &["oh"],
+    &["and"],
+    &["well"],
+    &["so"],
+    &["but"],
+    &["you", "should"],
+    &["you", "can"],
+    &["you", "may"],
+    &["feel", "free", "to"],
+    &["be", "so", "kind", "as", "to"],
+    &["time", "to"],
+    &["id", "love", "to"],
+    &["id", "love", "it", "if"],
+    &["id", "like", "it", "if"],
+    &["i", "want", "it", "so", "that"],
+    &["ensure", "that"],
+    &["see", "to", "it", "that"],
+    &["actually"],
+    &["on", "second", "thought"],
+    &["on", "second", "thoughts"],
+    &["for", "this", "one"],
     &["it", "would", "be", "nice", "if"],
     &["make", "sure", "that"],
     &["make", "sure"],
@@ -97,7 +139,7 @@ const UNWISH: &[&[&str]] = &[
 ];
 const MODALS: &[&str] = &[
     "should", "must", "shall", "ought", "needs", "need", "has", "have", "can", "could", "may", "will", "is",
-    "are",
+    "are", "was", "were", "wants", "would", "might", "belongs", "goes",
 ];
 const GONE: &[&str] = &[
     "gone",
@@ -194,6 +236,8 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
             Some((last, body)) if last.kind == TokenKind::Stop => (body, Some(last)),
             _ => (sentence, None),
         };
+        let put_back = topic(body);
+        let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
         let parts = clauses(&body);
         for (i, clause) in parts.iter().enumerate() {
@@ -216,6 +260,42 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         out.tokens.extend(stop.cloned());
     }
     out
+}
+
+/// "whatever is behind us, make it a bus" and "the car behind us: drop it": the verb first.
+fn topic(body: &[Token]) -> Option<Vec<Token>> {
+    let first = body.first()?;
+    let open = matches!(first.text.as_str(), "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who");
+    let definite = matches!(first.text.as_str(), "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my");
+    if !open && !definite {
+        return None;
+    }
+    let cut = (1..body.len()).find(|i| {
+        let mark = body[*i].kind == TokenKind::Comma || body[*i].kind == TokenKind::Mark;
+        mark && body.get(i + 1).is_some_and(is_verb)
+            && body[i + 1..]
+                .iter()
+                .take(4)
+                .any(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))
+    })?;
+    let mut np: Vec<Token> = Vec::new();
+    if open {
+        let is = body[..cut].iter().position(|t| {
+            matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was")
+        })?;
+        let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
+        np.push(word("the", first));
+        np.push(word(if people { "person" } else { "object" }, first));
+        np.extend_from_slice(&body[is + 1..cut]);
+    } else {
+        np.extend_from_slice(&body[..cut]);
+    }
+    let it = (cut + 1..body.len())
+        .find(|i| matches!(body[*i].text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))?;
+    let mut out = body[cut + 1..it].to_vec();
+    out.extend(np);
+    out.extend_from_slice(&body[it + 1..]);
+    Some(out)
 }
 
 /// "everyone on the pavement" is "all people on the pavement".
@@ -284,7 +364,13 @@ fn take_ordinals(body: &[Token], out: &mut Rephrased) -> Vec<Token> {
 }
 
 fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
-    let rest = strip(body, POLITE);
+    let mut rest = strip(body, POLITE);
+    while let Some((last, before)) = rest.split_last()
+        && before.len() > 1
+        && (last.kind == TokenKind::Comma || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
+    {
+        rest = before;
+    }
     let Some(first) = rest.first() else {
         return (body.to_vec(), None);
     };
@@ -333,6 +419,16 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
                 return (with_verb("keep only", first, tail), None);
             }
         }
+    }
+    // "have a cyclist follow the bus", "let somebody else join the pedestrian"
+    let fresh = rest.get(1).is_some_and(|t| {
+        matches!(t.text.as_str(), "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three") || number(t).is_some()
+    });
+    let does = rest.iter().skip(2).take(6).any(|t| {
+        matches!(sense(t), Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)) || is_verb(t)
+    });
+    if matches!(first.text.as_str(), "let" | "have" | "make" | "get") && fresh && does {
+        return (with_verb("add", first, &rest[1..]), None);
     }
     if matches!(first.text.as_str(), "let" | "have" | "make" | "get")
         && rest.len() > 3

@@ -44,7 +44,7 @@ static PARTICIPLES: LazyLock<HashMap<String, Verb>> = LazyLock::new(|| {
 const HELPERS: &[&str] = &[
     "has", "have", "had", "is", "are", "was", "were", "be", "been", "being", "to", "should", "must", "shall", "ought", "needs", "need", "can",
     "could", "may", "will", "would", "might", "gets", "get", "got", "now", "just", "already", "also", "please", "then", "simply", "better",
-    "supposed", "going", "meant", "both", "all", "completely", "finally", "rather", "instead", "suddenly", "meanwhile", "currently", "so",
+    "supposed", "meant", "both", "all", "completely", "finally", "rather", "instead", "suddenly", "meanwhile", "currently", "so",
 ];
 const NEGATED: &[&str] = &[
     "shouldnt", "mustnt", "isnt", "arent", "wasnt", "werent", "doesnt", "dont", "cant", "cannot", "wont", "neednt", "hasnt", "havent", "not", "never",
@@ -199,10 +199,16 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
             && (HELPERS.contains(&text(t)) || NEGATED.contains(&text(t)))
         {
             helped |= HELPERS.contains(&text(t));
+            if clause.get(k + 1).is_some_and(|t| text(t) == "going") && clause.get(k + 2).is_some_and(|t| text(t) == "to") {
+                k += 1;
+            }
             not |= NEGATED.contains(&text(t));
             k += 1;
         }
         let tail = &clause[k..];
+        if not && tail.first().is_some_and(is_place_word) {
+            return Some(command("make", first, &[np])); // where it should not be does not say where to
+        }
         if not {
             let there = tail.is_empty()
                 || leads(tail, &["there", "here", "in the scene", "belong", "needed", "necessary", "wanted", "required", "exist", "around", "stay", "remain", "anymore", "any more", "present", "appear"]).is_some();
@@ -241,11 +247,28 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         let turned = ["opposite direction", "other direction", "other way", "opposite way", "reverse direction"];
         let said: String = tail.iter().map(text).collect::<Vec<_>>().join(" ");
         let goes = tail.first().is_some_and(|t| matches!(text(t), "drive" | "drives" | "go" | "goes" | "head" | "heads" | "face" | "faces" | "travel" | "travels" | "come" | "comes" | "driving" | "going" | "heading" | "facing" | "point" | "points" | "look" | "looks"));
+        let ours = ["our way", "my way", "same way", "same direction", "our direction", "my direction"];
+        if goes && ours.iter().any(|w| said.contains(w)) {
+            return Some(command("turn", first, &[np, &command("going my way", first, &[])]));
+        }
         if goes && turned.iter().any(|w| said.contains(w)) {
             return Some(command("turn", first, &[np, &command("around", first, &[])]));
         }
         if goes && ["towards me", "toward me", "towards us", "toward us", "at me", "at us"].iter().any(|w| said.ends_with(w)) {
             return Some(command("turn", first, &[np, &command("to face me", first, &[])]));
+        }
+        // "the car pull over and park on the right": where it ends up
+        let acts = (1..=3.min(tail.len())).rev().any(|n| {
+            let run = tail[..n].iter().map(text).collect::<Vec<_>>().join(" ");
+            matches!(look_up(&run), Some(Sense::State(..)))
+        });
+        if acts && !tail.is_empty() && tail.iter().any(|t| matches!(text(t), "park" | "parks" | "stop" | "stops" | "wait" | "waits" | "stand" | "stands" | "over" | "sit" | "sits"))
+            && let Some(p) = (1..tail.len()).find(|i| (1..=3.min(tail.len() - i)).any(|n| {
+                let run = tail[*i..i + n].iter().map(text).collect::<Vec<_>>().join(" ");
+                matches!(look_up(&run), Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At)) && text(&tail[*i]) != "over"
+            }))
+        {
+            return Some(command("move", first, &[np, &tail[p..]]));
         }
         if helped || !clause.get(from).is_some_and(|t| is_place_word(t) || from > noun_end) {
             return None;
@@ -422,6 +445,14 @@ fn sent_off(clause: &[Token]) -> Option<Vec<Token>> {
 pub fn restate(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
     if let Some(found) = counted(clause) {
         return Some(found);
+    }
+    if let Some(first) = clause.first()
+        && (matches!(text(first), "nobody" | "noone") || begins_with(clause, &["no", "one"]))
+    {
+        // "nobody should be on the crossing"
+        let from = if text(first) == "no" { 2 } else { 1 };
+        let rest: Vec<Token> = clause[from..].iter().filter(|t| !HELPERS.contains(&text(t))).cloned().collect();
+        return Some((command("remove all people", first, &[&rest]), None));
     }
     exchanged(clause)
         .or_else(|| sent_off(clause))

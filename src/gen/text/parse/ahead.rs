@@ -131,7 +131,6 @@ impl Parser<'_> {
     pub(super) fn noun_next(&self) -> bool {
         self.item(self.at + 1)
             .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
-            && !self.edits
     }
 
     pub(super) fn history_last(&self) -> Option<&usize> {

@@ -164,7 +164,10 @@ impl Parser<'_> {
                 "that" | "this" => None,
                 // "it" is one thing.
                 "it" if self.ego_named => {
-                    let one = |i: &usize| !skip(i) && self.mentions[*i].spec.count.n == 1;
+                    let kin = |i: &usize| {
+                        targets.iter().any(|t| self.mentions[*t].spec.noun == self.mentions[*i].spec.noun)
+                    };
+                    let one = |i: &usize| !skip(i) && !kin(i) && self.mentions[*i].spec.count.n == 1;
                     let subject = self.head.iter().chain(&self.before).copied().find(one);
                     subject.or_else(|| (0..self.mentions.len()).rev().find(one))
                 }

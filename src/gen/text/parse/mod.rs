@@ -169,8 +169,23 @@ impl<'a> Parser<'a> {
             }
             Tag::Comma | Tag::Mark => {
                 let idle = self.pending.as_ref().is_some_and(|p| p.first.is_none());
-                if item.words == ":" && idle && self.mentions.is_empty() {
-                    self.pending = None; // "Follow-to-stop:" is a heading
+                if item.words == ":" && self.mentions.is_empty() {
+                    // "Follow-to-stop:" is a heading, "Ahead:" is not
+                    if idle {
+                        self.pending = None;
+                    }
+                    self.fronted.retain(|f| match &f.prep {
+                        Prep::Rels(kinds) if f.anchor == Anchor::Ego => !kinds.iter().any(|k| {
+                            matches!(
+                                k,
+                                RelationKind::Following | RelationKind::Blocking | RelationKind::Crossing | RelationKind::Facing
+                            )
+                        }),
+                        _ => true,
+                    });
+                }
+                if item.words == ":" {
+                    self.heading();
                 }
                 self.flush();
                 if item.words == ":" {

@@ -84,7 +84,9 @@ impl Parser<'_> {
         }
         let set_off = p.fresh && p.anded && self.set_off();
         let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
-        if self.head.is_empty() || (p.fresh && new_noun) {
+        // "the host trails a truck in its lane"
+        let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
+        if !of_last && (self.head.is_empty() || (p.fresh && new_noun)) {
             if !self.head.is_empty() || !self.chain {
                 self.new_clause();
             }

@@ -210,7 +210,7 @@ impl<'a> Parser<'a> {
             // "the lead vehicle"
             Sense::Rel(_)
                 if matches!(item.words.as_str(), "lead" | "leading" | "preceding" | "following" | "trailing")
-                    && self.pre.article.is_some()
+                    && (self.pre.article.is_some() || item.words == "lead" && self.fresh)
                     && self.noun_directly(self.at + 1) =>
             {
                 let ahead = !matches!(item.words.as_str(), "following" | "trailing");
@@ -236,6 +236,7 @@ impl<'a> Parser<'a> {
                 self.begin(Prep::Rels(vec![kind]), span);
             }
             Sense::EgoRel(kinds) => {
+                self.ego_named |= item.words.contains("ego") || item.words.contains("vehicle");
                 if is_prenominal(&item.words) && self.noun_directly(self.at + 1) && !self.takes_object(item) {
                     self.fronted_once(kinds, span);
                     return false;
