@@ -195,6 +195,59 @@ impl Parser<'_> {
         true
     }
 
+    /// "Wrong-way driver: a car comes at us": a bare noun before a colon is a heading.
+    pub(super) fn heading(&mut self) {
+        let listed = matches!(
+            self.item(self.at + 1).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
+        );
+        if let [m] = self.mentions.as_mut_slice()
+            && listed
+            && m.uncounted
+            && m.bare
+            && !m.plural
+        {
+            m.gone = true;
+            self.head.clear();
+            self.last.clear();
+        }
+    }
+
+    /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
+    pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
+        if self.edits || self.pending.is_some() || !self.fronted.is_empty() || pre.count.is_some_and(|c| c.n > 1) {
+            return false;
+        }
+        let mut before = self.at;
+        while before > 0
+            && matches!(
+                self.sense(before - 1),
+                Some(Sense::Article(false) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(_, false))
+            )
+        {
+            before -= 1;
+        }
+        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let article = pre.article == Some(false);
+        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
+        let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
+            return false;
+        };
+        let m = &mut self.mentions[i];
+        if noun.classes.len() > 1 || !m.classes.contains(&noun.classes[0]) {
+            return false;
+        }
+        if m.classes.len() > 1 && m.spec.count.n == 1 && m.classes.len() < 10 {
+            m.classes = noun.classes;
+            m.spec.class = noun.classes[0];
+            m.spec.noun = word.to_string();
+            m.spec.size_m = noun.size_m;
+            return true;
+        }
+        // "the nearest one being a Golf"
+        m.classes.len() == 1 && lead != ":"
+    }
+
     /// "in front of the car", where no car was named: the ego vehicle.
     pub(super) fn is_ego_car(&self, index: usize) -> bool {
         let m = &self.mentions[index];
@@ -211,6 +264,58 @@ impl Parser<'_> {
             && !other
             && !self.edits
             && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
+    }
+
+    /// "pedestrians: none", "buses: 0": takes back what was named `back` items before. True if it was that.
+    pub(super) fn none_of_it(&mut self, back: usize, span: Span) -> bool {
+        let named = matches!(
+            self.at.checked_sub(back).and_then(|i| self.sense(i)),
+            Some(Sense::Noun(..))
+        );
+        let Some(&i) = self.last.last().filter(|_| named && self.ends(self.at + 1)) else {
+            return false;
+        };
+        if !self.mentions[i].uncounted || self.mentions[i].is_anchor {
+            return false;
+        }
+        self.mentions[i].gone = true;
+        let (classes, whole) = (self.mentions[i].classes.to_vec(), self.mentions[i].spec.span.to(span));
+        self.absent(classes, None, whole);
+        self.head.retain(|h| *h != i);
+        self.last.retain(|h| *h != i);
+        true
+    }
+
+    /// "a car in front, one behind": true if a number without a noun means one more of what was named last.
+    pub(super) fn one_more_like_it(&self) -> bool {
+        let told = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
+        );
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        told && self.group_behind().is_none() && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
+    }
+
+    /// "the left lane has two cars": what follows stands there. True if it was that.
+    pub(super) fn place_has(&mut self, item: &super::tag::Item) -> bool {
+        use crate::scene::graph::LaneRole as L;
+        let Some((anchor, span)) = self.topic.filter(|_| self.head.is_empty() && self.pending.is_none()) else {
+            return false;
+        };
+        let fits = match anchor {
+            Anchor::Lane(L::Road | L::Cross) | Anchor::Ego | Anchor::Object(_) => false,
+            Anchor::Junction => item.words != "with",
+            _ => true,
+        };
+        if !fits || !self.noun_ahead(self.at + 1) {
+            return false;
+        }
+        self.topic = None;
+        self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+        self.anchor(anchor, span);
+        true
     }
 
     /// What follows a colon stands where what is before it was said to be.

@@ -231,9 +231,7 @@ impl Editor<'_> {
             }
             Verb::Replace => {
                 if let Some(ids) = self.targets(c, false) {
-                    for id in ids {
-                        self.replace(id, c);
-                    }
+                    self.replace_all(&ids, c);
                     done.push("replaced".into());
                 }
             }
@@ -524,11 +522,32 @@ impl Editor<'_> {
                 b.center_m + (p.normalize_or(DVec2::X) * step).extend(0.0)
             }
             Some(Destination::Place(spec)) => {
+                let mut spec = spec.clone();
+                let said = c.text.to_lowercase();
+                // The other side is that on which it is not.
+                if b.center_m.y > 0.0 && ["opposite", "other side", "far side", "across the", "other pavement", "other sidewalk"].iter().any(|w| said.contains(w)) {
+                    spec.relations.iter_mut().for_each(mirrored);
+                }
                 let d = Description {
-                    foreground: c.with_anchors(spec, b.class),
+                    foreground: c.with_anchors(&spec, b.class),
                     ..Description::default()
                 };
-                return self.move_to(b, &d);
+                self.move_to(b, &d);
+                let strip = |r: &super::description::Stated| {
+                    use super::description::Anchor::Lane;
+                    let aside = matches!(r.anchor, Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark));
+                    aside && matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
+                };
+                let parks = said.contains("park") || d.foreground.first().is_some_and(|o| o.relations.iter().any(strip));
+                if let Some(moved) = self.boxes.get(&id).copied().filter(|m| parks && m.class.is_vehicle() && m.velocity_mps.length() > 0.0) {
+                    // Who stands at the roadside does not drive.
+                    let object = SceneBox {
+                        velocity_mps: DVec2::ZERO,
+                        ..moved
+                    };
+                    self.push(TextEdit::Replace { id, object });
+                }
+                return;
             }
             None => {
                 self.note(format!("{:?}: where to was not understood", c.text));
@@ -604,6 +623,10 @@ impl Editor<'_> {
                 .map
                 .nearest(b.center_m.truncate())
                 .map_or(0.0, |l| l.dir.to_angle()),
+            Some(super::edit_grammar::Turn::WithEgo) => self
+                .map
+                .nearest(b.center_m.truncate())
+                .map_or(0.0, |l| if l.dir.x < 0.0 { (-l.dir).to_angle() } else { l.dir.to_angle() }),
             None => {
                 self.note(format!("{:?}: how far to turn was not understood", c.text));
                 return;
@@ -614,6 +637,30 @@ impl Editor<'_> {
             center_m: b.center_m,
             yaw_rad,
         });
+    }
+
+    /// One for one; where both sides are counted, those too many go and those too few are added.
+    fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
+        let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
+        let wanted = match &c.by {
+            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => by.spec.count.n as usize,
+            _ => ids.len(),
+        };
+        for id in ids.iter().skip(wanted.max(1)) {
+            self.push(TextEdit::Remove { id: *id });
+        }
+        for id in ids.iter().take(wanted.max(1)) {
+            self.replace(*id, c);
+        }
+        if let Some(by) = c.by.as_ref().filter(|_| wanted > ids.len()) {
+            let mut spec = by.spec.clone();
+            spec.count = super::description::Count::exactly((wanted - ids.len()) as u32);
+            spec.relations.retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            self.add(&Description {
+                foreground: vec![spec],
+                ..Description::default()
+            });
+        }
     }
 
     fn replace(&mut self, id: BoxId, c: &Command) {
@@ -676,7 +723,7 @@ impl Editor<'_> {
     fn make(&mut self, c: &Command) -> bool {
         if c.by.is_some() {
             if let Some(ids) = self.targets(c, false) {
-                ids.into_iter().for_each(|id| self.replace(id, c));
+                self.replace_all(&ids, c);
             }
             return true;
         }
@@ -725,6 +772,20 @@ impl Editor<'_> {
         }
         false
     }
+}
+
+/// Left for right.
+fn mirrored(r: &mut super::description::Stated) {
+    use super::description::Anchor::Lane;
+    if r.relation == RelationKind::LeftOf {
+        r.relation = RelationKind::RightOf;
+    }
+    r.anchor = match r.anchor {
+        Lane(LaneRole::LeftSidewalk) => Lane(LaneRole::RightSidewalk),
+        Lane(LaneRole::LeftRoadside) => Lane(LaneRole::RightRoadside),
+        Lane(LaneRole::Oncoming) => Lane(LaneRole::Ego),
+        other => other,
+    };
 }
 
 /// A graph node of a class, for callers that lock boxes.

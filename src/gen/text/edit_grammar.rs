@@ -13,7 +13,7 @@ use super::tag::{Item, Tag, tag};
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::words::edits::{VERBS, Verb};
 use crate::scene::Class;
-use crate::scene::graph::{LaneRole, ObjectState};
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 
 /// Where a box is moved to.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,8 @@ pub enum Turn {
     FromEgo,
     /// Along its lane.
     WithLane,
+    /// Along its lane, the way the ego vehicle goes.
+    WithEgo,
 }
 
 /// One command.
@@ -221,6 +223,7 @@ pub fn commands(text: &str) -> Vec<Command> {
         }
     }
     let mut out = Vec::new();
+    let mut last_noun: Option<Vec<Token>> = None;
     for (k, (from, n, verb)) in starts.iter().enumerate() {
         let end = starts.get(k + 1).map_or(all.len(), |s| s.0);
         let stop = (*from..end)
@@ -232,7 +235,11 @@ pub fn commands(text: &str) -> Vec<Command> {
         {
             to -= 1;
         }
-        let mut c = command(text, &all[*from..to], *n, *verb);
+        let slice = super::back::resolved(&all[*from..to], *n, last_noun.as_ref());
+        if let Some(noun) = super::back::named(&slice[*n..], *verb) {
+            last_noun = Some(noun);
+        }
+        let mut c = command(text, &slice, *n, *verb);
         let start = all[*from].span.start;
         c.change = rephrased.changes.iter().find(|(at, _)| *at == start).map(|x| x.1);
         c.nth = rephrased
@@ -272,13 +279,24 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     }) || tokens
         .windows(2)
         .any(|w| w[0].text == "should" && w[1].text == "be");
+    // "the bus further ahead": what is there already is not added.
+    let there_already = verb.is_none()
+        && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
+        && matches!(items.get(1..4).and_then(|w| w.iter().find(|i| !is_adjective(i))).map(|i| i.tag), Some(Tag::Is(Sense::Noun(..))));
+    let placed = items.iter().any(|i| matches!(i.tag, Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)));
     let mut verb = match verb {
         None if only => Verb::Keep,
+        None if there_already && placed => Verb::Move,
+        None if there_already => Verb::Make,
         None => Verb::Add,
         Some(Verb::Add) if only => Verb::Keep,
         // "put the bus behind the truck" moves it
         Some(Verb::Add)
-            if definite_next && matches!(first, "put" | "place" | "position" | "stick" | "set") =>
+            if definite_next
+                && !matches!(
+                    first,
+                    "add" | "insert" | "include" | "create" | "generate" | "show" | "bring" | "introduce" | "spawn" | "append" | "give" | "duplicate" | "drop"
+                ) =>
         {
             Verb::Move
         }
@@ -396,6 +414,13 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         }
     }
     c
+}
+
+fn is_adjective(item: &Item) -> bool {
+    matches!(
+        item.tag,
+        Tag::Is(Sense::Article(_) | Sense::State(_, false) | Sense::Size(_) | Sense::Color(_) | Sense::Attribute(_) | Sense::Count(_)) | Tag::Number(_)
+    )
 }
 
 fn note_definite(c: &mut Command, mentions: &[Mention]) {
@@ -671,6 +696,10 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             "left" | "to the left" | "leftwards" | "counterclockwise" | "anticlockwise"
         )
     });
+    let our_way = items
+        .iter()
+        .skip(after_noun)
+        .any(|i| i.tag == Tag::Is(Sense::EgoRel(&[RelationKind::SameDirection])));
     let ego = items
         .iter()
         .skip(after_noun)
@@ -679,6 +708,7 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
     c.turn = match (degrees, left, right) {
         (Some(d), _, true) => Some(Turn::By(-d.to_radians())),
         (Some(d), ..) if d.is_finite() => Some(Turn::By(d.to_radians())),
+        _ if our_way => Some(Turn::WithEgo),
         _ if ego && away => Some(Turn::FromEgo),
         _ if ego => Some(Turn::ToEgo),
         _ if rest

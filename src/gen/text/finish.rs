@@ -38,6 +38,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
     }
 }
 
+/// "a bus 18 m out in our lane": a distance alone counts ahead.
+fn distance_ahead(spec: &mut ObjectSpec) {
+    use RelationKind as R;
+    let sided = spec.relations.iter().any(|r| {
+        r.anchor == Anchor::Ego && !matches!(r.relation, R::Near | R::OppositeDirection | R::SameDirection | R::Facing | R::FacingAway)
+    });
+    let lane = spec.relations.iter().any(|r| {
+        r.relation == R::On && matches!(r.anchor, Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming))
+    });
+    for r in spec.relations.iter_mut().filter(|_| lane && !sided) {
+        if r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d > 6.0) {
+            r.relation = R::InFrontOf;
+        }
+    }
+}
+
 fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<ObjectState>, span: Span) {
     let mut push = |relation, anchor| {
         spec.relations.push(Stated {
@@ -115,6 +131,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
             continue;
         };
         let mut spec = m.spec.clone();
+        distance_ahead(&mut spec);
         spec.relations = spec
             .relations
             .iter()

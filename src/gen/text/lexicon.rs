@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use super::description::{Anchor, Count, Density, Environment, Road, TimeOfDay, Weather};
 use super::words::objects::{self, NOUNS, Noun};
-use super::words::{edits, places, style};
+use super::words::{edits, phrases, places, style, verbs};
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 
 /// What a word or a run of words means.
@@ -31,6 +31,8 @@ pub enum Sense {
     Rel(RelationKind),
     /// Relations to the ego vehicle.
     EgoRel(&'static [RelationKind]),
+    /// A side of what was named: "on its left".
+    Possessed(RelationKind),
     /// What follows stands in that relation to what was before.
     Reversed(RelationKind),
     /// A relation and its anchor in one phrase.
@@ -176,7 +178,7 @@ fn build() -> Table {
         for noun in list {
             put(noun, Sense::Place(Anchor::Lane(any), None));
             // "a bus stops" is no place
-            if !noun.ends_with("stop") {
+            if !["stop", "stand", "halt"].iter().any(|v| noun.ends_with(v)) {
                 put(&plural(noun), Sense::Place(Anchor::Lane(any), None));
             }
             for (side, names) in [(left, places::LEFT), (right, places::RIGHT)] {
@@ -297,6 +299,23 @@ fn build() -> Table {
     for (relations, list) in places::EGO_RELATIONS {
         words(list).for_each(|w| put(w, Sense::EgoRel(relations)));
     }
+    for (relations, phrase) in phrases::sides() {
+        put(&phrase, Sense::EgoRel(relations));
+    }
+    for (relation, phrase) in phrases::possessed() {
+        put(&phrase, Sense::Possessed(relation));
+    }
+    for (relations, phrase) in phrases::clock() {
+        put(&phrase, Sense::EgoRel(relations));
+    }
+    for adverb in words(phrases::ADVERBS) {
+        for (relations, list) in places::EGO_RELATIONS.iter().take(phrases::PLACED) {
+            words(list).for_each(|w| put(&format!("{adverb} {w}"), Sense::EgoRel(relations)));
+        }
+        for (relation, list) in places::RELATIONS.iter().take(phrases::PLACED) {
+            words(list).for_each(|w| put(&format!("{adverb} {w}"), Sense::Rel(*relation)));
+        }
+    }
     words(places::FAR_SIDE).for_each(|w| put(w, Sense::FarSide));
     for w in words(places::BOTH_SIDES) {
         put(w, Sense::BothSides(w.contains("each")));
@@ -361,6 +380,40 @@ fn build() -> Table {
     for (share, list) in places::FRACTIONS {
         words(list).for_each(|w| put(w, Sense::Fraction(*share)));
     }
+    for (state, list) in verbs::DOING {
+        for f in words(list).map(verbs::forms) {
+            put(&f.ing, Sense::State(*state, false));
+            [&f.base, &f.s, &f.past].map(|w| put(w, Sense::State(*state, true)));
+            for have in ["has", "have", "had", "has just", "have just", "having"] {
+                put(&format!("{have} {}", f.participle), Sense::State(*state, true));
+            }
+        }
+    }
+    for (relation, list) in verbs::RELATING {
+        for f in words(list).map(verbs::forms) {
+            for by in ["by", "with", "off by", "off with"] {
+                put(&format!("{} {by}", f.participle), Sense::Reversed(*relation));
+            }
+            for w in [&f.base, &f.s, &f.ing, &f.past] {
+                put(w, Sense::Rel(*relation));
+                // "pointed straight at", "walks slowly across"
+                if let Some((verb, tail)) = w.split_once(' ') {
+                    for adverb in ["straight", "directly", "right", "slowly", "quickly", "back"] {
+                        put(&format!("{verb} {adverb} {tail}"), Sense::Rel(*relation));
+                    }
+                }
+            }
+            for have in ["has", "have", "had"] {
+                put(&format!("{have} {}", f.participle), Sense::Rel(*relation));
+            }
+        }
+    }
+    for f in words(verbs::TOWING).map(verbs::forms) {
+        put(&format!("{} by", f.participle), Sense::Rel(RelationKind::Following));
+        put(&format!("{} behind", f.participle), Sense::Rel(RelationKind::Following));
+        [&f.s, &f.ing, &f.past].map(|w| put(w, Sense::Reversed(RelationKind::Following)));
+    }
+    words(verbs::JOINED).for_each(|w| put(w, Sense::Rel(RelationKind::Following)));
     for (verb, list) in edits::VERBS {
         words(list).for_each(|w| put(w, Sense::Verb(*verb)));
     }

@@ -30,6 +30,10 @@ pub struct Mention {
     pub is_anchor: bool,
     /// Who it was said to be with.
     pub host: Option<usize>,
+    /// Neither an article nor a number stood before it.
+    pub bare: bool,
+    /// An adjective said where it is: "oncoming".
+    pub said_where: bool,
     /// Used up by its parts.
     pub gone: bool,
 }
@@ -120,6 +124,8 @@ impl Mention {
             both: None,
             is_anchor: false,
             host: None,
+            bare: pre.article.is_none() && pre.count.is_none(),
+            said_where: false,
             gone: false,
         }
     }
@@ -224,6 +230,10 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     (R::Across, Lane(_) | Ego) => far_side(spec.class, parked, &mut out),
                     (R::Across, Crossing | Junction) => out.push((R::Near, anchor)),
                     (R::Blocking, Ego) => out.push((R::Blocking, Lane(L::Ego))),
+                    // What closes off something else stands by it.
+                    (R::Blocking, Object(_)) if matches!(spec.class, Class::TrafficCone | Class::Barrier) => {
+                        out.push((R::NextTo, anchor));
+                    }
                     (R::Blocking, Crossing | Junction) => out.push((R::On, anchor)),
                     (R::Facing, Crossing | Junction) => out.push((R::Near, anchor)),
                     (R::Facing | R::FacingAway, Lane(_)) => {}
@@ -236,6 +246,13 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     (R::Crossing, Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)) => {
                         out.push((R::On, anchor))
                     }
+                    (R::Crossing, Lane(L::LeftRoadside)) => {
+                        out.extend([(R::Crossing, Lane(L::Road)), (R::LeftOf, Ego)]);
+                    }
+                    (R::Crossing, Lane(L::RightRoadside)) => {
+                        out.extend([(R::Crossing, Lane(L::Road)), (R::RightOf, Ego)]);
+                    }
+                    (R::Crossing, Lane(L::Roadside)) => out.push((R::Crossing, Lane(L::Road))),
                     (R::Crossing, Ego | Object(_)) => out.push((R::Crossing, Lane(L::Road))),
                     _ => out.push((kind, anchor)),
                 }
@@ -249,6 +266,11 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
             }
         }
         Prep::In => match anchor {
+            // Who is in a car park is parked, unless something else is said.
+            Lane(L::Carpark) if spec.state.is_none() && spec.class.is_vehicle() => {
+                spec.state = Some(ObjectState::Parked);
+                out.push((R::ParkedOn, anchor));
+            }
             Ego => {}
             Object(_) => out.push((R::NextTo, anchor)),
             Lane(L::Road) if parked => out.push((R::ParkedOn, Lane(L::Roadside))),

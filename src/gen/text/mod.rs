@@ -1,6 +1,7 @@
 //! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
 
 mod again;
+mod back;
 pub mod description;
 pub mod edit;
 mod edit_grammar;
@@ -12,6 +13,7 @@ mod mention;
 pub mod parse;
 pub mod place;
 mod rephrase;
+mod restate;
 pub mod road;
 mod select;
 mod spots;

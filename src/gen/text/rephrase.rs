@@ -2,6 +2,7 @@
 //! ought to be a van" is "make the taxi a van", "one pedestrian less" is "keep the pedestrians", with one fewer.
 
 use super::lexicon::{Sense, look_up};
+use super::restate::{clauses, restate};
 use super::tokens::{Token, TokenKind};
 use super::words::edits::VERBS;
 
@@ -59,6 +60,48 @@ const POLITE: &[&[&str]] = &[
     &["go", "ahead", "and"],
     &["try", "to"],
     &["i", "think"],
+    &["id", "rather"],
+    &["i", "would", "rather"],
+    &["i", "d", "rather"],
+    &["i", "wish"],
+    &["i", "suggest"],
+    &["i", "propose"],
+    &["id", "prefer", "it", "if"],
+    &["i", "would", "prefer", "it", "if"],
+    &["i", "prefer", "that"],
+    &["it", "would", "be", "better", "if"],
+    &["it", "is", "better", "if"],
+    &["better", "if"],
+    &["would", "you", "mind"],
+    &["kindly"],
+    &["do"],
+    &["next"],
+    &["finally"],
+    &["afterwards"],
+    &["after", "that"],
+    &["in", "addition"],
+    &["additionally"],
+    &["oh"],
+    &["and"],
+    &["well"],
+    &["so"],
+    &["but"],
+    &["you", "should"],
+    &["you", "can"],
+    &["you", "may"],
+    &["feel", "free", "to"],
+    &["be", "so", "kind", "as", "to"],
+    &["time", "to"],
+    &["id", "love", "to"],
+    &["id", "love", "it", "if"],
+    &["id", "like", "it", "if"],
+    &["i", "want", "it", "so", "that"],
+    &["ensure", "that"],
+    &["see", "to", "it", "that"],
+    &["actually"],
+    &["on", "second", "thought"],
+    &["on", "second", "thoughts"],
+    &["for", "this", "one"],
     &["it", "would", "be", "nice", "if"],
     &["make", "sure", "that"],
     &["make", "sure"],
@@ -96,7 +139,7 @@ const UNWISH: &[&[&str]] = &[
 ];
 const MODALS: &[&str] = &[
     "should", "must", "shall", "ought", "needs", "need", "has", "have", "can", "could", "may", "will", "is",
-    "are",
+    "are", "was", "were", "wants", "would", "might", "belongs", "goes",
 ];
 const GONE: &[&str] = &[
     "gone",
@@ -193,18 +236,66 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
             Some((last, body)) if last.kind == TokenKind::Stop => (body, Some(last)),
             _ => (sentence, None),
         };
+        let put_back = topic(body);
+        let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        if let Some(first) = body.first() {
-            let (new, change) = one(&body);
+        let parts = clauses(&body);
+        for (i, clause) in parts.iter().enumerate() {
+            let Some(first) = clause.first() else {
+                continue;
+            };
+            let (new, change) = one(clause);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));
             }
             out.tokens.extend(new);
+            if i + 1 < parts.len() {
+                out.tokens.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", first)
+                });
+            }
         }
         out.tokens.extend(stop.cloned());
     }
     out
+}
+
+/// "whatever is behind us, make it a bus" and "the car behind us: drop it": the verb first.
+fn topic(body: &[Token]) -> Option<Vec<Token>> {
+    let first = body.first()?;
+    let open = matches!(first.text.as_str(), "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who");
+    let definite = matches!(first.text.as_str(), "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my");
+    if !open && !definite {
+        return None;
+    }
+    let cut = (1..body.len()).find(|i| {
+        let mark = body[*i].kind == TokenKind::Comma || body[*i].kind == TokenKind::Mark;
+        mark && body.get(i + 1).is_some_and(is_verb)
+            && body[i + 1..]
+                .iter()
+                .take(4)
+                .any(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))
+    })?;
+    let mut np: Vec<Token> = Vec::new();
+    if open {
+        let is = body[..cut].iter().position(|t| {
+            matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was")
+        })?;
+        let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
+        np.push(word("the", first));
+        np.push(word(if people { "person" } else { "object" }, first));
+        np.extend_from_slice(&body[is + 1..cut]);
+    } else {
+        np.extend_from_slice(&body[..cut]);
+    }
+    let it = (cut + 1..body.len())
+        .find(|i| matches!(body[*i].text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))?;
+    let mut out = body[cut + 1..it].to_vec();
+    out.extend(np);
+    out.extend_from_slice(&body[it + 1..]);
+    Some(out)
 }
 
 /// "everyone on the pavement" is "all people on the pavement".
@@ -273,7 +364,13 @@ fn take_ordinals(body: &[Token], out: &mut Rephrased) -> Vec<Token> {
 }
 
 fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
-    let rest = strip(body, POLITE);
+    let mut rest = strip(body, POLITE);
+    while let Some((last, before)) = rest.split_last()
+        && before.len() > 1
+        && (last.kind == TokenKind::Comma || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
+    {
+        rest = before;
+    }
     let Some(first) = rest.first() else {
         return (body.to_vec(), None);
     };
@@ -288,6 +385,9 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         let tail = &tail[..end.map_or(tail.len(), |e| e + 1)];
         // "no more cones" means all of them, as "remove the cones" does
         return (with_verb("remove", first, tail), None);
+    }
+    if let Some(found) = restate(rest) {
+        return found;
     }
     if let Some((tokens, change)) = arithmetic(rest) {
         return (tokens, Some(change));
@@ -320,6 +420,23 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
             }
         }
     }
+    // "have a cyclist follow the bus", "let somebody else join the pedestrian"
+    let fresh = rest.get(1).is_some_and(|t| {
+        matches!(t.text.as_str(), "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three") || number(t).is_some()
+    });
+    let does = rest.iter().skip(2).take(6).any(|t| {
+        matches!(sense(t), Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)) || is_verb(t)
+    });
+    if matches!(first.text.as_str(), "let" | "have" | "make" | "get") && fresh && does {
+        return (with_verb("add", first, &rest[1..]), None);
+    }
+    if matches!(first.text.as_str(), "let" | "have" | "make" | "get")
+        && rest.len() > 3
+        && !matches!(rest[1].text.as_str(), "rid" | "it" | "that")
+        && let Some(found) = restate(&rest[1..])
+    {
+        return found;
+    }
     if is_verb(first)
         && first.text != "let"
         && !(first.text == "get" && rest.len() > 2)
@@ -330,6 +447,9 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     // "let the cyclist ride behind me", "have the people stand on the right", "get the bus behind me"
     if matches!(first.text.as_str(), "let" | "have" | "get") && rest.len() > 2 && rest[1].text != "rid" {
         let tail = &rest[1..];
+        if let Some(found) = restate(tail) {
+            return found;
+        }
         if matches!(
             tail[0].text.as_str(),
             "the" | "all" | "my" | "both" | "every" | "that"

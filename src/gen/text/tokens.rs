@@ -61,6 +61,19 @@ fn is_word(c: char) -> bool {
     c.is_alphabetic() || matches!(c, '\'' | '’' | '`')
 }
 
+/// The end of a name with two underscores or more that begins at `i`; `i` if there is none.
+fn identifier(chars: &[(usize, char)], i: usize) -> usize {
+    let mut j = i;
+    let mut lines = 0;
+    while let Some((_, c)) = chars.get(j)
+        && (c.is_alphanumeric() || *c == '_')
+    {
+        lines += usize::from(*c == '_');
+        j += 1;
+    }
+    if lines >= 2 { j } else { i }
+}
+
 /// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
 pub fn tokens(prompt: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
@@ -105,6 +118,11 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             j += usize::from(times);
         } else if matches!(c, 'x' | '×') && digit(j) {
             // the x of x2
+        } else if is_word(c) && identifier(&chars, i) > i {
+            // "AEB_night_ped_07" is a name
+            j = identifier(&chars, i);
+            let text = chars[i..j].iter().map(|(_, c)| *c).collect();
+            push(TokenKind::Symbol, text, i, j);
         } else if is_word(c) {
             while j < chars.len() && is_word(chars[j].1) {
                 j += 1;

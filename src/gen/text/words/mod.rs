@@ -2,5 +2,7 @@
 
 pub mod edits;
 pub mod objects;
+pub mod phrases;
 pub mod places;
 pub mod style;
+pub mod verbs;

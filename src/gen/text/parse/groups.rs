@@ -1,0 +1,220 @@
+//! Parts of groups and pronouns: "one on the left and the other on the right", "behind it".
+
+use super::super::description::{Anchor, Count};
+use super::super::lexicon::Sense;
+use super::super::mention::{Pre, Prep};
+use super::super::tag::{Item, Tag};
+use super::super::tokens::Span;
+use super::{Parser, is_color};
+
+impl Parser<'_> {
+    /// A group that a number without a noun can be a part of.
+    pub(in super::super) fn group_behind(&self) -> Option<usize> {
+        let next = self.item(self.at + 1)?;
+        let told = matches!(
+            next.tag,
+            Tag::Is(
+                Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::In
+                    | Sense::At
+                    | Sense::State(..)
+                    | Sense::Color(_)
+                    | Sense::FarSide
+                    | Sense::Fixed(..)
+                    | Sense::Pronoun
+                    | Sense::Not
+            )
+        ) || (matches!(next.tag, Tag::Number(_) | Tag::Is(Sense::Count(_)))
+            && matches!(self.sense(self.at + 2), Some(Sense::Unit(_))))
+            || matches!(next.words.as_str(), "of them" | "of" | "is" | "are" | "to")
+            || matches!(
+                (next.tag, is_color(&next.words)),
+                (Tag::Is(Sense::Weather(_)), true)
+            );
+        if !told {
+            return None;
+        }
+        (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.mentions[i].is_anchor)
+    }
+
+    /// "one on the left and the other on the right"
+    pub(super) fn part(&mut self, all: bool, count: Count, span: Span) {
+        if self.noun_ahead(self.at + 1) && !all {
+            return; // "the other car", "another bus"
+        }
+        let whole = (0..self.mentions.len()).rev().find(|&i| {
+            !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i)
+        });
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        if let (Some(whole), true, true) = (whole, of_them, self.pending.is_some()) {
+            // "between two of them", "next to one of them"
+            self.anchor(Anchor::Object(whole), span);
+            return;
+        }
+        // "two cars ahead and a third behind us" names one more
+        let said = span.of(self.prompt).to_lowercase();
+        let nth = ["second", "third", "fourth", "fifth", "sixth"].iter().position(|w| said.starts_with(&format!("a {w}"))).map(|k| k as u32 + 1);
+        let last = (0..self.mentions.len()).rev().find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let more = last.is_some_and(|i| {
+            let m = &self.mentions[i];
+            !self.edits && nth == Some(m.spec.count.n) && !m.spec.relations.is_empty() && m.spec.count.n > 1
+        });
+        if more && self.pending.is_none() {
+            if self.item(self.at + 1).is_some_and(|i| matches!(i.words.as_str(), "one")) {
+                self.at += 1;
+            }
+            self.again(Count::exactly(1), span);
+            return;
+        }
+        let parent = (0..self.mentions.len()).rev().find(|&i| {
+            !self.mentions[i].gone
+                && !self.mentions[i].is_anchor
+                && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+        });
+        if matches!(
+            self.item(self.at + 1).map(|i| i.words.as_str()),
+            Some("one" | "ones")
+        ) {
+            self.at += 1; // "the first one"
+        }
+        let Some(parent) = parent else {
+            if self.pending.is_none()
+                && !self.last.is_empty()
+                && (span.of(self.prompt).to_lowercase().starts_with("another")
+                    || span.of(self.prompt).to_lowercase().starts_with("a "))
+            {
+                // "a car on the left and another on the right"
+                let mut twin = self.mentions[self.last[0]].clone();
+                twin.spec.relations.clear();
+                twin.spec.span = span;
+                twin.spec.count = Count::exactly(1);
+                self.mentions.push(twin);
+                let index = self.mentions.len() - 1;
+                self.flush();
+                self.head = vec![index];
+                self.last = vec![index];
+                self.chain = false;
+                return;
+            }
+            return;
+        };
+        self.flush();
+        let left = self.mentions[parent].spec.count;
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        if of_them && self.mentions[parent].uncounted && self.ends(self.at + 2) {
+            // "cones along the edge, six of them"
+            self.mentions[parent].spec.count = count;
+            self.mentions[parent].uncounted = false;
+            return;
+        }
+        if !all
+            && !of_them
+            && !self.edits
+            && count.n > 1
+            && count.n >= left.n
+            && !self.mentions[parent].spec.relations.is_empty()
+        {
+            // "two cars on the left and two on the right"
+            self.again(count, span);
+            return;
+        }
+        let n = if all { left.n } else { count.n.min(left.n) };
+        let mut part = self.mentions[parent].clone();
+        part.spec.count = if left.is_exact() || !all {
+            Count::exactly(n)
+        } else {
+            left
+        };
+        part.plural = n > 1;
+        part.spec.span = span;
+        self.mentions.push(part);
+        let index = self.mentions.len() - 1;
+        let rest = left.n - n;
+        let parent_spec = &mut self.mentions[parent].spec;
+        parent_spec.count = Count {
+            min: left.min.saturating_sub(n),
+            n: rest,
+            max: left.max.saturating_sub(n),
+        };
+        self.mentions[parent].gone = rest == 0;
+        self.head = vec![index];
+        self.last = vec![index];
+        self.chain = false;
+        self.pre = Pre::default();
+    }
+
+    pub(super) fn pronoun(&mut self, item: &Item) -> bool {
+        if matches!(item.words.as_str(), "that" | "this" | "those" | "these")
+            && matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+        {
+            self.pre.article = Some(true); // "that car"
+            self.pre.cover(item.span);
+            return true;
+        }
+        if matches!(item.words.as_str(), "that") {
+            self.relative = true;
+        }
+        if self.pending.is_some() {
+            let targets = self.targets();
+            let skip = |i: &usize| targets.contains(i) || self.mentions[*i].gone;
+            let antecedent = match item.words.as_str() {
+                "that" | "this" => None,
+                // "it" is one thing.
+                "it" if self.ego_named => {
+                    let kin = |i: &usize| {
+                        targets.iter().any(|t| self.mentions[*t].spec.noun == self.mentions[*i].spec.noun)
+                    };
+                    let one = |i: &usize| !skip(i) && !kin(i) && self.mentions[*i].spec.count.n == 1;
+                    let subject = self.head.iter().chain(&self.before).copied().find(one);
+                    subject.or_else(|| (0..self.mentions.len()).rev().find(one))
+                }
+                _ => {
+                    let host = targets.first().and_then(|t| self.mentions[*t].host);
+                    let subject = self.head.iter().chain(&self.before).copied().find(|i| !skip(i));
+                    host.or(subject)
+                        .or_else(|| (0..self.mentions.len()).rev().find(|i| !skip(i)))
+                }
+            };
+            let fresh = self.pending.as_ref().is_some_and(|p| p.fresh);
+            let anded = self.pending.as_ref().is_some_and(|p| p.anded);
+            let antecedent = if fresh && (self.noun_ahead(self.at + 1) || (anded && self.set_off())) {
+                self.head.first().or(self.before.first()).copied().or(antecedent)
+            } else {
+                antecedent
+            };
+            match antecedent {
+                Some(i) => self.anchor(Anchor::Object(i), item.span),
+                None if item.words == "that" => return true,
+                None if self.ego_named || self.ego_subject => self.anchor(Anchor::Ego, item.span),
+                None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
+                    self.anchor(Anchor::Ego, item.span)
+                }
+                // "the left lane has two cars in it"
+                None if !self.fronted.is_empty()
+                    && self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) =>
+                {
+                    self.pending = None;
+                }
+                None => {
+                    let span = self.pending.take().map_or(item.span, |p| p.span.to(item.span));
+                    self.unread(span, Some("what it points to was not named".into()));
+                }
+            }
+            return false;
+        }
+        if self.head.is_empty()
+            && matches!(
+                item.words.as_str(),
+                "it" | "they" | "he" | "she" | "these" | "those"
+            )
+        {
+            self.head = self.before.clone();
+            self.last = self.before.clone();
+            self.chain = false;
+        }
+        true
+    }
+}

@@ -1,0 +1,378 @@
+//! A prompt to a structured description: a shallow grammar over tagged words. Every word ends up in a phrase,
+//! among the small words, or in `not_understood`; nothing is guessed.
+//!
+//! A clause has a subject (the first noun that no preposition leads to). A relation belongs to the noun before it; after
+//! a comma, `and` or a finite verb to the subject; at the start of a clause to the nouns that follow.
+
+mod ahead;
+mod groups;
+mod nouns;
+mod numbers;
+mod relations;
+mod sense;
+mod states;
+mod style;
+
+use super::description::{Anchor, Became, Count, Description, Phrase, Reading, Stated, Unread};
+use super::lexicon::Sense;
+use super::mention::{Frag, Mention, Pre, Prep};
+use super::tag::{Item, Tag, tag};
+use super::tokens::{LONGEST, Span, tokens};
+use crate::scene::graph::{ObjectState, RelationKind};
+
+/// Most objects that one prompt may place; more are counted, not placed.
+pub const MOST_MENTIONS: usize = 200;
+
+pub(super) struct Pending {
+    pub(super) prep: Prep,
+    span: Span,
+    first: Option<Anchor>,
+    fresh: bool,
+    anded: bool,
+    pub(super) not: bool,
+    finite: bool, // said by "is": of the subject
+    ego: bool,    // the ego vehicle is the subject
+    distance_m: Option<f64>,
+}
+
+/// The state of reading.
+pub(super) struct Parser<'a> {
+    prompt: &'a str,
+    pub(super) items: &'a [Item],
+    pub(super) at: usize,
+    pub(super) mentions: Vec<Mention>,
+    pub(super) reading: Reading,
+    pub(super) head: Vec<usize>,
+    pub(super) last: Vec<usize>,
+    pub(super) before: Vec<usize>, // subject of the clause before
+    pub(super) fronted: Vec<Frag>,
+    fronted_state: Option<ObjectState>,
+    pub(super) chain: bool, // only nouns so far in this clause
+    list: Vec<usize>,       // those nouns
+    linked: bool,           // "and" or a comma right before
+    anded: bool,            // "and" right before
+    fresh: bool,            // nothing but small words since the clause began or a comma
+    pub(super) pending: Option<Pending>,
+    pub(super) pre: Pre,
+    not_goes_on: bool,
+    distance: Option<(f64, Span)>,
+    pub(super) topic: Option<(Anchor, Span)>,
+    reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
+    relative: bool,
+    ego_subject: bool, // "I am behind a bus"
+    ego_named: bool,   // "the host vehicle": "it" may mean it
+    pair: Vec<usize>,  // the two of "between a van and a lorry"
+    with: bool,
+    pub(super) edits: bool,
+    denied: bool,                   // what follows says where something is not
+    pub(super) listed: Vec<Stated>, // where what a colon introduces stands
+}
+
+/// Reads a prompt.
+pub fn read(prompt: &str) -> Reading {
+    let tokens = tokens(prompt);
+    let items = tag(&tokens);
+    let mut parser = Parser::new(prompt, &items, false);
+    parser.run();
+    let mut reading = parser.finish();
+    if prompt.len() > LONGEST {
+        reading.not_understood.push(Unread {
+            span: Span {
+                start: LONGEST,
+                end: prompt.len(),
+            },
+            text: "...".into(),
+            why: Some(format!("only the first {LONGEST} bytes are read")),
+        });
+    }
+    reading
+}
+
+impl<'a> Parser<'a> {
+    pub(super) fn new(prompt: &'a str, items: &'a [Item], edits: bool) -> Self {
+        Self {
+            prompt,
+            items,
+            at: 0,
+            mentions: Vec::new(),
+            reading: Reading::default(),
+            head: Vec::new(),
+            last: Vec::new(),
+            before: Vec::new(),
+            fronted: Vec::new(),
+            fronted_state: None,
+            chain: true,
+            list: Vec::new(),
+            linked: false,
+            anded: false,
+            fresh: true,
+            pending: None,
+            pre: Pre::default(),
+            not_goes_on: false,
+            distance: None,
+            topic: None,
+            reversed: None,
+            relative: false,
+            ego_subject: false,
+            ego_named: false,
+            pair: Vec::new(),
+            with: false,
+            edits,
+            denied: false,
+            listed: Vec::new(),
+        }
+    }
+
+    fn d(&mut self) -> &mut Description {
+        &mut self.reading.description
+    }
+
+    pub(super) fn item(&self, i: usize) -> Option<&'a Item> {
+        self.items.get(i)
+    }
+
+    pub(super) fn sense(&self, i: usize) -> Option<Sense> {
+        match self.item(i)?.tag {
+            Tag::Is(s) => Some(s),
+            _ => None,
+        }
+    }
+
+    pub(super) fn run(&mut self) {
+        while self.at < self.items.len() {
+            let item = &self.items[self.at];
+            if let Some(meant) = item.read_as {
+                let note = format!("{:?} was read as {meant:?}", item.words);
+                self.reading.notes.push(note);
+            }
+            let small = self.step(item);
+            if !small {
+                self.linked = false;
+                self.anded = false;
+                self.fresh = false;
+            }
+            self.at += 1;
+        }
+        self.end_clause();
+    }
+
+    /// Reads one item; true if it was a small word that leaves boundaries as they are.
+    fn step(&mut self, item: &'a Item) -> bool {
+        let span = item.span;
+        match item.tag {
+            Tag::Stop => {
+                self.end_clause();
+                return true;
+            }
+            Tag::Comma | Tag::Mark if item.words == "#" => {
+                return true;
+            }
+            Tag::Comma | Tag::Mark => {
+                let idle = self.pending.as_ref().is_some_and(|p| p.first.is_none());
+                if item.words == ":" && self.mentions.is_empty() {
+                    // "Follow-to-stop:" is a heading, "Ahead:" is not
+                    if idle {
+                        self.pending = None;
+                    }
+                    self.fronted.retain(|f| match &f.prep {
+                        Prep::Rels(kinds) if f.anchor == Anchor::Ego => !kinds.iter().any(|k| {
+                            matches!(
+                                k,
+                                RelationKind::Following | RelationKind::Blocking | RelationKind::Crossing | RelationKind::Facing
+                            )
+                        }),
+                        _ => true,
+                    });
+                }
+                if item.words == ":" {
+                    self.heading();
+                }
+                self.flush();
+                if item.words == ":" {
+                    self.introduce();
+                }
+                let not_list = self.pre.not && !self.pre.says_something();
+                self.pre = Pre {
+                    not: not_list,
+                    ..Pre::default()
+                };
+                self.not_goes_on &= self.list_goes_on();
+                self.linked = true;
+                self.denied = false;
+                self.fresh = true;
+                self.relative = false;
+                self.reversed = self.reversed.take().filter(|_| self.last.is_empty());
+                return true;
+            }
+            Tag::Unknown => {
+                self.unread(span, None);
+                return true;
+            }
+            Tag::Number(v) => {
+                if self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "#") {
+                    self.pre.id = Some(v as u32);
+                    self.pre.cover(span);
+                    if !self.noun_ahead(self.at + 1) && self.edits {
+                        self.mention_by_id(span);
+                    }
+                    return false;
+                }
+                let label = self.item(self.at + 1).is_some_and(|n| n.words == ":");
+                if !self.edits
+                    && label
+                    && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)))
+                    && let Some(&i) = self.last.last()
+                {
+                    // "Ped 1: on the crossing"
+                    self.mentions[i].uncounted = false;
+                    return false;
+                }
+                if self.edits
+                    && !matches!(self.sense(self.at + 1), Some(Sense::Unit(_)))
+                    && let (Some(&i), Some(Sense::Noun(..))) =
+                        (self.history_last(), self.sense(self.at.wrapping_sub(1)))
+                {
+                    // "car 7"
+                    self.mentions[i].id = Some(v as u32);
+                    self.mentions[i].spec.span = self.mentions[i].spec.span.to(span);
+                    return false;
+                }
+                if self.try_distance(v, span) {
+                    return false;
+                }
+                let back = if self.item(self.at.wrapping_sub(1)).is_some_and(|i| i.words == ":") {
+                    2
+                } else {
+                    1
+                };
+                if v == 0.0 && self.none_of_it(back, span) {
+                    return false;
+                }
+                if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(..)))
+                    && !self.noun_ahead(self.at + 1)
+                    && (1.0..1000.0).contains(&v)
+                    && let Some(&i) = self.last.last()
+                    && self.mentions[i].uncounted
+                {
+                    // "cones x8"
+                    let m = &mut self.mentions[i];
+                    m.spec.count = Count::exactly(v as u32);
+                    m.uncounted = false;
+                    m.spec.span = m.spec.span.to(span);
+                    return false;
+                }
+                let n = if v.is_finite() && v >= 0.0 {
+                    v.round().min(1e6) as u32
+                } else {
+                    1_000_000
+                };
+                self.count(Count::exactly(n), span);
+            }
+            Tag::Is(sense) => return self.sense_step(sense, item),
+        }
+        false
+    }
+
+    // --- clauses ---
+
+    fn new_clause(&mut self) {
+        self.denied = false;
+        if !self.head.is_empty() {
+            self.before = std::mem::take(&mut self.head);
+        }
+        self.last.clear();
+        self.list.clear();
+        self.fronted.clear();
+        self.fronted_state = None;
+        self.reversed = None;
+        self.relative = false;
+        self.ego_subject = false;
+        self.with = false;
+        self.chain = true;
+    }
+
+    fn soft_end(&mut self) {
+        self.flush();
+        self.new_clause();
+        self.pre = Pre::default();
+        self.fresh = true;
+        self.not_goes_on = false;
+    }
+
+    fn end_clause(&mut self) {
+        self.listed.clear();
+        self.soft_end();
+        self.linked = false;
+        if let Some((_, span)) = self.distance.take() {
+            self.unread(span, Some("a distance to what?".into()));
+        }
+        self.topic = None;
+    }
+
+    fn phrase(&mut self, span: Span, became: Became, meaning: &str) {
+        self.reading.phrases.push(Phrase {
+            span,
+            text: span.of(self.prompt).to_string(),
+            became,
+            meaning: meaning.to_string(),
+        });
+    }
+
+    fn unread(&mut self, span: Span, why: Option<String>) {
+        // Neighbours become one entry.
+        if let Some(last) = self.reading.not_understood.last_mut()
+            && last.why == why
+            && self
+                .prompt
+                .get(last.span.end..span.start)
+                .is_some_and(|gap| gap.trim().is_empty() && gap.len() < 3)
+        {
+            last.span = last.span.to(span);
+            last.text = last.span.of(self.prompt).to_string();
+            return;
+        }
+        self.reading.not_understood.push(Unread {
+            span,
+            text: span.of(self.prompt).to_string(),
+            why,
+        });
+    }
+
+    pub(super) fn finish(mut self) -> Reading {
+        super::finish::finish(&mut self.mentions, &mut self.reading, self.prompt);
+        self.reading
+    }
+}
+
+fn is_directed(kind: RelationKind) -> bool {
+    !matches!(
+        kind,
+        RelationKind::On | RelationKind::ParkedOn | RelationKind::Crossing | RelationKind::WaitingAt
+    )
+}
+
+fn is_prenominal(words: &str) -> bool {
+    matches!(
+        words,
+        "oncoming"
+            | "distant"
+            | "nearby"
+            | "approaching"
+            | "opposing"
+            | "incoming"
+            | "on coming"
+            | "upcoming"
+    )
+}
+
+fn is_color(words: &str) -> bool {
+    matches!(words, "grey" | "gray" | "dark" | "bright")
+}
+
+fn places_color(words: &str) -> &'static str {
+    match words {
+        "dark" => "dark",
+        "bright" => "bright",
+        _ => "grey",
+    }
+}

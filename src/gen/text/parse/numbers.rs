@@ -1,0 +1,197 @@
+//! Counts and distances: how many, how far, of what.
+
+use super::super::description::{Anchor, Became, Count, Stated};
+use super::super::lexicon::Sense;
+use super::super::mention::{Pre, Prep};
+use super::super::tag::Tag;
+use super::super::tokens::Span;
+use super::super::words::objects::NOUNS;
+use super::{Parser, is_directed};
+use crate::scene::graph::{LaneRole, RelationKind};
+
+impl Parser<'_> {
+    pub(super) fn count(&mut self, count: Count, span: Span) {
+        if let Some(Sense::Place(Anchor::Lane(role), _)) = self.sense(self.at + 1)
+            && matches!(role, LaneRole::Ego | LaneRole::Road)
+            && self.items[self.at + 1].words.starts_with("lane")
+            && self.pending.is_none()
+        {
+            // "two lanes", "four lane road"
+            self.at += 1;
+            let mut whole = span.to(self.items[self.at].span);
+            if let Some(next) = self.item(self.at + 1)
+                && matches!(
+                    next.tag,
+                    Tag::Is(Sense::Place(Anchor::Lane(LaneRole::Road), _) | Sense::RoadKind(..))
+                )
+            {
+                if let Tag::Is(Sense::RoadKind(road, environment)) = next.tag {
+                    self.road_kind(road, environment, next.span);
+                }
+                self.at += 1;
+                whole = whole.to(next.span);
+            }
+            self.d().road.lanes = Some(count.n.clamp(1, 8));
+            self.phrase(whole, Became::Road, &format!("{} lanes", count.n));
+            self.pre = Pre::default();
+            return;
+        }
+        let next_is_part = !self.noun_ahead(self.at + 1);
+        if next_is_part && !self.edits && self.bare_number(self.at) && !self.fronted.is_empty() {
+            // "on the left are three cars, and on the right two."
+            self.again(count, span);
+            return;
+        }
+        if next_is_part && !self.edits && self.pending.is_none() && self.numbers_last(count, span) {
+            return;
+        }
+        if next_is_part && self.group_behind().is_some() {
+            self.part(false, count, span);
+            return;
+        }
+        if next_is_part && !self.edits && self.pending.is_none() && count.is_exact() && self.one_more_like_it() {
+            // "a car in front, one behind"
+            self.again(count, span);
+            return;
+        }
+        if next_is_part
+            && self.edits
+            && matches!(self.items[self.at].words.as_str(), "one")
+            && self.pending.is_none()
+        {
+            // "the one behind me"
+            if let Some(noun) = NOUNS.last() {
+                self.noun(noun, "object", false, span);
+            }
+            return;
+        }
+        if next_is_part {
+            // a number of nothing: "a lot of traffic" and the like come as one run
+            if !matches!(
+                self.sense(self.at + 1),
+                Some(
+                    Sense::Filler
+                        | Sense::Environment(_)
+                        | Sense::Place(..)
+                        | Sense::Background
+                        | Sense::Cannot(_)
+                        | Sense::RoadKind(..)
+                        | Sense::Pick(_)
+                        | Sense::Density(_)
+                        | Sense::Size(_)
+                        | Sense::Part(_)
+                )
+            ) && !self.edits
+            {
+                self.unread(span, Some("a number of what?".into()));
+            }
+        }
+        self.pre.count = Some(count);
+        self.pre.cover(span);
+    }
+
+    pub(super) fn try_distance(&mut self, value: f64, span: Span) -> bool {
+        let Some(Sense::Unit(m)) = self.sense(self.at + 1) else {
+            return false;
+        };
+        self.at += 1;
+        let span = span.to(self.items[self.at].span);
+        self.distance_said(value * m, span);
+        true
+    }
+
+    pub(super) fn distance_said(&mut self, metres: f64, span: Span) {
+        let back = (1..=2)
+            .filter_map(|k| self.sense(self.at.wrapping_sub(1 + k)))
+            .collect::<Vec<_>>();
+        let metres = match back
+            .iter()
+            .find_map(|s| if let Sense::Bound(b) = s { Some(*b) } else { None })
+        {
+            Some(true) => metres * 0.6,
+            Some(false) => metres * 1.3,
+            None => metres,
+        };
+        let metres = if metres.is_finite() { metres } else { 1e6 };
+        let next = self.item(self.at + 1);
+        if next.is_some_and(|n| matches!(n.words.as_str(), "long" | "wide" | "tall" | "high" | "deep")) {
+            self.at += 1;
+            let to = self.items[self.at].span;
+            self.unread(span.to(to), Some("sizes in metres are set in the window".into()));
+            return;
+        }
+        if matches!(next.map(|n| n.tag), Some(Tag::Is(Sense::Away))) {
+            self.at += 1;
+            if self.anchor_ahead(self.at + 1) && next.is_some_and(|n| n.words.ends_with("from")) {
+                self.begin(Prep::Rels(vec![RelationKind::Near]), span);
+                if let Some(p) = &mut self.pending {
+                    p.distance_m = Some(metres);
+                }
+                return;
+            }
+        }
+        // "15 m away on the right": how far, and on which side; "15 m to the right" is the offset itself.
+        let side_next = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::EgoRel([RelationKind::LeftOf] | [RelationKind::RightOf]))
+        );
+        let away = matches!(self.sense(self.at), Some(Sense::Away));
+        let targets = self.targets();
+        if side_next && away && self.pending.is_none() && !targets.is_empty() {
+            for t in targets {
+                self.mentions[t].spec.relations.push(Stated {
+                    relation: RelationKind::Near,
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: Some(metres),
+                    span,
+                });
+            }
+            return;
+        }
+        let relation_next = matches!(self.sense(self.at + 1), Some(Sense::Rel(_) | Sense::EgoRel(_)))
+            || self.item(self.at + 1).is_some_and(|i| i.words == "to");
+        if relation_next {
+            self.distance = Some((metres, span));
+            return;
+        }
+        if let Some(p) = &mut self.pending
+            && !matches!(p.prep, Prep::In | Prep::At)
+        {
+            p.distance_m = Some(metres);
+            return;
+        }
+        // "at 20 m", "at a distance of 20 m": of the relation before
+        self.pending = None;
+        let targets = self.targets();
+        let mut used = false;
+        for t in targets.iter().copied() {
+            let list = &mut self.mentions[t].spec.relations;
+            if let Some(r) = list
+                .iter_mut()
+                .rev()
+                .find(|r| r.distance_m.is_none() && is_directed(r.relation))
+            {
+                r.distance_m = Some(metres);
+                used = true;
+            } else if list.is_empty() {
+                list.push(Stated {
+                    relation: RelationKind::Near,
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: Some(metres),
+                    span,
+                });
+                used = true;
+            }
+        }
+        self.chain &= !used; // what comes next is no longer of one list with these
+        if !used && targets.is_empty() {
+            if let Some(f) = self.fronted.iter_mut().rev().find(|f| f.distance_m.is_none()) {
+                f.distance_m = Some(metres);
+            } else {
+                self.distance = Some((metres, span));
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Participles, verbs of state and colours.
+
+use super::super::mention::Prep;
+use super::super::tag::Item;
+use super::super::tokens::Span;
+use super::Parser;
+use crate::scene::graph::{ObjectState, RelationKind};
+
+impl Parser<'_> {
+    pub(super) fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
+        let span = item.span;
+        self.denied &= !(finite || self.after_is());
+        let meant = self.item(self.at.wrapping_sub(1)).is_some_and(|b| matches!(b.words.as_str(), "to" | "wants to" | "want to"));
+        if meant && self.ego_subject && self.head.is_empty() {
+            return; // "we want to overtake a cyclist"
+        }
+        if (item.words.starts_with("overtak") || item.words == "passing" || item.words == "passes")
+            && (!self.head.is_empty() || self.ego_subject)
+            && self.pending.is_none()
+            && self.anchor_ahead(self.at + 1)
+        {
+            // Past another, on its left.
+            let targets = if finite {
+                self.subjects(true)
+            } else {
+                self.targets()
+            };
+            for t in targets.iter().copied() {
+                self.mentions[t].spec.state = Some(state);
+            }
+            self.last = targets;
+            self.begin(Prep::Rels(vec![RelationKind::LeftOf]), span);
+            return;
+        }
+        let state = if std::mem::take(&mut self.pre.not) {
+            if state == ObjectState::Moving {
+                ObjectState::Waiting
+            } else {
+                ObjectState::Moving
+            }
+        } else {
+            state
+        };
+        if prenominal && !finite {
+            self.pre.state = Some(state);
+            self.pre.cover(span);
+            return;
+        }
+        self.flush();
+        let targets = if finite || self.after_is() {
+            self.subjects(true)
+        } else {
+            self.targets()
+        };
+        if targets.is_empty() {
+            if !self.ego_subject {
+                self.fronted_state = Some(state);
+            }
+            return;
+        }
+        // "waiting to turn left"
+        let aim = self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to");
+        let stands = |t: &usize| {
+            let state = self.mentions[*t].spec.state;
+            matches!(state, Some(ObjectState::Waiting | ObjectState::Parked))
+        };
+        if aim && targets.iter().any(stands) {
+            return;
+        }
+        for t in targets.iter().copied() {
+            let m = &mut self.mentions[t];
+            m.spec.state = Some(state);
+            if !m.spec.attributes.contains(&item.words) && item.words.len() > 3 {
+                m.spec.attributes.push(item.words.clone());
+            }
+        }
+        if finite && !self.relative {
+            self.last = targets;
+        }
+        self.chain = false;
+    }
+
+    pub(super) fn color(&mut self, color: &str, prenominal: bool, span: Span) {
+        if prenominal {
+            self.pre.color = Some(color.to_string());
+            self.pre.cover(span);
+            return;
+        }
+        let targets = if self.after_is() {
+            self.subjects(true)
+        } else {
+            self.targets()
+        };
+        if targets.is_empty() {
+            self.pre.color = Some(color.to_string());
+            self.pre.cover(span);
+        }
+        for t in targets {
+            self.mentions[t].spec.color = Some(color.to_string());
+        }
+    }
+}

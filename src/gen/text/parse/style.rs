@@ -1,0 +1,195 @@
+//! Places, kinds of road, time and weather.
+
+use super::super::description::{Anchor, Became, Environment, Road, TimeOfDay, Weather};
+use super::super::mention::{Pre, Prep};
+use super::super::tag::{Item, Tag};
+use super::super::tokens::Span;
+use super::Parser;
+use crate::scene::graph::{LaneRole, RelationKind};
+
+impl Parser<'_> {
+    pub(super) fn place(&mut self, anchor: Anchor, road: Option<Road>, item: &Item) {
+        let span = item.span;
+        let own = item.words.starts_with("its ") || item.words.starts_with("their ") || item.words.starts_with("his ");
+        let against = |t: &usize| {
+            let relations = &self.mentions[*t].spec.relations;
+            relations.iter().any(|r| r.relation == RelationKind::OppositeDirection)
+        };
+        if own && self.pending.is_some() && self.targets().iter().any(against) {
+            self.pending = None; // its own lane is the oncoming one
+            return;
+        }
+        let not = std::mem::take(&mut self.pre.not);
+        let definite = self.pre.article == Some(true);
+        self.pre = Pre::default();
+        if not && self.pending.is_none() {
+            match anchor {
+                Anchor::Crossing => self.d().road.no_crossing = true,
+                Anchor::Lane(LaneRole::Sidewalk) => self.d().road.no_sidewalk = true,
+                Anchor::Junction => self.d().road.kind = Some(Road::Straight),
+                _ => {
+                    self.unread(span, Some("a road without it cannot be made".into()));
+                    return;
+                }
+            }
+            self.phrase(span, Became::Road, &format!("none: {}", item.words));
+            return;
+        }
+        // What must be there for the place to be.
+        match anchor {
+            Anchor::Crossing => self.d().road.crossing = true,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk) => {
+                self.d().road.sidewalk = true
+            }
+            _ => {}
+        }
+        if let Some(kind) = road {
+            let lamp = item.words.contains("light")
+                || item.words.contains("sign")
+                || item.words.contains("line")
+                || item.words.contains("signal");
+            let wish = &mut self.reading.description.road.kind;
+            // "traffic light" does not turn a t-junction into crossroads.
+            if wish.is_none() || (!lamp && *wish != Some(Road::Roundabout) && *wish != Some(Road::TJunction))
+            {
+                *wish = Some(kind);
+            }
+        }
+        if self.pending.is_some() {
+            let fronts = self.head.is_empty() && !(self.ego_subject && !self.last.is_empty());
+            let next_noun = self.noun_ahead(self.at + 1)
+                || matches!(
+                    self.item(self.at + 1).map(|i| i.tag),
+                    Some(Tag::Comma | Tag::Mark)
+                );
+            let vague = matches!(anchor, Anchor::Lane(LaneRole::Road))
+                || (road.is_some() && !definite && !matches!(anchor, Anchor::Lane(LaneRole::Carpark)));
+            let plain = self
+                .pending
+                .as_ref()
+                .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
+            if fronts && plain && (vague || !next_noun) {
+                // "On a busy street, ..." sets the stage and says nothing of one object.
+                self.pending = None;
+                self.phrase(span, Became::Road, &item.words);
+            } else {
+                if road.is_some() {
+                    self.phrase(span, Became::Road, &item.words);
+                }
+                self.anchor(anchor, span);
+            }
+            return;
+        }
+        let opened = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.tag, super::super::tag::Tag::Comma | super::super::tag::Tag::Mark));
+        if opened && self.ends(self.at + 1) && !self.head.is_empty() && !matches!(anchor, Anchor::Lane(LaneRole::Road)) {
+            // "Ped 2: left pavement", "a van, left lane, 20 m ahead"
+            self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+            self.anchor(anchor, span);
+            return;
+        }
+        if road.is_some() || matches!(anchor, Anchor::Crossing | Anchor::Lane(LaneRole::Sidewalk)) {
+            self.phrase(span, Became::Road, &item.words);
+        }
+        self.topic = Some((anchor, span));
+    }
+
+    pub(super) fn road_kind(&mut self, road: Road, environment: Option<Environment>, span: Span) {
+        let not = std::mem::take(&mut self.pre.not);
+        self.pre = Pre::default();
+        self.drop_pending();
+        if not {
+            self.unread(span, Some("which road it is not, is not read".into()));
+            return;
+        }
+        let wish = &mut self.reading.description.road.kind;
+        // A junction on a highway is a junction.
+        let keeps = matches!(
+            wish,
+            Some(Road::Intersection | Road::TJunction | Road::Roundabout | Road::Parking)
+        ) && matches!(road, Road::Straight | Road::Suburb);
+        if !keeps {
+            *wish = Some(road);
+        }
+        if let Some(environment) = environment {
+            self.d().environment.get_or_insert(environment);
+        }
+        self.phrase(span, Became::Road, &format!("road: {}", road.name()));
+        if self.pending.is_some() {
+            self.pending = None;
+        }
+        self.topic = Some((Anchor::Lane(LaneRole::Road), span));
+    }
+
+    pub(super) fn time(&mut self, time: TimeOfDay, span: Span) {
+        let not = std::mem::take(&mut self.pre.not);
+        self.drop_pending();
+        self.pre = Pre::default();
+        if not {
+            self.unread(span, Some("when it is not, is not read".into()));
+            return;
+        }
+        let old = self.reading.description.time_of_day;
+        match old {
+            Some(old) if old != time => {
+                // "late afternoon sun at night": the first one stays.
+                let note = format!(
+                    "{} and {} were said: it is {}",
+                    old.name(),
+                    time.name(),
+                    old.name()
+                );
+                if !(old == TimeOfDay::Day || time == TimeOfDay::Day) {
+                    self.reading.notes.push(note);
+                } else if old == TimeOfDay::Day {
+                    self.d().time_of_day = Some(time);
+                }
+            }
+            _ => self.d().time_of_day = Some(time),
+        }
+        self.phrase(span, Became::Time, &format!("time: {}", time.name()));
+    }
+
+    pub(super) fn weather(&mut self, weather: Weather, span: Span) {
+        let not = std::mem::take(&mut self.pre.not) || self.not_goes_on;
+        self.drop_pending();
+        self.pre = Pre::default();
+        if not {
+            let dry = if weather == Weather::Clear {
+                Weather::Overcast
+            } else {
+                Weather::Clear
+            };
+            if self.reading.description.weather.is_none() {
+                self.d().weather = Some(dry);
+            }
+            self.phrase(span, Became::Weather, &format!("weather: not {}", weather.name()));
+            return;
+        }
+        match self.reading.description.weather {
+            Some(old) if old != weather => {
+                let rank = |w: Weather| match w {
+                    Weather::Sandstorm => 5,
+                    Weather::Snow => 4,
+                    Weather::Rain => 3,
+                    Weather::Fog => 2,
+                    Weather::Overcast => 1,
+                    Weather::Clear => 0,
+                };
+                let kept = if rank(weather) > rank(old) { weather } else { old };
+                if rank(old).min(rank(weather)) > 1 || kept == Weather::Clear {
+                    self.reading.notes.push(format!(
+                        "{} and {} were said: pictures show {}",
+                        old.name(),
+                        weather.name(),
+                        kept.name()
+                    ));
+                }
+                self.d().weather = Some(kept);
+            }
+            _ => self.d().weather = Some(weather),
+        }
+        self.phrase(span, Became::Weather, &format!("weather: {}", weather.name()));
+    }
+}
