@@ -159,9 +159,6 @@ fn main() {
             1
         },
     );
-    println!(
-        "of {} pixels {} were drawn",
-        PANE[0] * PANE[1],
-        viewport.drawn_px()
-    );
+    let [_, _, w, h] = viewport.drawn_rect();
+    println!("of {} pixels {} were drawn", PANE[0] * PANE[1], w * h);
 }

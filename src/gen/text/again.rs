@@ -215,21 +215,35 @@ impl Parser<'_> {
 
     /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
     pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
-        if self.edits || self.pending.is_some() || !self.fronted.is_empty() || pre.count.is_some_and(|c| c.n > 1) {
+        if self.edits
+            || self.pending.is_some()
+            || !self.fronted.is_empty()
+            || pre.count.is_some_and(|c| c.n > 1)
+        {
             return false;
         }
         let mut before = self.at;
         while before > 0
             && matches!(
                 self.sense(before - 1),
-                Some(Sense::Article(false) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(_, false))
+                Some(
+                    Sense::Article(false)
+                        | Sense::Color(_)
+                        | Sense::Size(_)
+                        | Sense::Attribute(_)
+                        | Sense::State(_, false)
+                )
             )
         {
             before -= 1;
         }
-        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let lead = before
+            .checked_sub(1)
+            .and_then(|i| self.item(i))
+            .map_or("", |i| i.words.as_str());
         let article = pre.article == Some(false);
-        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
+        let is =
+            matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
             return false;
         };
@@ -279,7 +293,10 @@ impl Parser<'_> {
             return false;
         }
         self.mentions[i].gone = true;
-        let (classes, whole) = (self.mentions[i].classes.to_vec(), self.mentions[i].spec.span.to(span));
+        let (classes, whole) = (
+            self.mentions[i].classes.to_vec(),
+            self.mentions[i].spec.span.to(span),
+        );
         self.absent(classes, None, whole);
         self.head.retain(|h| *h != i);
         self.last.retain(|h| *h != i);
@@ -295,13 +312,17 @@ impl Parser<'_> {
         let last = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
-        told && self.group_behind().is_none() && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
+        told && self.group_behind().is_none()
+            && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
     }
 
     /// "the left lane has two cars": what follows stands there. True if it was that.
     pub(super) fn place_has(&mut self, item: &super::tag::Item) -> bool {
         use crate::scene::graph::LaneRole as L;
-        let Some((anchor, span)) = self.topic.filter(|_| self.head.is_empty() && self.pending.is_none()) else {
+        let Some((anchor, span)) = self
+            .topic
+            .filter(|_| self.head.is_empty() && self.pending.is_none())
+        else {
             return false;
         };
         let fits = match anchor {
@@ -313,7 +334,14 @@ impl Parser<'_> {
             return false;
         }
         self.topic = None;
-        self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+        self.begin(
+            if anchor == Anchor::Junction {
+                Prep::At
+            } else {
+                Prep::In
+            },
+            span,
+        );
         self.anchor(anchor, span);
         true
     }

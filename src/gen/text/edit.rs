@@ -525,7 +525,18 @@ impl Editor<'_> {
                 let mut spec = spec.clone();
                 let said = c.text.to_lowercase();
                 // The other side is that on which it is not.
-                if b.center_m.y > 0.0 && ["opposite", "other side", "far side", "across the", "other pavement", "other sidewalk"].iter().any(|w| said.contains(w)) {
+                if b.center_m.y > 0.0
+                    && [
+                        "opposite",
+                        "other side",
+                        "far side",
+                        "across the",
+                        "other pavement",
+                        "other sidewalk",
+                    ]
+                    .iter()
+                    .any(|w| said.contains(w))
+                {
                     spec.relations.iter_mut().for_each(mirrored);
                 }
                 let d = Description {
@@ -535,11 +546,27 @@ impl Editor<'_> {
                 self.move_to(b, &d);
                 let strip = |r: &super::description::Stated| {
                     use super::description::Anchor::Lane;
-                    let aside = matches!(r.anchor, Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark));
+                    let aside = matches!(
+                        r.anchor,
+                        Lane(
+                            LaneRole::Roadside
+                                | LaneRole::LeftRoadside
+                                | LaneRole::RightRoadside
+                                | LaneRole::Carpark
+                        )
+                    );
                     aside && matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
                 };
-                let parks = said.contains("park") || d.foreground.first().is_some_and(|o| o.relations.iter().any(strip));
-                if let Some(moved) = self.boxes.get(&id).copied().filter(|m| parks && m.class.is_vehicle() && m.velocity_mps.length() > 0.0) {
+                let parks = said.contains("park")
+                    || d.foreground
+                        .first()
+                        .is_some_and(|o| o.relations.iter().any(strip));
+                if let Some(moved) = self
+                    .boxes
+                    .get(&id)
+                    .copied()
+                    .filter(|m| parks && m.class.is_vehicle() && m.velocity_mps.length() > 0.0)
+                {
                     // Who stands at the roadside does not drive.
                     let object = SceneBox {
                         velocity_mps: DVec2::ZERO,
@@ -623,10 +650,15 @@ impl Editor<'_> {
                 .map
                 .nearest(b.center_m.truncate())
                 .map_or(0.0, |l| l.dir.to_angle()),
-            Some(super::edit_grammar::Turn::WithEgo) => self
-                .map
-                .nearest(b.center_m.truncate())
-                .map_or(0.0, |l| if l.dir.x < 0.0 { (-l.dir).to_angle() } else { l.dir.to_angle() }),
+            Some(super::edit_grammar::Turn::WithEgo) => {
+                self.map.nearest(b.center_m.truncate()).map_or(0.0, |l| {
+                    if l.dir.x < 0.0 {
+                        (-l.dir).to_angle()
+                    } else {
+                        l.dir.to_angle()
+                    }
+                })
+            }
             None => {
                 self.note(format!("{:?}: how far to turn was not understood", c.text));
                 return;
@@ -643,7 +675,9 @@ impl Editor<'_> {
     fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         let wanted = match &c.by {
-            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => by.spec.count.n as usize,
+            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => {
+                by.spec.count.n as usize
+            }
             _ => ids.len(),
         };
         for id in ids.iter().skip(wanted.max(1)) {
@@ -655,7 +689,8 @@ impl Editor<'_> {
         if let Some(by) = c.by.as_ref().filter(|_| wanted > ids.len()) {
             let mut spec = by.spec.clone();
             spec.count = super::description::Count::exactly((wanted - ids.len()) as u32);
-            spec.relations.retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            spec.relations
+                .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
             self.add(&Description {
                 foreground: vec![spec],
                 ..Description::default()

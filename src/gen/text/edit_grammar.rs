@@ -282,8 +282,19 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // "the bus further ahead": what is there already is not added.
     let there_already = verb.is_none()
         && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
-        && matches!(items.get(1..4).and_then(|w| w.iter().find(|i| !is_adjective(i))).map(|i| i.tag), Some(Tag::Is(Sense::Noun(..))));
-    let placed = items.iter().any(|i| matches!(i.tag, Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)));
+        && matches!(
+            items
+                .get(1..4)
+                .and_then(|w| w.iter().find(|i| !is_adjective(i)))
+                .map(|i| i.tag),
+            Some(Tag::Is(Sense::Noun(..)))
+        );
+    let placed = items.iter().any(|i| {
+        matches!(
+            i.tag,
+            Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
+        )
+    });
     let mut verb = match verb {
         None if only => Verb::Keep,
         None if there_already && placed => Verb::Move,
@@ -295,7 +306,19 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             if definite_next
                 && !matches!(
                     first,
-                    "add" | "insert" | "include" | "create" | "generate" | "show" | "bring" | "introduce" | "spawn" | "append" | "give" | "duplicate" | "drop"
+                    "add"
+                        | "insert"
+                        | "include"
+                        | "create"
+                        | "generate"
+                        | "show"
+                        | "bring"
+                        | "introduce"
+                        | "spawn"
+                        | "append"
+                        | "give"
+                        | "duplicate"
+                        | "drop"
                 ) =>
         {
             Verb::Move
@@ -419,7 +442,14 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
 fn is_adjective(item: &Item) -> bool {
     matches!(
         item.tag,
-        Tag::Is(Sense::Article(_) | Sense::State(_, false) | Sense::Size(_) | Sense::Color(_) | Sense::Attribute(_) | Sense::Count(_)) | Tag::Number(_)
+        Tag::Is(
+            Sense::Article(_)
+                | Sense::State(_, false)
+                | Sense::Size(_)
+                | Sense::Color(_)
+                | Sense::Attribute(_)
+                | Sense::Count(_)
+        ) | Tag::Number(_)
     )
 }
 

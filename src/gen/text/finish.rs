@@ -42,10 +42,18 @@ fn split_sides(mentions: &mut Vec<Mention>) {
 fn distance_ahead(spec: &mut ObjectSpec) {
     use RelationKind as R;
     let sided = spec.relations.iter().any(|r| {
-        r.anchor == Anchor::Ego && !matches!(r.relation, R::Near | R::OppositeDirection | R::SameDirection | R::Facing | R::FacingAway)
+        r.anchor == Anchor::Ego
+            && !matches!(
+                r.relation,
+                R::Near | R::OppositeDirection | R::SameDirection | R::Facing | R::FacingAway
+            )
     });
     let lane = spec.relations.iter().any(|r| {
-        r.relation == R::On && matches!(r.anchor, Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming))
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
     });
     for r in spec.relations.iter_mut().filter(|_| lane && !sided) {
         if r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d > 6.0) {

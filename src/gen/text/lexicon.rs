@@ -383,7 +383,9 @@ fn build() -> Table {
     for (state, list) in verbs::DOING {
         for f in words(list).map(verbs::forms) {
             put(&f.ing, Sense::State(*state, false));
-            [&f.base, &f.s, &f.past].map(|w| put(w, Sense::State(*state, true)));
+            for w in [&f.base, &f.s, &f.past] {
+                put(w, Sense::State(*state, true));
+            }
             for have in ["has", "have", "had", "has just", "have just", "having"] {
                 put(&format!("{have} {}", f.participle), Sense::State(*state, true));
             }
@@ -409,9 +411,17 @@ fn build() -> Table {
         }
     }
     for f in words(verbs::TOWING).map(verbs::forms) {
-        put(&format!("{} by", f.participle), Sense::Rel(RelationKind::Following));
-        put(&format!("{} behind", f.participle), Sense::Rel(RelationKind::Following));
-        [&f.s, &f.ing, &f.past].map(|w| put(w, Sense::Reversed(RelationKind::Following)));
+        put(
+            &format!("{} by", f.participle),
+            Sense::Rel(RelationKind::Following),
+        );
+        put(
+            &format!("{} behind", f.participle),
+            Sense::Rel(RelationKind::Following),
+        );
+        for w in [&f.s, &f.ing, &f.past] {
+            put(w, Sense::Reversed(RelationKind::Following));
+        }
     }
     words(verbs::JOINED).for_each(|w| put(w, Sense::Rel(RelationKind::Following)));
     for (verb, list) in edits::VERBS {

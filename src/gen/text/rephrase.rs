@@ -265,8 +265,14 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
 /// "whatever is behind us, make it a bus" and "the car behind us: drop it": the verb first.
 fn topic(body: &[Token]) -> Option<Vec<Token>> {
     let first = body.first()?;
-    let open = matches!(first.text.as_str(), "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who");
-    let definite = matches!(first.text.as_str(), "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my");
+    let open = matches!(
+        first.text.as_str(),
+        "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who"
+    );
+    let definite = matches!(
+        first.text.as_str(),
+        "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my"
+    );
     if !open && !definite {
         return None;
     }
@@ -281,7 +287,10 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
     let mut np: Vec<Token> = Vec::new();
     if open {
         let is = body[..cut].iter().position(|t| {
-            matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was")
+            matches!(
+                t.text.as_str(),
+                "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was"
+            )
         })?;
         let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
         np.push(word("the", first));
@@ -290,8 +299,12 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
     } else {
         np.extend_from_slice(&body[..cut]);
     }
-    let it = (cut + 1..body.len())
-        .find(|i| matches!(body[*i].text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))?;
+    let it = (cut + 1..body.len()).find(|i| {
+        matches!(
+            body[*i].text.as_str(),
+            "it" | "them" | "him" | "her" | "that" | "this"
+        )
+    })?;
     let mut out = body[cut + 1..it].to_vec();
     out.extend(np);
     out.extend_from_slice(&body[it + 1..]);
@@ -367,7 +380,8 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     let mut rest = strip(body, POLITE);
     while let Some((last, before)) = rest.split_last()
         && before.len() > 1
-        && (last.kind == TokenKind::Comma || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
+        && (last.kind == TokenKind::Comma
+            || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
     {
         rest = before;
     }
@@ -422,10 +436,16 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     }
     // "have a cyclist follow the bus", "let somebody else join the pedestrian"
     let fresh = rest.get(1).is_some_and(|t| {
-        matches!(t.text.as_str(), "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three") || number(t).is_some()
+        matches!(
+            t.text.as_str(),
+            "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three"
+        ) || number(t).is_some()
     });
     let does = rest.iter().skip(2).take(6).any(|t| {
-        matches!(sense(t), Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)) || is_verb(t)
+        matches!(
+            sense(t),
+            Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)
+        ) || is_verb(t)
     });
     if matches!(first.text.as_str(), "let" | "have" | "make" | "get") && fresh && does {
         return (with_verb("add", first, &rest[1..]), None);

@@ -167,8 +167,17 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             }
             // "straight at us", not "a straight road"
             ("straight", _)
-                if !before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Article(_) | Sense::Attribute(_) | Sense::Size(_))))
-                    && !next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_)))) =>
+                if !before.is_some_and(|b| {
+                    matches!(
+                        b.tag,
+                        Tag::Is(Sense::Article(_) | Sense::Attribute(_) | Sense::Size(_))
+                    )
+                }) && !next.is_some_and(|n| {
+                    matches!(
+                        n.tag,
+                        Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_))
+                    )
+                }) =>
             {
                 out.push(Item {
                     tag: Tag::Is(Sense::Filler),

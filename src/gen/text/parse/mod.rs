@@ -178,7 +178,10 @@ impl<'a> Parser<'a> {
                         Prep::Rels(kinds) if f.anchor == Anchor::Ego => !kinds.iter().any(|k| {
                             matches!(
                                 k,
-                                RelationKind::Following | RelationKind::Blocking | RelationKind::Crossing | RelationKind::Facing
+                                RelationKind::Following
+                                    | RelationKind::Blocking
+                                    | RelationKind::Crossing
+                                    | RelationKind::Facing
                             )
                         }),
                         _ => true,

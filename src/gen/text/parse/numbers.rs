@@ -49,7 +49,12 @@ impl Parser<'_> {
             self.part(false, count, span);
             return;
         }
-        if next_is_part && !self.edits && self.pending.is_none() && count.is_exact() && self.one_more_like_it() {
+        if next_is_part
+            && !self.edits
+            && self.pending.is_none()
+            && count.is_exact()
+            && self.one_more_like_it()
+        {
             // "a car in front, one behind"
             self.again(count, span);
             return;

@@ -10,10 +10,14 @@ use crate::scene::graph::{LaneRole, RelationKind};
 impl Parser<'_> {
     pub(super) fn place(&mut self, anchor: Anchor, road: Option<Road>, item: &Item) {
         let span = item.span;
-        let own = item.words.starts_with("its ") || item.words.starts_with("their ") || item.words.starts_with("his ");
+        let own = item.words.starts_with("its ")
+            || item.words.starts_with("their ")
+            || item.words.starts_with("his ");
         let against = |t: &usize| {
             let relations = &self.mentions[*t].spec.relations;
-            relations.iter().any(|r| r.relation == RelationKind::OppositeDirection)
+            relations
+                .iter()
+                .any(|r| r.relation == RelationKind::OppositeDirection)
         };
         if own && self.pending.is_some() && self.targets().iter().any(against) {
             self.pending = None; // its own lane is the oncoming one
@@ -80,12 +84,26 @@ impl Parser<'_> {
             }
             return;
         }
-        let opened = self
-            .item(self.at.wrapping_sub(1))
-            .is_some_and(|b| matches!(b.tag, super::super::tag::Tag::Comma | super::super::tag::Tag::Mark));
-        if opened && self.ends(self.at + 1) && !self.head.is_empty() && !matches!(anchor, Anchor::Lane(LaneRole::Road)) {
+        let opened = self.item(self.at.wrapping_sub(1)).is_some_and(|b| {
+            matches!(
+                b.tag,
+                super::super::tag::Tag::Comma | super::super::tag::Tag::Mark
+            )
+        });
+        if opened
+            && self.ends(self.at + 1)
+            && !self.head.is_empty()
+            && !matches!(anchor, Anchor::Lane(LaneRole::Road))
+        {
             // "Ped 2: left pavement", "a van, left lane, 20 m ahead"
-            self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+            self.begin(
+                if anchor == Anchor::Junction {
+                    Prep::At
+                } else {
+                    Prep::In
+                },
+                span,
+            );
             self.anchor(anchor, span);
             return;
         }

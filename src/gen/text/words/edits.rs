@@ -37,7 +37,10 @@ pub const VERBS: &[(Verb, &str)] = &[
         Verb::Move,
         "guide|steer|lead|haul over|lug|hoist|transport|transpose|migrate|pull back|pull forward|push back|push forward|push over|set back|move over|move up|move back|shuffle|edge|ease|inch|walk|reseat|re position|re locate|park the|park that|park my|park both|pop over|shove over|nudge over|rearrange|draw|convey|ship|usher|drive|drive over|direct|hurl|fling|haul|manoeuvre|maneuver|scoot over|dislocate|swap places with|put the|place the|put back|put both|put that|put my|set the|move|shift|push|shove|budge|slide over|scoot|roll|place over|carry|take across|swing|back up|pull|slide|drag|nudge|relocate|displace|bring|transfer|translate|reposition|send|advance",
     ),
-    (Verb::Turn, "pivot|point|aim|revolve|twist|about face|orientate|redirect|realign|align|angle|wheel round|wheel around|turn round|turn around|spin round|spin around|reverse|turn|rotate|spin|swivel|face|flip|reorient|orient"),
+    (
+        Verb::Turn,
+        "pivot|point|aim|revolve|twist|about face|orientate|redirect|realign|align|angle|wheel round|wheel around|turn round|turn around|spin round|spin around|reverse|turn|rotate|spin|swivel|face|flip|reorient|orient",
+    ),
     (
         Verb::Replace,
         "make way for|change over|change into|turn into|upgrade|downgrade|switch for|supplant|supersede|swap over|trade in|barter|make into|mutate|transmute|reshape|refashion|remodel|rework|redo|metamorphose|interchange|alternate|replace|swap|substitute|trade|switch out|change out|morph|exchange|convert|transform|swap out",
@@ -54,7 +57,10 @@ pub const VERBS: &[(Verb, &str)] = &[
         Verb::Make,
         "render|force|order|tell|ask|cause|allow|permit|switch over|switch to|modify|edit|tweak|amend|revise|turn on|switch on|put on|make|set|change|switch|let|turn it|make it|set it|get|i want it|alter|adjust",
     ),
-    (Verb::Clear, "sweep|tidy up|tidy|unblock|open up|free up|clear|empty out|clear out|clean up|vacate"),
+    (
+        Verb::Clear,
+        "sweep|tidy up|tidy|unblock|open up|free up|clear|empty out|clear out|clean up|vacate",
+    ),
 ];
 
 /// Which one.
