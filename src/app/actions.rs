@@ -147,7 +147,7 @@ bookmarks!(1, 2, 3, 4, 5, 6, 7, 8, 9);
 /// Every action.
 pub const ACTIONS: &[ActionDef] = &[
     action(Tools, "select_tool", "Select", "V", |_| {
-        Some(Command::Tool(Tool::Select))
+        Some(Command::Tools(ToolCommand::Lasso(false)))
     }),
     action(Tools, "brush_tool", "Brush", "B", |_| {
         Some(Command::Tools(ToolCommand::Shape(PaintShape::Stroke)))

@@ -25,6 +25,7 @@ use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
 use super::keys;
+use super::keys::Hands;
 use super::live::{Advice, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
@@ -170,7 +171,7 @@ pub struct SceneloomApp {
     pub keymap: Keymap,
     shortcuts: Shortcuts,
     kept: (Option<PathBuf>, Settings, f64), // file of the settings, what it holds, when it was compared, s
-    finished: Option<Arc<GenResult>>,       // came during a drag
+    finished: Option<(Arc<GenResult>, Option<&'static str>)>, // came during a drag, and the label if it is a step
     preview: Option<(SceneRev, Arc<Scene>)>,
     title: String,
     center: Rect,
@@ -319,9 +320,9 @@ impl SceneloomApp {
             }
         }
         if !self.document.is_dragging()
-            && let Some(result) = self.finished.take()
+            && let Some((result, own_step)) = self.finished.take()
         {
-            self.adopt(&result);
+            self.adopt(&result, own_step);
         }
         self.take_opened(ctx);
         if let Some((purpose, path)) = self.dialogs.poll() {
@@ -419,7 +420,9 @@ impl SceneloomApp {
             }
             JobUpdate::Finished(result) => {
                 let now_s = self.now_s();
+                let mut own_step = None;
                 if let Some(running) = self.live.ended(event.id) {
+                    own_step = running.own_step();
                     let settled_s = (running.purpose == Purpose::Edit).then_some(now_s - running.edited_s);
                     self.perf.job_ended(now_s, settled_s, "finished");
                     let full = running.purpose == Purpose::Full;
@@ -444,9 +447,9 @@ impl SceneloomApp {
                     }
                 }
                 if self.document.is_dragging() {
-                    self.finished = Some(result);
+                    self.finished = Some((result, own_step));
                 } else {
-                    self.adopt(&result);
+                    self.adopt(&result, own_step);
                 }
             }
             JobUpdate::Failed(error) => {
@@ -476,13 +479,20 @@ impl SceneloomApp {
     }
 
     /// Takes a result into the document, if it still shows the state it was made for.
-    fn adopt(&mut self, result: &GenResult) {
+    fn adopt(&mut self, result: &GenResult, own_step: Option<&'static str>) {
         self.preview = None;
-        if self
-            .document
-            .adopt(result.rev(), result.occupancy.clone())
-            .is_ok()
-        {
+        // What the user asked to be drawn anew is a step of its own; what follows an edit belongs to that edit.
+        let adopted = match own_step {
+            Some(label) => self
+                .document
+                .adopt_as_step(label, result.rev(), result.occupancy.clone())
+                .is_ok(),
+            None => self
+                .document
+                .adopt(result.rev(), result.occupancy.clone())
+                .is_ok(),
+        };
+        if adopted {
             let now_s = self.now_s();
             let note = self.receipt.as_ref().map_or_else(String::new, Receipt::text);
             let label = self.document.undo_label().unwrap_or("Generated");
@@ -573,9 +583,12 @@ impl SceneloomApp {
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
         if !dialog && !self.state.holding_before {
-            let flying =
-                ui.input(|i| i.pointer.secondary_down()) && self.state.hovered_pane == Some(Pane::View3d);
-            keys::commands(ui.ctx(), &self.keymap, &mut self.state, flying, &mut commands);
+            let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
+            let hands = Hands {
+                flying: secondary && self.state.hovered_pane == Some(Pane::View3d),
+                dragging: primary && (self.canvas.is_dragging() || self.view3d.is_dragging()),
+            };
+            keys::commands(ui.ctx(), &self.keymap, &mut self.state, hands, &mut commands);
         }
         let any = !commands.is_empty();
         let before = self.document.scene().rev;

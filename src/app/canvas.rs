@@ -57,7 +57,8 @@ impl ScreenMap {
 /// The bird's-eye view's own state.
 pub struct Canvas {
     center_m: DVec2,
-    scale: f64, // points per metre; 0 before the first fit
+    scale: f64,                 // points per metre; 0 before the first fit
+    fitted: Option<egui::Vec2>, // the pane that all of the grid was fitted into, until the user moves the map
     held: Held,
     /// What the pointer is doing.
     pub(super) gesture: Gesture,
@@ -95,11 +96,19 @@ const GROUND: Color32 = Color32::from_rgb(29, 32, 37);
 /// Half the extent of the grid, m.
 const HALF_M: f64 = GridSpec::MAX_M[0];
 
+impl Canvas {
+    /// True while the pointer draws, moves or marks something.
+    pub fn is_dragging(&self) -> bool {
+        !matches!(self.gesture, Gesture::None | Gesture::Ignored)
+    }
+}
+
 impl Default for Canvas {
     fn default() -> Self {
         Self {
             center_m: DVec2::ZERO,
             scale: 0.0,
+            fitted: None,
             held: Held::default(),
             gesture: Gesture::None,
             map: None,
@@ -122,7 +131,7 @@ impl Canvas {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Bird's-eye view"));
-        if self.scale == 0.0 {
+        if self.scale == 0.0 || self.fitted.is_some_and(|size| size != rect.size()) {
             self.frame_all(rect);
         }
         let steps = pointer::steps(ui, &response);
@@ -164,12 +173,14 @@ impl Canvas {
         let side = f64::from(rect.width().min(rect.height()).max(80.0));
         self.center_m = DVec2::ZERO;
         self.scale = side / (2.0 * HALF_M + 4.0);
+        self.fitted = Some(rect.size());
     }
 
     /// Brings a box into the middle.
     pub fn frame_box(&mut self, b: &SceneBox) {
         self.center_m = b.center_m.truncate();
         self.scale = self.scale.max(14.0);
+        self.fitted = None;
     }
 
     /// Point in the middle, ego frame, m, and points per metre; 0 before the first picture.
@@ -182,6 +193,7 @@ impl Canvas {
         if center_m.is_finite() && scale.is_finite() && scale > 0.0 {
             self.center_m = center_m;
             self.scale = scale.clamp(*SCALE.start(), *SCALE.end());
+            self.fitted = None;
         }
     }
 
@@ -213,6 +225,7 @@ impl Canvas {
                 let under = map.to_ego(pointer);
                 let scale = self.scale * f64::from(scroll / 220.0).exp();
                 self.scale = scale.clamp(*SCALE.start(), *SCALE.end());
+                self.fitted = None;
                 // What is under the pointer stays there.
                 self.center_m = under + (self.center_m - under) * (map.scale / self.scale);
             }
@@ -225,6 +238,7 @@ impl Canvas {
         };
         if let Some((_, d)) = self.held.travel(steps, wants) {
             self.center_m += DVec2::new(f64::from(d.y), f64::from(d.x)) / self.scale;
+            self.fitted = None;
         }
         let limit = DVec2::splat(HALF_M * 1.5);
         self.center_m = self.center_m.clamp(-limit, limit);

@@ -178,7 +178,7 @@ pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, look: BoxLook) {
             Stroke::new(1.8, theme::rgb(color.map(|c| c.saturating_add(40)))),
         ),
         BoxLook::Selected => (0.62, Stroke::new(2.0, Color32::WHITE)),
-        BoxLook::Chosen => (0.62, Stroke::new(2.0, theme::accent())),
+        BoxLook::Chosen => (0.8, Stroke::new(2.0, Color32::WHITE)),
         BoxLook::Ghost => (0.28, Stroke::new(1.3, theme::rgba(color, 0.8))),
     };
     painter.add(Shape::convex_polygon(corners, theme::rgba(color, opacity), edge));

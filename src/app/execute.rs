@@ -11,7 +11,7 @@ use crate::scene::SceneBox;
 use super::application::{Next, Opening, SceneloomApp, one_line};
 use super::command::Command;
 use super::compare::CompareMode;
-use super::dock::Dock;
+use super::dock::{Dock, Workspace};
 use super::file_dialogs::Purpose;
 use super::open;
 use super::panels::objects::neighbour;
@@ -157,6 +157,14 @@ impl SceneloomApp {
             Command::Workspace(workspace) => {
                 self.settings.workspace = workspace;
                 self.dock = Dock::workspace(workspace);
+                // Its tool comes to hand, unless one of the kind is there already.
+                self.state.tool = match (workspace, self.state.tool) {
+                    (Workspace::Paint, Tool::Brush | Tool::Region) => self.state.tool,
+                    (Workspace::Paint, _) => Tool::Brush,
+                    (Workspace::Voxels, _) => Tool::Voxel,
+                    (_, Tool::Brush | Tool::Voxel) => Tool::Select,
+                    (_, tool) => tool,
+                };
             }
             Command::PlaceClass(class) => {
                 self.state.tool = Tool::AddBox;

@@ -8,12 +8,21 @@ use super::command::Command;
 use super::keymap::{Chord, Keymap};
 use super::state::{Pane, Tool, UiState};
 
+/// What the pointer is doing: some keys wait for its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hands {
+    /// Flies in the 3D view, where letters steer.
+    pub flying: bool,
+    /// Drags something with the button down: only what may be repeated (the size of the brush) and Escape count.
+    pub dragging: bool,
+}
+
 /// Commands of the keys pressed in this frame.
 pub fn commands(
     ctx: &Context,
     keymap: &Keymap,
     state: &mut UiState,
-    flying: bool,
+    hands: Hands,
     commands: &mut Vec<Command>,
 ) {
     if ctx.text_edit_focused() {
@@ -27,10 +36,10 @@ pub fn commands(
     } in pressed(ctx)
     {
         let chord = Chord::pressed(key, modifiers);
-        if flying && is_flight(key) && !chord.ctrl {
+        if hands.flying && is_flight(key) && !chord.ctrl {
             continue;
         }
-        if let Some(nudge) = nudge(chord, state) {
+        if let Some(nudge) = nudge(chord, state).filter(|_| !hands.dragging) {
             commands.push(nudge);
             continue;
         }
@@ -47,6 +56,9 @@ pub fn commands(
         let Some(action) = keymap.action(chord, applies).or_else(on_key) else {
             continue;
         };
+        if hands.dragging && !action.repeats && key != Key::Escape {
+            continue;
+        }
         if key == Key::Tab {
             drop_focus(ctx);
         }
@@ -140,7 +152,11 @@ mod tests {
             ..Default::default()
         };
         let (mut out, keymap) = (Vec::new(), Keymap::default());
-        let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, flying, &mut out));
+        let hands = Hands {
+            flying,
+            ..Hands::default()
+        };
+        let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, hands, &mut out));
         out
     }
 
@@ -163,6 +179,40 @@ mod tests {
         );
         of(Key::E, Modifiers::NONE, &mut state, false);
         assert!(state.erase);
+    }
+
+    #[test]
+    fn keys_wait_for_the_end_of_a_drag() {
+        let mut state = UiState {
+            selected: Some(BoxId(3)),
+            ..UiState::default()
+        };
+        let hands = Hands {
+            dragging: true,
+            ..Hands::default()
+        };
+        let pressed = |key, state: &mut UiState| {
+            let ctx = Context::default();
+            let event = egui::Event::Key {
+                key,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            };
+            let input = egui::RawInput {
+                events: vec![event],
+                ..Default::default()
+            };
+            let (mut out, keymap) = (Vec::new(), Keymap::default());
+            let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, hands, &mut out));
+            out
+        };
+        for key in [Key::X, Key::Z, Key::ArrowUp, Key::Delete] {
+            assert_eq!(pressed(key, &mut state), [], "{key:?}");
+        }
+        assert_eq!(pressed(Key::OpenBracket, &mut state), [Command::BrushSize(-1)]);
+        assert_eq!(pressed(Key::Escape, &mut state).len(), 1);
     }
 
     #[test]
@@ -196,7 +246,7 @@ mod tests {
             ..Default::default()
         };
         let _ = ctx.run_ui(input, |ui| {
-            commands(ui.ctx(), &keymap, &mut state, false, &mut out)
+            commands(ui.ctx(), &keymap, &mut state, Hands::default(), &mut out)
         });
         assert_eq!(out, [Command::CycleCompare]);
     }

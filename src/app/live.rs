@@ -5,9 +5,12 @@ use std::collections::VecDeque;
 
 use super::guard::{self, Pace, Pause};
 use crate::generation::job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
-use crate::generation::region::Region;
-use crate::scene::{Scene, SceneRev};
+use crate::generation::redraw::RedrawMask;
+use crate::generation::region::{CELLS, COLUMNS_PER_CELL, Region};
+use crate::scene::{GridSpec, Scene, SceneRev};
 
+/// Edge of a latent cell, m.
+const CELL_M: f64 = COLUMNS_PER_CELL as f64 * GridSpec::VOXEL_M;
 /// Runs up to this mean need no grace, s.
 const QUICK_S: f64 = 1.5;
 /// Wait after the last edit where runs are slower, s.
@@ -77,6 +80,17 @@ pub struct Running {
     pub extent_m: [f64; 2],
     /// Share of all columns that it redraws.
     pub share: f64,
+}
+
+impl Running {
+    /// What the result is called in the history, if it is a step of its own: it was asked for, and follows no edit.
+    pub fn own_step(&self) -> Option<&'static str> {
+        match (self.purpose, self.key.params.redraw.is_empty()) {
+            (Purpose::Full, _) => Some("Generate"),
+            (Purpose::Edit, false) => Some("Draw region anew"),
+            _ => None,
+        }
+    }
 }
 
 /// The scheduler.
@@ -218,11 +232,16 @@ impl Live {
     /// Notes that a job was submitted.
     pub fn submitted(&mut self, id: JobId, key: JobKey, now_s: f64) {
         let full = key.params.region == RegionMode::Full;
+        // What the user asks for now does not answer the last edit, which may be long ago.
+        let by_hand = full || self.paused.is_some() || !key.params.redraw.is_empty();
         let (purpose, extent_m, share) = match self.seen {
             Some((_, touched)) if !full && touched.is_empty && key.params.redraw.is_empty() => {
                 (Purpose::WarmUp, [0.0; 2], 0.0)
             }
-            Some((_, touched)) if !full => (Purpose::Edit, touched.extent_m, touched.share),
+            Some((_, touched)) if !full => {
+                let (extent_m, share) = with_redraw(&touched, &key.params.redraw);
+                (Purpose::Edit, extent_m, share)
+            }
             _ => (Purpose::Full, [80.0; 2], 1.0),
         };
         // A source that was drawn anew has to be inverted before it can be edited.
@@ -235,7 +254,7 @@ impl Live {
             key,
             purpose,
             submitted_s: now_s,
-            edited_s: if full { now_s } else { self.last_edit_s.max(0.0) },
+            edited_s: if by_hand { now_s } else { self.last_edit_s.max(0.0) },
             progress: None,
             extent_m,
             share,
@@ -276,6 +295,20 @@ impl Live {
         let mean_s = self.recent_s.iter().sum::<f64>() / self.recent_s.len().max(1) as f64;
         if mean_s <= QUICK_S { 0.0 } else { GRACE_S }
     }
+}
+
+/// Extent, m, and share of the columns of what an edit touches and of cells that are drawn anew: of both together at
+/// most.
+fn with_redraw(touched: &Touched, redraw: &RedrawMask) -> ([f64; 2], f64) {
+    let mut extent_m = touched.extent_m;
+    for axis in 0..2 {
+        let along = || redraw.cells().map(|cell| cell[axis]);
+        if let (Some(low), Some(high)) = (along().min(), along().max()) {
+            extent_m[axis] = extent_m[axis].max((high + 1 - low) as f64 * CELL_M);
+        }
+    }
+    let share = redraw.count() as f64 / CELLS as f64;
+    (extent_m, (touched.share + share).min(1.0))
 }
 
 #[cfg(test)]

@@ -185,6 +185,11 @@ impl View3d {
         }
     }
 
+    /// True while the pointer draws, moves or marks something.
+    pub fn is_dragging(&self) -> bool {
+        !matches!(self.gesture, Gesture3d::None | Gesture3d::Ignored)
+    }
+
     /// True if pictures are made by the processor.
     pub fn is_software(&self) -> bool {
         self.gpu.as_ref().is_some_and(|g| g.software)
@@ -387,7 +392,8 @@ impl View3d {
         hit: Option<&Hit>,
     ) -> (Vec<[usize; 3]>, [u8; 3]) {
         if state.tool == Tool::Voxel && state.tools.voxel_mode == VoxelMode::Wand {
-            return (state.tools.voxels.clone(), [255, 220, 90]);
+            // No class has this colour.
+            return (state.tools.voxels.clone(), [255, 70, 255]);
         }
         let Some(pointer) = pointer else {
             return (Vec::new(), [0; 3]);

@@ -216,6 +216,22 @@ impl Document {
         Ok(rev)
     }
 
+    /// The same as an undo step of its own: for what the user asked to be drawn anew.
+    pub fn adopt_as_step(
+        &mut self,
+        label: &'static str,
+        rev: SceneRev,
+        occupancy: VoxelGrid,
+    ) -> Result<SceneRev, Stale> {
+        if self.drag.is_some() || self.settled_scene().rev != rev {
+            return Err(Stale);
+        }
+        let mut scene = Scene::clone(self.settled_scene());
+        edit::adopt(scene.frame_mut(), occupancy);
+        self.push(label, scene);
+        Ok(self.settled_scene().rev)
+    }
+
     /// Shows a state that was kept elsewhere (a version), as an undo step; nothing if it is the one shown.
     pub fn restore(&mut self, label: &'static str, scene: &Scene) {
         self.drag = None;

@@ -459,3 +459,26 @@ fn the_history_is_bounded_by_bytes() {
     large.adopt(large.scene().rev, grid).expect("shown");
     assert_ne!(large.history_bytes(), before);
 }
+
+#[test]
+fn what_was_drawn_anew_can_be_undone() {
+    let mut document = Document::new(start());
+    let before = document.scene().clone();
+    let mut occupancy = before.frame().occupancy.clone();
+    occupancy.set(3, 4, 5, Class::Manmade.id());
+    let rev = document
+        .adopt_as_step("Generate", before.rev, occupancy.clone())
+        .expect("shown");
+    assert_eq!(document.scene().rev, rev);
+    assert_eq!(document.scene().frame().occupancy, occupancy);
+    assert_eq!(document.scene().frame().source.occupancy, occupancy);
+    assert_eq!(document.undo(), Some("Generate"));
+    assert_eq!(document.scene().rev, before.rev);
+    assert_eq!(document.scene().frame().occupancy, before.frame().occupancy);
+    assert_eq!(document.redo(), Some("Generate"));
+    // Too late: another state is shown by now.
+    assert_eq!(
+        document.adopt_as_step("Generate", before.rev, occupancy),
+        Err(Stale)
+    );
+}

@@ -55,21 +55,19 @@ impl LaneStrip {
             points_m.extend(offset_line(&middle_m, to_m).iter().rev());
             Shape::Polygon { points_m }
         };
+        // Cars drive where people walked.
         let mut areas = vec![(BevLayer::DrivableArea, band(half_m, -half_m))];
+        let cleared = (BevLayer::Walkway, band(half_m, -half_m));
         if self.walk_m > 0.0 {
             areas.push((BevLayer::Walkway, band(half_m + self.walk_m, half_m)));
             areas.push((BevLayer::Walkway, band(-half_m, -half_m - self.walk_m)));
         }
         // What lies beside the grid is no error of the whole street.
         areas.retain(|(_, shape)| shape.cells().is_ok());
-        let mut edits: Vec<Edit> = areas
-            .into_iter()
-            .map(|(layer, shape)| Edit::PaintBev {
-                layer,
-                shape,
-                value: true,
-            })
-            .collect();
+        let paint = |value: bool| move |(layer, shape)| Edit::PaintBev { layer, shape, value };
+        let clear = Some(cleared).filter(|(_, shape)| shape.cells().is_ok());
+        let mut edits: Vec<Edit> = clear.into_iter().map(paint(false)).collect();
+        edits.extend(areas.into_iter().map(paint(true)));
         edits.push(Edit::AddPolylines {
             lines: self.lines(&middle_m, half_m),
         });
@@ -135,7 +133,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BevLayout, Frame, Scene, VoxelGrid};
+    use crate::scene::{BevLayout, Frame, GridSpec, Scene, VoxelGrid};
 
     #[test]
     fn a_street_has_its_lanes_dividers_and_walkways() {
@@ -168,6 +166,24 @@ mod tests {
         // The lane on the left is driven the other way.
         assert_eq!(line(PolylineKind::LaneCenter, 0)[0], DVec2::new(20.0, 4.0));
         assert_eq!(line(PolylineKind::LaneCenter, 2)[0], DVec2::new(-20.0, -4.0));
+    }
+
+    #[test]
+    fn a_street_cuts_the_walkway_that_it_crosses() {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let mut scene = Scene::single("street", frame, Arc::default(), 1);
+        for y in 0..GridSpec::NY {
+            scene.frame_mut().layout.set(BevLayer::Walkway, 100, y, true);
+        }
+        let ends = [DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)];
+        for edit in &LaneStrip::default().edits(&ends) {
+            edit.apply(&mut scene).expect("sound");
+        }
+        let layout = &scene.frame().layout;
+        for y in 0..GridSpec::NY {
+            let road = layout.has(BevLayer::DrivableArea, 100, y);
+            assert_ne!(road, layout.has(BevLayer::Walkway, 100, y), "column 100, {y}");
+        }
     }
 
     #[test]

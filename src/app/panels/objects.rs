@@ -15,6 +15,8 @@ use crate::scene::{BoxId, Class, Frame, SceneBox};
 
 /// What the history and its title take at the bottom, points.
 const HISTORY_HEIGHT: f32 = 168.0;
+/// Height of a line of it, with the gap.
+const HISTORY_ROW: f32 = theme::ROW - 3.0;
 
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
@@ -34,7 +36,9 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         n => format!("{n} boxes"),
     };
     section(ui, &title);
-    let list_height = (ui.available_height() - HISTORY_HEIGHT).max(80.0);
+    // The history takes no more than it has lines for.
+    let lines = document.history().len() as f32 * HISTORY_ROW + 40.0;
+    let list_height = (ui.available_height() - HISTORY_HEIGHT.min(lines)).max(80.0);
     let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
     boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
     let list = egui::ScrollArea::vertical()
@@ -228,10 +232,17 @@ fn history_title(document: &Document) -> String {
 
 fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
-    let area = egui::ScrollArea::vertical()
+    let mut area = egui::ScrollArea::vertical()
         .id_salt("history")
         .auto_shrink([false, false])
         .stick_to_bottom(true);
+    // Another state is shown: its line comes into sight.
+    let shown = ui.scope_id().with("history position");
+    if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {
+        ui.data_mut(|d| d.insert_temp(shown, at));
+        let above = at as f32 * HISTORY_ROW - ui.available_height() / 2.0;
+        area = area.vertical_scroll_offset(above.max(0.0));
+    }
     area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
         for i in range {
             let color = match i.cmp(&at) {

@@ -179,7 +179,8 @@ fn slider<N: egui::emath::Numeric>(
         ui.painter()
             .text(at, egui::Align2::LEFT_CENTER, name, font, theme::text_weak());
         ui.spacing_mut().slider_width = 60.0;
-        ui.add(egui::Slider::new(value, range).max_decimals(1))
+        let decimals = usize::from(!N::INTEGRAL);
+        ui.add(egui::Slider::new(value, range).max_decimals(decimals))
             .accessible_name(name);
     });
 }
