@@ -723,7 +723,8 @@ fn block_things(block: u32) -> vec2u {
     return vec2u(words[a], words[a + 1u]);
 }
 
-// The first surface along a ray. Modes: 0 camera, 1 mirror, 2 shadow (anything will do, the ground does not count).
+// The first surface along a ray. Modes: 0 camera, 1 mirror, 2 shadow of the sun, 3 of a lamp (anything will do, the
+// ground does not count).
 fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
     var hit = nothing(limit);
     if mode < 2u {
@@ -770,7 +771,7 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
             let met = cast_thing(words[section(12u) + k], o, d, hit.t);
             if met.t >= 0.0 {
                 hit = met;
-                if mode == 2u {
+                if mode >= 2u {
                     return hit;
                 }
             }
@@ -784,13 +785,13 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
             } else if mode == 1u {
                 leafy = t < 12.0;
             } else {
-                stride = 0.16;
+                stride = select(0.16, LAMP_STEP_M, mode == 3u);
                 begin = max(t, 0.05);
             }
             let met = cast_block(index, o, d, begin, min(t_out, hit.t), stride, leafy);
-            if met >= 0.0 && (met < hit.t || mode == 2u) {
+            if met >= 0.0 && (met < hit.t || mode >= 2u) {
                 hit = Met(met, vec3f(0.0), KIND_VOXEL, 0u, 0u);
-                if mode == 2u {
+                if mode >= 2u {
                     return hit;
                 }
             }
@@ -1545,7 +1546,7 @@ fn lamp_light(p: vec3f, lift: vec3f, n: vec3f, to_eye: vec3f, s: Surface, shadow
             let way = num3(a) - lift;
             let far = length(way);
             let clear = select(LAMP_CLEAR_M, LAMP_CLEAR_M * far / max(length(way.xy), 1e-3), kind == 0u);
-            if far > clear && trace(lift, way / far, far - clear, 2u).kind != KIND_NONE {
+            if far > clear && trace(lift, way / far, far - clear, 3u).kind != KIND_NONE {
                 continue;
             }
         }
