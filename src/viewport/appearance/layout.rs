@@ -121,6 +121,20 @@ pub fn appearance_source() -> &'static str {
         for (name, value) in numbers {
             let _ = writeln!(out, "const {name}: f32 = {value:?};");
         }
-        out + include_str!("../../../shaders/appearance.wgsl")
+        // One module; a file for each job.
+        let parts = [
+            include_str!("../../../shaders/appearance.wgsl"),
+            include_str!("../../../shaders/appearance/field.wgsl"),
+            include_str!("../../../shaders/appearance/ground.wgsl"),
+            include_str!("../../../shaders/appearance/sky.wgsl"),
+            include_str!("../../../shaders/appearance/things.wgsl"),
+            include_str!("../../../shaders/appearance/trace.wgsl"),
+            include_str!("../../../shaders/appearance/paint.wgsl"),
+            include_str!("../../../shaders/appearance/material.wgsl"),
+            include_str!("../../../shaders/appearance/thing_material.wgsl"),
+            include_str!("../../../shaders/appearance/shade.wgsl"),
+            include_str!("../../../shaders/appearance/render.wgsl"),
+        ];
+        out + &parts.concat()
     })
 }
