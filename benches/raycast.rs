@@ -57,9 +57,14 @@ fn main() {
     };
     let packets = |from: usize, count: usize| {
         let mut hits = 0;
-        masks.cast_packets(count, f64::INFINITY, |i| packet(from + i), |_, met| {
-            hits += met.iter().filter(|m| m.is_some_and(|m| m.0 > 0.0)).count();
-        });
+        masks.cast_packets(
+            count,
+            f64::INFINITY,
+            |i| packet(from + i),
+            |_, met| {
+                hits += met.iter().filter(|m| m.is_some_and(|m| m.0 > 0.0)).count();
+            },
+        );
         hits
     };
     // Taking turns, so that a busy machine slows both alike.
@@ -74,12 +79,17 @@ fn main() {
         })
         .collect();
     ratios.sort_by(f64::total_cmp);
-    println!("packets take {:.2} of the time of single rays (median of turns)", ratios[30]);
+    println!(
+        "packets take {:.2} of the time of single rays (median of turns)",
+        ratios[30]
+    );
     timing::time("single rays, one thread", 60, one_by_one);
     timing::time("cast, one thread", 60, || packets(0, 1084 * GROUPS));
     timing::time("cast, all threads", 60, || {
         let tasks = (0..1084usize).into_par_iter().step_by(16);
-        tasks.map(|c| packets(c * GROUPS, (1084 - c).min(16) * GROUPS)).sum()
+        tasks
+            .map(|c| packets(c * GROUPS, (1084 - c).min(16) * GROUPS))
+            .sum()
     });
     timing::time("masks of the whole grid", 60, || {
         let masks = ColumnMasks::from_grid(&grid);
