@@ -45,45 +45,51 @@ fn main() {
             .cast_in_voxels(origin, *d, f64::INFINITY)
             .map_or(0.0, |h| h.0)
     };
-    timing::time("cast, one thread", 60, || {
-        rays.iter().map(cast).filter(|t| *t > 0.0).count()
-    });
+    let one_by_one = || rays.iter().map(cast).filter(|t| *t > 0.0).count();
+    // All elevations of one azimuth, eight a packet.
+    const GROUPS: usize = 32 / LANES;
     let packet = |i: usize| {
-        let (column, group) = (i / 4, i % 4);
+        let (column, group) = (i / GROUPS, i % GROUPS);
         Packet {
             origin,
             directions: std::array::from_fn(|lane| rays[(group * LANES + lane) * 1084 + column]),
         }
     };
-    timing::time("packets, one thread", 60, || {
+    let packets = |from: usize, count: usize| {
         let mut hits = 0;
-        masks.cast_packets(1084 * 4, f64::INFINITY, packet, |_, met| {
-            hits += met.iter().filter(|m| m.is_some_and(|m| m.0 > 0.0)).count();
-        });
-        hits
-    });
-    for i in 0..1084 * 4 {
         masks.cast_packets(
-            1,
+            count,
             f64::INFINITY,
-            |_| packet(i),
+            |i| packet(from + i),
             |_, met| {
-                for (lane, met) in met.iter().enumerate() {
-                    let d = packet(i).directions[lane];
-                    assert_eq!(*met, masks.cast_in_voxels(origin, d, f64::INFINITY), "{d}");
-                }
+                hits += met.iter().filter(|m| m.is_some_and(|m| m.0 > 0.0)).count();
             },
         );
-    }
-    let mut ranges = vec![0.0f32; rays.len()];
+        hits
+    };
+    // Taking turns, so that a busy machine slows both alike.
+    let mut ratios: Vec<f64> = (0..60)
+        .map(|_| {
+            let start = std::time::Instant::now();
+            let hits = one_by_one();
+            let alone = start.elapsed();
+            let start = std::time::Instant::now();
+            assert_eq!(packets(0, 1084 * GROUPS), hits);
+            start.elapsed().as_secs_f64() / alone.as_secs_f64()
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    println!(
+        "packets take {:.2} of the time of single rays (median of turns)",
+        ratios[30]
+    );
+    timing::time("single rays, one thread", 60, one_by_one);
+    timing::time("cast, one thread", 60, || packets(0, 1084 * GROUPS));
     timing::time("cast, all threads", 60, || {
-        let pairs = ranges.par_chunks_mut(512).zip(rays.par_chunks(512));
-        pairs.for_each(|(out, rays)| {
-            for (out, d) in out.iter_mut().zip(rays) {
-                *out = cast(d) as f32;
-            }
-        });
-        ranges.iter().filter(|t| **t > 0.0).count()
+        let tasks = (0..1084usize).into_par_iter().step_by(16);
+        tasks
+            .map(|c| packets(c * GROUPS, (1084 - c).min(16) * GROUPS))
+            .sum()
     });
     timing::time("masks of the whole grid", 60, || {
         let masks = ColumnMasks::from_grid(&grid);

@@ -40,6 +40,8 @@ pub const HEAD_NEAR_M2: f32 = 60.0;
 pub const LAMP_SHADOW_LIGHT: f32 = 0.02;
 /// Nothing this near to a lamp keeps its light back, m: it sits in a vehicle.
 pub const LAMP_CLEAR_M: f32 = 0.6;
+/// What keeps a lamp's light back is looked for this often along the way, m: posts near a lamp throw long shadows.
+pub const LAMP_STEP_M: f32 = 0.05;
 /// Farthest mirrored thing, m.
 pub const MIRROR_M: f32 = 60.0;
 /// Nothing of the grid lies beyond, m.

@@ -5,11 +5,10 @@ use glam::DVec3;
 
 use crate::app::state::{CameraMode, CameraSource, UiState};
 use crate::app::theme;
+use crate::generation::sensors::perspective::clip_near;
 use crate::scene::{Camera, Scene, SceneBox};
 use crate::viewport::GROUND_TOP_M;
 
-/// Nearest depth that is drawn, m.
-const NEAR_M: f64 = 0.1;
 /// Pairs of corners; bits of a corner are its signs along x, y and z.
 const EDGES: [[usize; 2]; 12] = [
     [0, 1],
@@ -49,20 +48,9 @@ pub fn edges(camera: &Camera, b: &SceneBox, drop_m: f64) -> Vec<[[f64; 2]; 2]> {
         let at = |axis: usize| camera.focal_px[axis] * p[axis] / p.z + camera.center_px[axis];
         [at(0), at(1)]
     };
-    let cut = |[a, b]: [DVec3; 2]| {
-        if a.z < NEAR_M && b.z < NEAR_M {
-            return None;
-        }
-        let at_near = |from: DVec3, to: DVec3| from.lerp(to, (NEAR_M - from.z) / (to.z - from.z));
-        Some(match (a.z < NEAR_M, b.z < NEAR_M) {
-            (true, _) => [at_near(a, b), b],
-            (_, true) => [a, at_near(b, a)],
-            _ => [a, b],
-        })
-    };
     EDGES
         .iter()
-        .filter_map(|[i, j]| cut([corner(*i), corner(*j)]))
+        .filter_map(|[i, j]| <[DVec3; 2]>::try_from(clip_near(&[corner(*i), corner(*j)])).ok())
         .map(|[a, b]| [pixel(a), pixel(b)])
         .filter(|ends| ends.iter().flatten().all(|v| v.is_finite()))
         .collect()

@@ -234,8 +234,9 @@ impl Canvas {
     }
 }
 
-/// The part of a polygon (or of a line of two points) of the optical frame that lies beyond the near plane.
-fn clip_near(corners: &[DVec3]) -> Vec<DVec3> {
+/// The part of a polygon (or of a line of two points) of the optical frame, m, that lies more than 0.1 m in front of the
+/// camera. Of a line: two points in its order, or none.
+pub fn clip_near(corners: &[DVec3]) -> Vec<DVec3> {
     let mut out = Vec::with_capacity(corners.len() + 1);
     for (i, a) in corners.iter().enumerate() {
         let b = corners[(i + 1) % corners.len()];

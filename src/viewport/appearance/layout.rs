@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 
 use crate::scene::look::{
     BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M, KERB_EDGE_M, KERB_M,
-    KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LEAVES, LookData, MIRROR_M, NX, NY, NZ, PART_WORDS,
-    SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
+    KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, LookData, MIRROR_M, NX, NY, NZ,
+    PART_WORDS, SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
 };
 use crate::scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
 
@@ -107,6 +107,7 @@ pub fn appearance_source() -> &'static str {
             ("HEAD_NEAR_M2", HEAD_NEAR_M2),
             ("LAMP_SHADOW_LIGHT", LAMP_SHADOW_LIGHT),
             ("LAMP_CLEAR_M", LAMP_CLEAR_M),
+            ("LAMP_STEP_M", LAMP_STEP_M),
             ("MIRROR_M", MIRROR_M),
             ("FAR_M", FAR_M),
             ("CONTRAST", CONTRAST),
@@ -120,6 +121,20 @@ pub fn appearance_source() -> &'static str {
         for (name, value) in numbers {
             let _ = writeln!(out, "const {name}: f32 = {value:?};");
         }
-        out + include_str!("../../../shaders/appearance.wgsl")
+        // One module; a file for each job.
+        let parts = [
+            include_str!("../../../shaders/appearance.wgsl"),
+            include_str!("../../../shaders/appearance/field.wgsl"),
+            include_str!("../../../shaders/appearance/ground.wgsl"),
+            include_str!("../../../shaders/appearance/sky.wgsl"),
+            include_str!("../../../shaders/appearance/things.wgsl"),
+            include_str!("../../../shaders/appearance/trace.wgsl"),
+            include_str!("../../../shaders/appearance/paint.wgsl"),
+            include_str!("../../../shaders/appearance/material.wgsl"),
+            include_str!("../../../shaders/appearance/thing_material.wgsl"),
+            include_str!("../../../shaders/appearance/shade.wgsl"),
+            include_str!("../../../shaders/appearance/render.wgsl"),
+        ];
+        out + &parts.concat()
     })
 }

@@ -288,8 +288,8 @@ impl Look {
         }
     }
 
-    /// True if something stands between a point and the light `d`.
-    pub(super) fn occluded(&self, o: Vec3, d: Vec3, limit: f32) -> bool {
+    /// True if something stands between a point and the light `d`, looked for in voxels every `step` m.
+    pub(super) fn occluded(&self, o: Vec3, d: Vec3, limit: f32, step: f32) -> bool {
         let anchor = |p: Vec3| self.anchor(p);
         let mut dark = false;
         self.walk(o, d, limit, |index, t_in, t_out| {
@@ -299,7 +299,7 @@ impl Look {
                 || self.field.block(index)
                     && self
                         .field
-                        .cast_block(index, (o, d), (t_in.max(0.05), t_out), 0.16, true, &anchor)
+                        .cast_block(index, (o, d), (t_in.max(0.05), t_out), step, true, &anchor)
                         .is_some();
             dark
         });

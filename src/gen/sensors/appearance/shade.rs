@@ -5,7 +5,9 @@ use glam::Vec3;
 use super::look::{Beam, Hit, Look, What};
 use super::material::Surface;
 use super::noise::ramp;
-use crate::scene::look::{FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, MIRROR_M, SHADOW_M};
+use crate::scene::look::{
+    FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M,
+};
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
@@ -105,7 +107,7 @@ impl Look {
         let lit_through = s.through * (-facing).max(0.0);
         if strength > 0.05 && (facing > 0.0 || lit_through > 0.02) {
             let shadow = if follow {
-                self.occluded(lift, to_sun, SHADOW_M)
+                self.occluded(lift, to_sun, SHADOW_M, 0.16)
             } else {
                 false
             };
@@ -259,7 +261,7 @@ impl Look {
                     Beam::Street => LAMP_CLEAR_M * far / way.truncate().length().max(1e-3),
                     _ => LAMP_CLEAR_M,
                 };
-                if far > clear && self.occluded(lift, way / far, far - clear) {
+                if far > clear && self.occluded(lift, way / far, far - clear, LAMP_STEP_M) {
                     continue;
                 }
             }
