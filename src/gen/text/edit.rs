@@ -195,6 +195,10 @@ impl Editor<'_> {
                         ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
                         done.push("cleared".into());
                     }
+                } else if c.targets.is_empty() && !c.reading.description.absent.is_empty() {
+                    // "clear the kerb: no parked cars"
+                    self.take_absent(&c.reading.description);
+                    done.push("removed".into());
                 } else if let Some(ids) = self.targets(c, true) {
                     ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
                     done.push("removed".into());
@@ -361,6 +365,7 @@ impl Editor<'_> {
                 .filter(|b| o.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
                 .copied()
                 .collect();
+            let fits = if o.count.n == 1 { super::select::of_size(&fits, &o.noun, o.size_m) } else { fits };
             let nodes = graphed.nodes.get(i).cloned().unwrap_or_default();
             if fits.len() > nodes.len() {
                 self.out.questions.push(Question {

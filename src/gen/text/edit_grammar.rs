@@ -338,7 +338,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // What the target is turned into.
     if matches!(verb, Verb::Replace | Verb::Turn | Verb::Make) {
         let cut = items.iter().enumerate().skip(after_noun).find_map(|(k, i)| {
-            let word = matches!(i.words.as_str(), "with" | "by" | "for" | "into" | "to")
+            let word = matches!(i.words.as_str(), "with" | "by" | "for" | "into" | "to" | "against")
                 || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
             let noun_follows = items[k + 1..]
                 .iter()

@@ -48,8 +48,8 @@ fn distance_ahead(spec: &mut ObjectSpec) {
         r.relation == R::On && matches!(r.anchor, Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming))
     });
     for r in spec.relations.iter_mut().filter(|_| lane && !sided) {
-        if r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d > 6.0) {
-            r.relation = R::InFrontOf;
+        if matches!(r.relation, R::Near | R::Facing | R::OppositeDirection) && r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d > 6.0) {
+            r.relation = R::InFrontOf; // facing and direction follow from the lane, or are said again
         }
     }
 }

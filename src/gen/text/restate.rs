@@ -163,14 +163,19 @@ fn trimmed(mut tokens: &[Token]) -> &[Token] {
 /// The end of the noun phrase that begins a clause, if it is a definite one: one past its noun.
 fn subject(tokens: &[Token]) -> Option<usize> {
     let first = tokens.first()?;
+    // "bicycle change to scooter"
+    let bare = noun_in(tokens).filter(|n| n.0 == 0 && leads(&tokens[n.1..], BECOMES).is_some());
+    if let Some((_, end)) = bare {
+        return Some(end);
+    }
     let definite = matches!(
         text(first),
-        "the" | "both" | "all" | "my" | "that" | "this" | "these" | "those" | "every" | "each" | "any" | "everyone" | "everybody" | "everything" | "our"
+        "it" | "they" | "he" | "she" | "the" | "both" | "all" | "my" | "that" | "this" | "these" | "those" | "every" | "each" | "any" | "everyone" | "everybody" | "everything" | "our"
     ) || number(first).is_some() && tokens.get(1).is_some_and(|t| text(t) == "of");
     if !definite {
         return None;
     }
-    if matches!(text(first), "everyone" | "everybody" | "everything") {
+    if matches!(text(first), "everyone" | "everybody" | "everything" | "it" | "they" | "he" | "she") {
         return Some(1);
     }
     let (noun, mut end) = noun_in(tokens).filter(|n| n.0 < 8)?;
@@ -216,6 +221,9 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         }
         if leads(tail, GONE).is_some() && (helped || !matches!(tail.first().map(text), Some("left" | "go" | "away" | "taken" | "cleared"))) {
             let turned = matches!(tail.get(1).map(text), Some("lane" | "side" | "hand")); // "should be left of me"
+            if let Some(more) = likewise(tail) {
+                return Some(command("remove", first, &[np, &command("and", first, &[]), more]));
+            }
             let goes_to = text(&tail[0]) == "go" && tail.len() > 1 && !matches!(text(&tail[1]), "away" | "home" | "please" | "now") || tail.get(1).is_some_and(|t| matches!(text(t), "of" | "to")) && text(&tail[0]) == "left";
             if !turned && !goes_to {
                 return Some(command("remove", first, &[np]));
@@ -238,6 +246,9 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                     Verb::Paint => "paint",
                     Verb::Keep | Verb::Make => return None,
                 };
+                if let (Some(more), "remove") = (likewise(tail), verb) {
+                    return Some(command("remove", first, &[np, &command("and", first, &[]), more]));
+                }
                 if verb == "move" && tail.len() == n {
                     return None;
                 }
@@ -246,7 +257,7 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         }
         let turned = ["opposite direction", "other direction", "other way", "opposite way", "reverse direction"];
         let said: String = tail.iter().map(text).collect::<Vec<_>>().join(" ");
-        let goes = tail.first().is_some_and(|t| matches!(text(t), "drive" | "drives" | "go" | "goes" | "head" | "heads" | "face" | "faces" | "travel" | "travels" | "come" | "comes" | "driving" | "going" | "heading" | "facing" | "point" | "points" | "look" | "looks"));
+        let goes = tail.first().is_some_and(|t| matches!(text(t), "drive" | "drives" | "go" | "goes" | "head" | "heads" | "face" | "faces" | "travel" | "travels" | "travelling" | "traveling" | "moving" | "moves" | "move" | "rolling" | "riding" | "rides" | "drove" | "went" | "came" | "headed" | "travelled" | "come" | "comes" | "driving" | "going" | "heading" | "facing" | "point" | "points" | "look" | "looks"));
         let ours = ["our way", "my way", "same way", "same direction", "our direction", "my direction"];
         if goes && ours.iter().any(|w| said.contains(w)) {
             return Some(command("turn", first, &[np, &command("going my way", first, &[])]));
@@ -275,6 +286,18 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         }
     }
     None
+}
+
+/// "..., and likewise the barriers"
+fn likewise(tail: &[Token]) -> Option<&[Token]> {
+    let k = tail.iter().position(|t| matches!(text(t), "and" | "as"))?;
+    let mut rest = &tail[k + 1..];
+    while rest.first().is_some_and(|t| matches!(text(t), "likewise" | "also" | "so" | "do" | "does" | "is" | "are" | "too" | "with" | "should" | "must" | "as" | "well" | "equally" | "similarly")) {
+        rest = &rest[1..];
+    }
+    let definite = rest.first().is_some_and(|t| matches!(text(t), "the" | "both" | "all" | "every" | "that" | "those" | "these"));
+    let plain = rest.iter().all(|t| !HELPERS.contains(&text(t)) || matches!(text(t), "both" | "all"));
+    (definite && plain && has_noun(rest)).then_some(rest)
 }
 
 fn is_place_word(t: &Token) -> bool {
@@ -467,7 +490,7 @@ pub fn clauses(sentence: &[Token]) -> Vec<&[Token]> {
     let mut from = 0;
     let mut i = 1;
     while i < sentence.len() {
-        let link = sentence[i].kind == TokenKind::Comma || matches!(text(&sentence[i]), "and" | "but" | "while" | "then" | "whereas");
+        let link = sentence[i].kind == TokenKind::Comma || sentence[i].kind == TokenKind::Mark || matches!(text(&sentence[i]), "and" | "but" | "while" | "then" | "whereas");
         if link && i > from {
             let mut next = i + 1;
             while sentence.get(next).is_some_and(|t| t.kind == TokenKind::Comma || matches!(text(t), "and" | "then" | "but" | "also" | "while" | "finally" | "so")) {

@@ -41,6 +41,10 @@ impl Parser<'_> {
                             | "are"
                             | "my"
                             | "another"
+                            | "have"
+                            | "has"
+                            | "we have"
+                            | "i have"
                     ) => {}
                 Tag::Number(_) if !matches!(self.sense(j + 1), Some(Sense::Unit(_))) => {}
                 Tag::Unknown => {}

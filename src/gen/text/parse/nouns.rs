@@ -46,6 +46,9 @@ impl Parser<'_> {
         }
         self.not_goes_on = false;
         self.denied = false;
+        if !self.edits && self.pending.is_none() && self.tells(noun) {
+            return;
+        }
         if self.holds_others(noun, &pre)
             || self.rides(noun, word, &pre)
             || self.says_which(noun, word, plural, &pre)

@@ -36,6 +36,9 @@ impl Parser<'_> {
             self.pre = Pre::default();
             return;
         }
+        if self.items[self.at].words == "both" && self.both_of_them() {
+            return;
+        }
         let next_is_part = !self.noun_ahead(self.at + 1);
         if next_is_part && !self.edits && self.bare_number(self.at) && !self.fronted.is_empty() {
             // "on the left are three cars, and on the right two."
