@@ -274,7 +274,14 @@ impl Parser<'_> {
         while before > 0
             && matches!(
                 self.sense(before - 1),
-                Some(Sense::Article(false) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(_, false))
+                Some(
+                    Sense::Article(false)
+                        | Sense::Color(_)
+                        | Sense::Size(_)
+                        | Sense::Attribute(_)
+                        | Sense::State(_, false)
+                        | Sense::Noun(_, false)
+                )
             )
         {
             before -= 1;
@@ -364,6 +371,23 @@ impl Parser<'_> {
         self.head.clear();
         self.last.clear();
         true
+    }
+
+    /// "there" at the end of a clause: at the place that was named last.
+    pub(super) fn there(&mut self, span: Span) {
+        let Some(place) = self.last_place else {
+            return;
+        };
+        let placed = |i: &usize| {
+            let of_place = |a: Anchor| !matches!(a, Anchor::Ego | Anchor::Object(_));
+            self.mentions[*i].spec.relations.iter().any(|r| of_place(r.anchor))
+        };
+        if self.head.is_empty() || self.pending.is_some() || self.head.iter().any(placed) {
+            return;
+        }
+        let lane = matches!(place, Anchor::Lane(_));
+        self.begin(if lane { Prep::In } else { Prep::At }, span);
+        self.anchor(place, span);
     }
 
     /// After "consists of": what follows is a list of its own.

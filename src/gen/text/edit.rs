@@ -183,7 +183,11 @@ impl Editor<'_> {
         }
         match c.verb {
             Verb::Remove | Verb::Clear => {
-                if c.reading.description.foreground.is_empty() && c.verb == Verb::Clear && done.is_empty() {
+                if c.reading.description.foreground.is_empty()
+                    && c.reading.description.absent.is_empty()
+                    && c.verb == Verb::Clear
+                    && done.is_empty()
+                {
                     // "clear my lane"
                     if let Some(role) = c.place {
                         let ids: Vec<BoxId> = self

@@ -496,7 +496,10 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             metres = Some(m);
             cut = cut.min(i);
             let next = items.get(i + n);
-            if next.is_some_and(|x| matches!(x.tag, Tag::Is(Sense::Rel(_)))) {
+            let of_ego = next.is_some_and(|x| {
+                matches!(x.tag, Tag::Is(Sense::EgoRel(_))) && [" me", " us", " of the ego"].iter().any(|t| x.words.ends_with(t))
+            });
+            if of_ego || next.is_some_and(|x| matches!(x.tag, Tag::Is(Sense::Rel(_)))) {
                 place_from.get_or_insert(i);
                 break;
             }
@@ -730,6 +733,7 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         .find(|(_, i)| {
             let w = i.words.as_str();
             is_turn_word(w)
+                || i.tag == Tag::Is(Sense::EgoRel(&[RelationKind::SameDirection]))
                 || matches!(
                     w,
                     "by" | "to"

@@ -255,18 +255,24 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                 return Some(command(verb, first, &[np, &tail[n..]]));
             }
         }
+        // "the car behind should keep 30 m distance"
+        let keeps = tail.first().is_some_and(|t| matches!(text(t), "keep" | "keeps" | "stay" | "stays" | "hold" | "leave"));
+        if keeps && tail.len() > 2 && number(&tail[1]).is_some() && matches!(look_up(text(&tail[2])), Some(Sense::Unit(_))) {
+            let back = np.iter().any(|t| matches!(text(t), "back" | "behind" | "rear"));
+            return Some(command("move", first, &[np, &tail[1..3], &command(if back { "behind us" } else { "in front of us" }, first, &[])]));
+        }
         let turned = ["opposite direction", "other direction", "other way", "opposite way", "reverse direction"];
         let said: String = tail.iter().map(text).collect::<Vec<_>>().join(" ");
         let goes = tail.first().is_some_and(|t| matches!(text(t), "drive" | "drives" | "go" | "goes" | "head" | "heads" | "face" | "faces" | "travel" | "travels" | "travelling" | "traveling" | "moving" | "moves" | "move" | "rolling" | "riding" | "rides" | "drove" | "went" | "came" | "headed" | "travelled" | "come" | "comes" | "driving" | "going" | "heading" | "facing" | "point" | "points" | "look" | "looks"));
         let ours = ["our way", "my way", "same way", "same direction", "our direction", "my direction"];
         if goes && ours.iter().any(|w| said.contains(w)) {
-            return Some(command("turn", first, &[np, &command("going my way", first, &[])]));
+            return Some(command("rotate", first, &[np, &command("going my way", first, &[])]));
         }
         if goes && turned.iter().any(|w| said.contains(w)) {
-            return Some(command("turn", first, &[np, &command("around", first, &[])]));
+            return Some(command("rotate", first, &[np, &command("around", first, &[])]));
         }
         if goes && ["towards me", "toward me", "towards us", "toward us", "at me", "at us"].iter().any(|w| said.ends_with(w)) {
-            return Some(command("turn", first, &[np, &command("to face me", first, &[])]));
+            return Some(command("rotate", first, &[np, &command("to face me", first, &[])]));
         }
         // "the car pull over and park on the right": where it ends up
         let acts = (1..=3.min(tail.len())).rev().any(|n| {

@@ -61,7 +61,8 @@ pub(super) struct Parser<'a> {
     pub(super) relative: bool,
     ego_subject: bool, // "I am behind a bus"
     ego_named: bool,   // "the host vehicle": "it" may mean it
-    last_lane: Option<Anchor>, // named last
+    last_lane: Option<Anchor>,             // named last
+    pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pair: Vec<usize>,  // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
@@ -117,6 +118,7 @@ impl<'a> Parser<'a> {
             ego_subject: false,
             ego_named: false,
             last_lane: None,
+            last_place: None,
             pair: Vec::new(),
             with: false,
             edits,

@@ -58,6 +58,8 @@ impl<'a> Parser<'a> {
                         self.introduce();
                         self.end_list();
                     }
+                    // "... obstructs the crossing; four people wait there"
+                    "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
                         self.head = self.before.clone();

@@ -31,6 +31,9 @@ impl Parser<'_> {
         if matches!(anchor, Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)) {
             self.last_lane = Some(anchor);
         }
+        if anchor != Anchor::Lane(LaneRole::Road) {
+            self.last_place = Some(anchor);
+        }
         let not = std::mem::take(&mut self.pre.not);
         let definite = self.pre.article == Some(true);
         self.pre = Pre::default();

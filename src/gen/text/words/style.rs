@@ -8,7 +8,7 @@ pub const TIMES: &[(TimeOfDay, &str)] = &[
     (
         TimeOfDay::Night,
         "night|nighttime|black of night|dead of night|middle of the night|the middle of the night|wee hours|witching hour|early hours|early hours of the morning|night falls|night has fallen|nightfall has come|after sundown|after nightfall|past midnight|shortly before midnight|shortly after midnight|around midnight|stars are out|under the stars|starlight|starlit|starry sky|starry night|starless|moon|full moon|moonless|moonless night|moon shines|moon is out|moon is up|by moonlight|by lamplight|lamplight|lamplit|by streetlight|under streetlights|under street lamps|lit by street lamps|lit by streetlights|lit by lamps|lit only by headlights|street lamps are on|streetlights are on|street lights are on|lamps are lit|street lamps lit|streetlamps lit|headlights only|only headlights|headlights cut through|inky|inky black|inky darkness|jet black|coal black|black as pitch|pitch blackness|pitch darkness|black night|dark night|deep night|night shift|night drive|nighttime drive|nightlife|nocturne|no daylight|without daylight|unlit road|unlit street|dark outside|dark out|fully dark|completely dark|totally dark|long after dark|sun is long gone|sun has long set|headlamps on|bedtime|small hours of the morning|night time|midnight|dark|darkness|nocturnal|late at night|after dark|nightly|moonlit|moonlight|pitch black|pitch dark|\
-         in the dead of night|nightfall|small hours|late night|by night|starry|unlit|under street lights|at night|night scene|\
+         in the dead of night|small hours|late night|by night|starry|unlit|under street lights|at night|night scene|\
          overnight|after midnight|in the dark",
     ),
     (
