@@ -197,23 +197,34 @@ impl Parser<'_> {
 
     /// "witnesses counted five cones": who tells of the scene is not in it. True if it was that.
     pub(super) fn tells(&mut self, noun: &'static Noun) -> bool {
-        static SAYING: std::sync::LazyLock<std::collections::HashSet<String>> = std::sync::LazyLock::new(|| {
-            use super::words::verbs::{SAYING, forms};
-            let all = SAYING.split('|').map(forms);
-            all.flat_map(|f| [f.base, f.s, f.past, f.participle]).collect()
-        });
+        static SAYING: std::sync::LazyLock<std::collections::HashSet<String>> =
+            std::sync::LazyLock::new(|| {
+                use super::words::verbs::{SAYING, forms};
+                let all = SAYING.split('|').map(forms);
+                all.flat_map(|f| [f.base, f.s, f.past, f.participle]).collect()
+            });
         if noun.classes[0] != Class::Pedestrian {
             return false;
         }
         let mut j = self.at + 1;
-        while self.item(j).is_some_and(|n| matches!(n.words.as_str(), "has" | "have" | "had")) {
+        while self
+            .item(j)
+            .is_some_and(|n| matches!(n.words.as_str(), "has" | "have" | "had"))
+        {
             j += 1;
         }
         let items = self.items;
         let words = |k: usize| items.get(k).map_or("", |n| n.words.as_str());
-        let one = words(j).trim_start_matches("has ").trim_start_matches("have ").trim_start_matches("had ");
+        let one = words(j)
+            .trim_start_matches("has ")
+            .trim_start_matches("have ")
+            .trim_start_matches("had ");
         let two = format!("{one} {}", words(j + 1));
-        let said = SAYING.contains(one) && self.item(j).is_some_and(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..)))) || SAYING.contains(&two);
+        let said = SAYING.contains(one)
+            && self
+                .item(j)
+                .is_some_and(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
+            || SAYING.contains(&two);
         if said {
             // past the verb, and a "that" after it
             self.at = j + usize::from(SAYING.contains(&two));
@@ -231,13 +242,22 @@ impl Parser<'_> {
         if self.edits || self.pending.is_some() || self.noun_ahead(self.at + 1) {
             return false;
         }
-        let there: Vec<usize> = (0..self.mentions.len()).rev().filter(|i| !self.mentions[*i].gone).take(2).collect();
+        let there: Vec<usize> = (0..self.mentions.len())
+            .rev()
+            .filter(|i| !self.mentions[*i].gone)
+            .take(2)
+            .collect();
         let both = match there.as_slice() {
             [a, ..] if self.mentions[*a].spec.count.n == 2 => vec![*a],
-            [a, b] if self.mentions[*a].spec.count.n == 1 && self.mentions[*b].spec.count.n == 1 => vec![*b, *a],
+            [a, b] if self.mentions[*a].spec.count.n == 1 && self.mentions[*b].spec.count.n == 1 => {
+                vec![*b, *a]
+            }
             _ => return false,
         };
-        if self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom")) {
+        if self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom"))
+        {
             self.at += 1;
         }
         self.last = both;
@@ -267,7 +287,11 @@ impl Parser<'_> {
 
     /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
     pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
-        if self.edits || self.pending.is_some() || !self.fronted.is_empty() || pre.count.is_some_and(|c| c.n > 1) {
+        if self.edits
+            || self.pending.is_some()
+            || !self.fronted.is_empty()
+            || pre.count.is_some_and(|c| c.n > 1)
+        {
             return false;
         }
         let mut before = self.at;
@@ -286,16 +310,28 @@ impl Parser<'_> {
         {
             before -= 1;
         }
-        let lead = before.checked_sub(1).and_then(|i| self.item(i)).map_or("", |i| i.words.as_str());
+        let lead = before
+            .checked_sub(1)
+            .and_then(|i| self.item(i))
+            .map_or("", |i| i.words.as_str());
         let article = pre.article == Some(false);
         // "the pedestrian, an adult male, stood there"
-        let set_apart = lead == "," && article && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
-            && matches!(before.checked_sub(2).and_then(|i| self.sense(i)), Some(Sense::Noun(..)))
-            && self.head.last().is_some_and(|i| self.mentions[*i].definite && self.mentions[*i].classes == noun.classes);
+        let set_apart = lead == ","
+            && article
+            && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+            && matches!(
+                before.checked_sub(2).and_then(|i| self.sense(i)),
+                Some(Sense::Noun(..))
+            )
+            && self
+                .head
+                .last()
+                .is_some_and(|i| self.mentions[*i].definite && self.mentions[*i].classes == noun.classes);
         if set_apart {
             return true;
         }
-        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
+        let is =
+            matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
             return false;
         };
@@ -345,7 +381,10 @@ impl Parser<'_> {
             return false;
         }
         self.mentions[i].gone = true;
-        let (classes, whole) = (self.mentions[i].classes.to_vec(), self.mentions[i].spec.span.to(span));
+        let (classes, whole) = (
+            self.mentions[i].classes.to_vec(),
+            self.mentions[i].spec.span.to(span),
+        );
         self.absent(classes, None, whole);
         self.head.retain(|h| *h != i);
         self.last.retain(|h| *h != i);
@@ -356,16 +395,26 @@ impl Parser<'_> {
     pub(super) fn none_of_these(&mut self, span: Span) -> bool {
         let verb = (1..=2).any(|k| {
             let before = self.at.checked_sub(k).and_then(|i| self.item(i));
-            before.is_some_and(|b| matches!(b.words.as_str(), "is" | "are" | "were" | "was" | "is there" | "are there" | "there are"))
+            before.is_some_and(|b| {
+                matches!(
+                    b.words.as_str(),
+                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are"
+                )
+            })
         });
         let all = self.head.clone();
-        let open = |i: &usize| self.mentions[*i].uncounted && self.mentions[*i].plural && !self.mentions[*i].is_anchor;
+        let open = |i: &usize| {
+            self.mentions[*i].uncounted && self.mentions[*i].plural && !self.mentions[*i].is_anchor
+        };
         if !verb || all.is_empty() || !all.iter().all(open) {
             return false;
         }
         for i in all {
             self.mentions[i].gone = true;
-            let (classes, whole) = (self.mentions[i].classes.to_vec(), self.mentions[i].spec.span.to(span));
+            let (classes, whole) = (
+                self.mentions[i].classes.to_vec(),
+                self.mentions[i].spec.span.to(span),
+            );
             self.absent(classes, None, whole);
         }
         self.head.clear();
@@ -380,7 +429,11 @@ impl Parser<'_> {
         };
         let placed = |i: &usize| {
             let of_place = |a: Anchor| !matches!(a, Anchor::Ego | Anchor::Object(_));
-            self.mentions[*i].spec.relations.iter().any(|r| of_place(r.anchor))
+            self.mentions[*i]
+                .spec
+                .relations
+                .iter()
+                .any(|r| of_place(r.anchor))
         };
         if self.head.is_empty() || self.pending.is_some() || self.head.iter().any(placed) {
             return;
@@ -402,18 +455,29 @@ impl Parser<'_> {
     pub(super) fn one_more_like_it(&self) -> bool {
         let told = matches!(
             self.sense(self.at + 1),
-            Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide | Sense::State(_, false))
+            Some(
+                Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::In
+                    | Sense::At
+                    | Sense::FarSide
+                    | Sense::State(_, false)
+            )
         );
         let last = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
-        told && self.group_behind().is_none() && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
+        told && self.group_behind().is_none()
+            && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
     }
 
     /// "the left lane has two cars": what follows stands there. True if it was that.
     pub(super) fn place_has(&mut self, item: &super::tag::Item) -> bool {
         use crate::scene::graph::LaneRole as L;
-        let Some((anchor, span)) = self.topic.filter(|_| self.head.is_empty() && self.pending.is_none()) else {
+        let Some((anchor, span)) = self
+            .topic
+            .filter(|_| self.head.is_empty() && self.pending.is_none())
+        else {
             return false;
         };
         let fits = match anchor {
@@ -425,7 +489,14 @@ impl Parser<'_> {
             return false;
         }
         self.topic = None;
-        self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+        self.begin(
+            if anchor == Anchor::Junction {
+                Prep::At
+            } else {
+                Prep::In
+            },
+            span,
+        );
         self.anchor(anchor, span);
         true
     }

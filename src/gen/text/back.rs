@@ -34,7 +34,8 @@ pub fn named(tokens: &[Token], verb: Option<Verb>) -> Option<Vec<Token>> {
 }
 
 fn is_number(t: &Token) -> bool {
-    matches!(t.kind, TokenKind::Number(_)) || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact())
+    matches!(t.kind, TokenKind::Number(_))
+        || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact())
 }
 
 /// The tokens with "it", "them" and "another one" as what was named before.
@@ -57,11 +58,16 @@ pub fn resolved(tokens: &[Token], verb_words: usize, before: Option<&Vec<Token>>
             })
             .collect()
     };
-    let pronoun = (verb_words..tokens.len()).find(|i| matches!(tokens[*i].text.as_str(), "it" | "him" | "her" | "them"));
+    let pronoun = (verb_words..tokens.len())
+        .find(|i| matches!(tokens[*i].text.as_str(), "it" | "him" | "her" | "them"));
     if let Some(i) = pronoun {
         let first = own.first().is_none_or(|n| i < n.0);
         // "turn it to night" is about the scene
-        let scene = own.is_empty() && tokens[i].text == "it" && tokens[i + 1..].iter().any(|t| matches!(look_up(&t.text), Some(Sense::Time(_) | Sense::Weather(_))));
+        let scene = own.is_empty()
+            && tokens[i].text == "it"
+            && tokens[i + 1..]
+                .iter()
+                .any(|t| matches!(look_up(&t.text), Some(Sense::Time(_) | Sense::Weather(_))));
         if (first || own.len() == 1) && !scene {
             let mut new = vec![the(&tokens[i])];
             new.extend(here(&tokens[i]));
@@ -73,14 +79,31 @@ pub fn resolved(tokens: &[Token], verb_words: usize, before: Option<&Vec<Token>>
         return out;
     }
     // "take one off", "another one on the left", "two more behind me"
-    let unit = |i: usize| tokens.get(i).is_some_and(|t| matches!(look_up(&t.text), Some(Sense::Unit(_))));
-    let number = (verb_words..tokens.len()).find(|i| (is_number(&tokens[*i]) || tokens[*i].text == "another") && !unit(i + 1));
+    let unit = |i: usize| {
+        tokens
+            .get(i)
+            .is_some_and(|t| matches!(look_up(&t.text), Some(Sense::Unit(_))))
+    };
+    let number = (verb_words..tokens.len())
+        .find(|i| (is_number(&tokens[*i]) || tokens[*i].text == "another") && !unit(i + 1));
     if let Some(i) = number {
         let mut to = i + 1;
-        while tokens.get(to).is_some_and(|t| matches!(t.text.as_str(), "more" | "one" | "of" | "them" | "others" | "extra" | "additional")) {
+        while tokens.get(to).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "more" | "one" | "of" | "them" | "others" | "extra" | "additional"
+            )
+        }) {
             to += 1;
         }
-        let kept: Vec<Token> = tokens[i..to].iter().filter(|t| !matches!(t.text.as_str(), "of" | "them") && (t.text != "one" || is_number(&tokens[i]) && tokens[i].text == "one")).cloned().collect();
+        let kept: Vec<Token> = tokens[i..to]
+            .iter()
+            .filter(|t| {
+                !matches!(t.text.as_str(), "of" | "them")
+                    && (t.text != "one" || is_number(&tokens[i]) && tokens[i].text == "one")
+            })
+            .cloned()
+            .collect();
         let mut new = kept;
         new.extend(here(&tokens[i]));
         out.splice(i..to, new);

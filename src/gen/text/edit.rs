@@ -14,9 +14,13 @@ use super::place::place_with;
 use super::rephrase::Change;
 use super::select::{Candidate, Chosen, choose, where_is};
 use super::to_graph::to_graph;
+use super::tokens::{LONGEST, Span};
 use super::words::edits::Verb;
 use crate::scene::graph::{LaneRole, Locked, Node, NodeKind, ObjectNode, ObjectState, RelationKind};
 use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+
+/// Most commands of one text that are carried out.
+pub const MOST_COMMANDS: usize = 100;
 
 /// One change of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -113,7 +117,24 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         seed,
         out: EditReading::default(),
     };
-    for (i, command) in commands(text).into_iter().enumerate() {
+    let all = commands(text);
+    if all.len() > MOST_COMMANDS {
+        editor.note(format!(
+            "{} commands were given: the first {MOST_COMMANDS} are carried out",
+            all.len()
+        ));
+    }
+    if text.len() > LONGEST {
+        editor.out.not_understood.push(Unread {
+            span: Span {
+                start: LONGEST,
+                end: text.len(),
+            },
+            text: "...".into(),
+            why: Some(format!("only the first {LONGEST} bytes are read")),
+        });
+    }
+    for (i, command) in all.into_iter().take(MOST_COMMANDS).enumerate() {
         let before = editor.out.edits.len();
         let asked = editor.out.questions.len();
         let meaning = editor.carry_out(&command);
@@ -369,7 +390,11 @@ impl Editor<'_> {
                 .filter(|b| o.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
                 .copied()
                 .collect();
-            let fits = if o.count.n == 1 { super::select::of_size(&fits, &o.noun, o.size_m) } else { fits };
+            let fits = if o.count.n == 1 {
+                super::select::of_size(&fits, &o.noun, o.size_m)
+            } else {
+                fits
+            };
             let nodes = graphed.nodes.get(i).cloned().unwrap_or_default();
             if fits.len() > nodes.len() {
                 self.out.questions.push(Question {
@@ -534,7 +559,18 @@ impl Editor<'_> {
                 let mut spec = spec.clone();
                 let said = c.text.to_lowercase();
                 // The other side is that on which it is not.
-                if b.center_m.y > 0.0 && ["opposite", "other side", "far side", "across the", "other pavement", "other sidewalk"].iter().any(|w| said.contains(w)) {
+                if b.center_m.y > 0.0
+                    && [
+                        "opposite",
+                        "other side",
+                        "far side",
+                        "across the",
+                        "other pavement",
+                        "other sidewalk",
+                    ]
+                    .iter()
+                    .any(|w| said.contains(w))
+                {
                     spec.relations.iter_mut().for_each(mirrored);
                 }
                 let d = Description {
@@ -544,11 +580,27 @@ impl Editor<'_> {
                 self.move_to(b, &d);
                 let strip = |r: &super::description::Stated| {
                     use super::description::Anchor::Lane;
-                    let aside = matches!(r.anchor, Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark));
+                    let aside = matches!(
+                        r.anchor,
+                        Lane(
+                            LaneRole::Roadside
+                                | LaneRole::LeftRoadside
+                                | LaneRole::RightRoadside
+                                | LaneRole::Carpark
+                        )
+                    );
                     aside && matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
                 };
-                let parks = said.contains("park") || d.foreground.first().is_some_and(|o| o.relations.iter().any(strip));
-                if let Some(moved) = self.boxes.get(&id).copied().filter(|m| parks && m.class.is_vehicle() && m.velocity_mps.length() > 0.0) {
+                let parks = said.contains("park")
+                    || d.foreground
+                        .first()
+                        .is_some_and(|o| o.relations.iter().any(strip));
+                if let Some(moved) = self
+                    .boxes
+                    .get(&id)
+                    .copied()
+                    .filter(|m| parks && m.class.is_vehicle() && m.velocity_mps.length() > 0.0)
+                {
                     // Who stands at the roadside does not drive.
                     let object = SceneBox {
                         velocity_mps: DVec2::ZERO,
@@ -632,10 +684,15 @@ impl Editor<'_> {
                 .map
                 .nearest(b.center_m.truncate())
                 .map_or(0.0, |l| l.dir.to_angle()),
-            Some(super::edit_grammar::Turn::WithEgo) => self
-                .map
-                .nearest(b.center_m.truncate())
-                .map_or(0.0, |l| if l.dir.x < 0.0 { (-l.dir).to_angle() } else { l.dir.to_angle() }),
+            Some(super::edit_grammar::Turn::WithEgo) => {
+                self.map.nearest(b.center_m.truncate()).map_or(0.0, |l| {
+                    if l.dir.x < 0.0 {
+                        (-l.dir).to_angle()
+                    } else {
+                        l.dir.to_angle()
+                    }
+                })
+            }
             None => {
                 self.note(format!("{:?}: how far to turn was not understood", c.text));
                 return;
@@ -652,7 +709,9 @@ impl Editor<'_> {
     fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         let wanted = match &c.by {
-            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => by.spec.count.n as usize,
+            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => {
+                by.spec.count.n as usize
+            }
             _ => ids.len(),
         };
         for id in ids.iter().skip(wanted.max(1)) {
@@ -664,7 +723,8 @@ impl Editor<'_> {
         if let Some(by) = c.by.as_ref().filter(|_| wanted > ids.len()) {
             let mut spec = by.spec.clone();
             spec.count = super::description::Count::exactly((wanted - ids.len()) as u32);
-            spec.relations.retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            spec.relations
+                .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
             self.add(&Description {
                 foreground: vec![spec],
                 ..Description::default()

@@ -282,8 +282,19 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // "the bus further ahead": what is there already is not added.
     let there_already = verb.is_none()
         && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
-        && matches!(items.get(1..4).and_then(|w| w.iter().find(|i| !is_adjective(i))).map(|i| i.tag), Some(Tag::Is(Sense::Noun(..))));
-    let placed = items.iter().any(|i| matches!(i.tag, Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)));
+        && matches!(
+            items
+                .get(1..4)
+                .and_then(|w| w.iter().find(|i| !is_adjective(i)))
+                .map(|i| i.tag),
+            Some(Tag::Is(Sense::Noun(..)))
+        );
+    let placed = items.iter().any(|i| {
+        matches!(
+            i.tag,
+            Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
+        )
+    });
     let mut verb = match verb {
         None if only => Verb::Keep,
         None if there_already && placed => Verb::Move,
@@ -295,7 +306,19 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             if definite_next
                 && !matches!(
                     first,
-                    "add" | "insert" | "include" | "create" | "generate" | "show" | "bring" | "introduce" | "spawn" | "append" | "give" | "duplicate" | "drop"
+                    "add"
+                        | "insert"
+                        | "include"
+                        | "create"
+                        | "generate"
+                        | "show"
+                        | "bring"
+                        | "introduce"
+                        | "spawn"
+                        | "append"
+                        | "give"
+                        | "duplicate"
+                        | "drop"
                 ) =>
         {
             Verb::Move
@@ -338,8 +361,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // What the target is turned into.
     if matches!(verb, Verb::Replace | Verb::Turn | Verb::Make) {
         let cut = items.iter().enumerate().skip(after_noun).find_map(|(k, i)| {
-            let word = matches!(i.words.as_str(), "with" | "by" | "for" | "into" | "to" | "against")
-                || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
+            let word = matches!(
+                i.words.as_str(),
+                "with" | "by" | "for" | "into" | "to" | "against"
+            ) || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
             let noun_follows = items[k + 1..]
                 .iter()
                 .take(5)
@@ -419,7 +444,14 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
 fn is_adjective(item: &Item) -> bool {
     matches!(
         item.tag,
-        Tag::Is(Sense::Article(_) | Sense::State(_, false) | Sense::Size(_) | Sense::Color(_) | Sense::Attribute(_) | Sense::Count(_)) | Tag::Number(_)
+        Tag::Is(
+            Sense::Article(_)
+                | Sense::State(_, false)
+                | Sense::Size(_)
+                | Sense::Color(_)
+                | Sense::Attribute(_)
+                | Sense::Count(_)
+        ) | Tag::Number(_)
     )
 }
 
@@ -497,7 +529,8 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             cut = cut.min(i);
             let next = items.get(i + n);
             let of_ego = next.is_some_and(|x| {
-                matches!(x.tag, Tag::Is(Sense::EgoRel(_))) && [" me", " us", " of the ego"].iter().any(|t| x.words.ends_with(t))
+                matches!(x.tag, Tag::Is(Sense::EgoRel(_)))
+                    && [" me", " us", " of the ego"].iter().any(|t| x.words.ends_with(t))
             });
             if of_ego || next.is_some_and(|x| matches!(x.tag, Tag::Is(Sense::Rel(_)))) {
                 place_from.get_or_insert(i);

@@ -42,19 +42,34 @@ fn split_sides(mentions: &mut Vec<Mention>) {
 fn distance_ahead(spec: &mut ObjectSpec) {
     use RelationKind as R;
     let sided = spec.relations.iter().any(|r| {
-        r.anchor == Anchor::Ego && !matches!(r.relation, R::Near | R::OppositeDirection | R::SameDirection | R::Facing | R::FacingAway)
+        r.anchor == Anchor::Ego
+            && !matches!(
+                r.relation,
+                R::Near | R::OppositeDirection | R::SameDirection | R::Facing | R::FacingAway
+            )
     });
     let lane = spec.relations.iter().any(|r| {
-        r.relation == R::On && matches!(r.anchor, Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming))
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
     });
     let far = spec
         .relations
         .iter()
-        .find(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::Facing | R::OppositeDirection) && r.distance_m.is_some())
+        .find(|r| {
+            r.anchor == Anchor::Ego
+                && matches!(r.relation, R::Facing | R::OppositeDirection)
+                && r.distance_m.is_some()
+        })
         .copied()
         .filter(|_| lane && !sided);
     if let Some(r) = far {
-        spec.relations.iter_mut().filter(|x| **x == r).for_each(|x| x.distance_m = None);
+        spec.relations
+            .iter_mut()
+            .filter(|x| **x == r)
+            .for_each(|x| x.distance_m = None);
         spec.relations.push(Stated {
             relation: R::InFrontOf,
             ..r

@@ -386,7 +386,14 @@ fn build() -> Table {
         }
     }
     for (n, name) in (1..).zip(phrases::HOURS) {
-        for (part, pm) in [("in the morning", false), ("am", false), ("at night", true), ("in the evening", true), ("in the afternoon", true), ("pm", true)] {
+        for (part, pm) in [
+            ("in the morning", false),
+            ("am", false),
+            ("at night", true),
+            ("in the evening", true),
+            ("in the afternoon", true),
+            ("pm", true),
+        ] {
             let hour = if n == 12 && part == "at night" { 0 } else { n };
             let time = super::tag::time_of(f64::from(hour), pm && !(part == "at night" && n < 5));
             for tail in ["", " oclock"] {
@@ -423,8 +430,14 @@ fn build() -> Table {
         }
     }
     for f in words(verbs::TOWING).map(verbs::forms) {
-        put(&format!("{} by", f.participle), Sense::Rel(RelationKind::Following));
-        put(&format!("{} behind", f.participle), Sense::Rel(RelationKind::Following));
+        put(
+            &format!("{} by", f.participle),
+            Sense::Rel(RelationKind::Following),
+        );
+        put(
+            &format!("{} behind", f.participle),
+            Sense::Rel(RelationKind::Following),
+        );
         [&f.s, &f.ing, &f.past].map(|w| put(w, Sense::Reversed(RelationKind::Following)));
     }
     words(verbs::JOINED).for_each(|w| put(w, Sense::Rel(RelationKind::Following)));

@@ -281,15 +281,27 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
 /// "whatever is behind us, make it a bus" and "the car behind us: drop it": the verb first.
 fn topic(body: &[Token]) -> Option<Vec<Token>> {
     let first = body.first()?;
-    let open = matches!(first.text.as_str(), "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who");
-    let definite = matches!(first.text.as_str(), "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my");
+    let open = matches!(
+        first.text.as_str(),
+        "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who"
+    );
+    let definite = matches!(
+        first.text.as_str(),
+        "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my"
+    );
     if !open && !definite {
         return None;
     }
     let cut = (1..body.len()).find(|i| {
         let mark = body[*i].kind == TokenKind::Comma || body[*i].kind == TokenKind::Mark;
         let next = i + 1 + strip_len(&body[i + 1..]);
-        if definite && mark && body.get(next).is_some_and(is_verb) && body.get(next + 1).is_none_or(|t| is_place_word(t) || matches!(t.text.as_str(), "to" | "away" | "out" | "off" | "onto" | "into")) {
+        if definite
+            && mark
+            && body.get(next).is_some_and(is_verb)
+            && body.get(next + 1).is_none_or(|t| {
+                is_place_word(t) || matches!(t.text.as_str(), "to" | "away" | "out" | "off" | "onto" | "into")
+            })
+        {
             return true; // "the man on the zebra, kindly shift to the left"
         }
         mark && body.get(i + 1).is_some_and(is_verb)
@@ -301,7 +313,10 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
     let mut np: Vec<Token> = Vec::new();
     if open {
         let is = body[..cut].iter().position(|t| {
-            matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was")
+            matches!(
+                t.text.as_str(),
+                "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was"
+            )
         })?;
         let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
         np.push(word("the", first));
@@ -311,8 +326,12 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
         np.extend_from_slice(&body[..cut]);
     }
     let start = cut + 1 + strip_len(&body[cut + 1..]);
-    let it = (start..body.len())
-        .find(|i| matches!(body[*i].text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"));
+    let it = (start..body.len()).find(|i| {
+        matches!(
+            body[*i].text.as_str(),
+            "it" | "them" | "him" | "her" | "that" | "this"
+        )
+    });
     let Some(it) = it else {
         let verb = body.get(start)?.clone();
         let mut out = vec![verb];
@@ -400,7 +419,8 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     let mut rest = strip(body, POLITE);
     while let Some((last, before)) = rest.split_last()
         && before.len() > 1
-        && (last.kind == TokenKind::Comma || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
+        && (last.kind == TokenKind::Comma
+            || matches!(last.text.as_str(), "please" | "thanks" | "ok" | "okay" | "now"))
     {
         rest = before;
     }
@@ -432,7 +452,11 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         && let Some(n) = rest[..k].iter().position(|t| number(t).is_some())
         && rest[n..k].iter().any(is_noun)
     {
-        let end = if rest[k - 1].kind == TokenKind::Comma { k - 1 } else { k };
+        let end = if rest[k - 1].kind == TokenKind::Comma {
+            k - 1
+        } else {
+            k
+        };
         return (with_verb("keep exactly", first, &rest[n..end]), None);
     }
     if let Some(found) = restate(rest) {
@@ -471,10 +495,16 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     }
     // "have a cyclist follow the bus", "let somebody else join the pedestrian"
     let fresh = rest.get(1).is_some_and(|t| {
-        matches!(t.text.as_str(), "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three") || number(t).is_some()
+        matches!(
+            t.text.as_str(),
+            "a" | "an" | "another" | "somebody" | "someone" | "some" | "one" | "two" | "three"
+        ) || number(t).is_some()
     });
     let does = rest.iter().skip(2).take(6).any(|t| {
-        matches!(sense(t), Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)) || is_verb(t)
+        matches!(
+            sense(t),
+            Some(Sense::State(_, true) | Sense::Rel(_) | Sense::Across)
+        ) || is_verb(t)
     });
     if matches!(first.text.as_str(), "let" | "have" | "make" | "get") && fresh && does {
         return (with_verb("add", first, &rest[1..]), None);

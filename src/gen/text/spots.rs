@@ -223,7 +223,9 @@ impl Gather<'_, '_> {
             Some((relation, role)) if is_walk(role) => {
                 (self.base.still, self.base.moves, self.base.anywhere) = (true, false, true);
                 let map = self.map;
-                self.cells(BevLayer::Walkway.bit(), 2, |p| map.nearest(p).map_or(0.0, |l| l.dir.to_angle()));
+                self.cells(BevLayer::Walkway.bit(), 2, |p| {
+                    map.nearest(p).map_or(0.0, |l| l.dir.to_angle())
+                });
                 self.base.anywhere = false;
                 if relation == RelationKind::ParkedOn {
                     self.edge(LaneRole::Roadside); // half on it will do
@@ -305,7 +307,9 @@ impl Gather<'_, '_> {
                 0.0
             };
             let across = self.draw.range(-0.25, 0.25);
-            let wrong_way = self.against && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right) && l.role == role;
+            let wrong_way = self.against
+                && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right)
+                && l.role == role;
             let yaw = l.dir.to_angle()
                 + if wrong_way { PI } else { 0.0 }
                 + if people {

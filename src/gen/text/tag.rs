@@ -76,7 +76,12 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
             let words = run(i, n)?;
             let mut sense = look_up(&words);
             // "the lane to the left of yours"
-            if sense.is_none() && n > 1 && (i..i + n).any(|k| word(k).is_some_and(|w| matches!(w, "your" | "our" | "yours" | "ours" | "you" | "us"))) {
+            if sense.is_none()
+                && n > 1
+                && (i..i + n).any(|k| {
+                    word(k).is_some_and(|w| matches!(w, "your" | "our" | "yours" | "ours" | "you" | "us"))
+                })
+            {
                 let mine: Vec<&str> = (i..i + n).filter_map(word).map(as_mine).collect();
                 sense = look_up(&mine.join(" "));
             }
@@ -187,8 +192,17 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             }
             // "straight at us", not "a straight road"
             ("straight", _)
-                if !before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Article(_) | Sense::Attribute(_) | Sense::Size(_))))
-                    && !next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_)))) =>
+                if !before.is_some_and(|b| {
+                    matches!(
+                        b.tag,
+                        Tag::Is(Sense::Article(_) | Sense::Attribute(_) | Sense::Size(_))
+                    )
+                }) && !next.is_some_and(|n| {
+                    matches!(
+                        n.tag,
+                        Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_))
+                    )
+                }) =>
             {
                 out.push(Item {
                     tag: Tag::Is(Sense::Filler),
@@ -253,13 +267,18 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
                 skip = 2;
-                if items.get(i + 3).is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "hour" | "h" | "oclock")) {
+                if items
+                    .get(i + 3)
+                    .is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "hour" | "h" | "oclock"))
+                {
                     skip = 3;
                 }
             }
             // "0340 hrs"
             (_, Tag::Number(clock))
-                if next.is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "h")) && item.span.end - item.span.start == 4 && clock < 2400.0 =>
+                if next.is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "h"))
+                    && item.span.end - item.span.start == 4
+                    && clock < 2400.0 =>
             {
                 out.push(Item {
                     tag: Tag::Is(Sense::Time(time_of((clock / 100.0).floor(), false))),
@@ -269,7 +288,13 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             }
             // "at 3 in the morning"
             (_, Tag::Number(hour))
-                if hour <= 12.0 && next.is_some_and(|n| matches!(n.words.as_str(), "in the morning" | "in the evening" | "in the afternoon" | "at night")) =>
+                if hour <= 12.0
+                    && next.is_some_and(|n| {
+                        matches!(
+                            n.words.as_str(),
+                            "in the morning" | "in the evening" | "in the afternoon" | "at night"
+                        )
+                    }) =>
             {
                 let part = next.map_or("", |n| n.words.as_str());
                 let pm = part != "in the morning" && !(part == "at night" && hour < 5.0);
@@ -280,7 +305,10 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 skip = 1;
             }
             // "two nos. JCB"
-            ("nos" | "numbers" | "no", _) if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Count(_)) | Tag::Number(_))) && (item.words != "no" || item.span.end - item.span.start == 3) => {
+            ("nos" | "numbers" | "no", _)
+                if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Count(_)) | Tag::Number(_)))
+                    && (item.words != "no" || item.span.end - item.span.start == 3) =>
+            {
                 skip = usize::from(next.is_some_and(|n| n.tag == Tag::Stop) && items.get(i + 2).is_some());
             }
             _ => out.push(item.clone()),

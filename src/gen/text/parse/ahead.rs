@@ -74,7 +74,9 @@ impl Parser<'_> {
         let mut j = i;
         while matches!(
             self.sense(j),
-            Some(Sense::Article(_) | Sense::Filler | Sense::Size(_) | Sense::Attribute(_) | Sense::Density(_))
+            Some(
+                Sense::Article(_) | Sense::Filler | Sense::Size(_) | Sense::Attribute(_) | Sense::Density(_)
+            )
         ) {
             j += 1;
         }
@@ -88,7 +90,17 @@ impl Parser<'_> {
     pub(super) fn stands_alone(&self, item: &Item) -> bool {
         let adverb = matches!(
             item.words.as_str(),
-            "past" | "after" | "before" | "beyond" | "around" | "round" | "near" | "face" | "watch" | "mark" | "ring"
+            "past"
+                | "after"
+                | "before"
+                | "beyond"
+                | "around"
+                | "round"
+                | "near"
+                | "face"
+                | "watch"
+                | "mark"
+                | "ring"
         );
         let participle = item.words.split(' ').next().is_some_and(|w| w.ends_with("ed"));
         (adverb || participle) && !self.anchor_ahead(self.at + 1) || participle && self.after_is()
@@ -96,7 +108,10 @@ impl Parser<'_> {
 
     pub(super) fn after_is(&self) -> bool {
         let before = self.item(self.at.wrapping_sub(1)).map(|i| i.words.as_str());
-        matches!(before, Some("is" | "are" | "was" | "were" | "looks" | "being" | "been"))
+        matches!(
+            before,
+            Some("is" | "are" | "was" | "were" | "looks" | "being" | "been")
+        )
     }
 
     /// True if a list of denied things goes on after a comma: "no cars, buses or people".

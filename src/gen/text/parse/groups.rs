@@ -45,9 +45,9 @@ impl Parser<'_> {
         if self.noun_ahead(self.at + 1) && !all {
             return; // "the other car", "another bus"
         }
-        let whole = (0..self.mentions.len()).rev().find(|&i| {
-            !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i)
-        });
+        let whole = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i));
         let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
         if let (Some(whole), true, true) = (whole, of_them, self.pending.is_some()) {
             // "between two of them", "next to one of them"
@@ -56,14 +56,22 @@ impl Parser<'_> {
         }
         // "two cars ahead and a third behind us" names one more
         let said = span.of(self.prompt).to_lowercase();
-        let nth = ["second", "third", "fourth", "fifth", "sixth"].iter().position(|w| said.starts_with(&format!("a {w}"))).map(|k| k as u32 + 1);
-        let last = (0..self.mentions.len()).rev().find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
+        let nth = ["second", "third", "fourth", "fifth", "sixth"]
+            .iter()
+            .position(|w| said.starts_with(&format!("a {w}")))
+            .map(|k| k as u32 + 1);
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
         let more = last.is_some_and(|i| {
             let m = &self.mentions[i];
             !self.edits && nth == Some(m.spec.count.n) && !m.spec.relations.is_empty() && m.spec.count.n > 1
         });
         if more && self.pending.is_none() {
-            if self.item(self.at + 1).is_some_and(|i| matches!(i.words.as_str(), "one")) {
+            if self
+                .item(self.at + 1)
+                .is_some_and(|i| matches!(i.words.as_str(), "one"))
+            {
                 self.at += 1;
             }
             self.again(Count::exactly(1), span);
@@ -165,7 +173,9 @@ impl Parser<'_> {
                 // "it" is one thing.
                 "it" if self.ego_named => {
                     let kin = |i: &usize| {
-                        targets.iter().any(|t| self.mentions[*t].spec.noun == self.mentions[*i].spec.noun)
+                        targets
+                            .iter()
+                            .any(|t| self.mentions[*t].spec.noun == self.mentions[*i].spec.noun)
                     };
                     let one = |i: &usize| !skip(i) && !kin(i) && self.mentions[*i].spec.count.n == 1;
                     let subject = self.head.iter().chain(&self.before).copied().find(one);
@@ -194,7 +204,10 @@ impl Parser<'_> {
                 }
                 // "the left lane has two cars in it"
                 None if !self.fronted.is_empty()
-                    && self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) =>
+                    && self
+                        .pending
+                        .as_ref()
+                        .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At)) =>
                 {
                     self.pending = None;
                 }

@@ -59,11 +59,11 @@ pub(super) struct Parser<'a> {
     pub(super) topic: Option<(Anchor, Span)>,
     reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
     pub(super) relative: bool,
-    ego_subject: bool, // "I am behind a bus"
-    ego_named: bool,   // "the host vehicle": "it" may mean it
+    ego_subject: bool,                     // "I am behind a bus"
+    ego_named: bool,                       // "the host vehicle": "it" may mean it
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
-    pair: Vec<usize>,  // the two of "between a van and a lorry"
+    pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
     denied: bool,                   // what follows says where something is not
@@ -182,7 +182,10 @@ impl<'a> Parser<'a> {
                         Prep::Rels(kinds) if f.anchor == Anchor::Ego => !kinds.iter().any(|k| {
                             matches!(
                                 k,
-                                RelationKind::Following | RelationKind::Blocking | RelationKind::Crossing | RelationKind::Facing
+                                RelationKind::Following
+                                    | RelationKind::Blocking
+                                    | RelationKind::Crossing
+                                    | RelationKind::Facing
                             )
                         }),
                         _ => true,

@@ -56,7 +56,10 @@ impl Parser<'_> {
         {
             return;
         }
-        if !self.edits && matches!(word, "thing" | "things" | "anything" | "everything") && pre.count.is_none() {
+        if !self.edits
+            && matches!(word, "thing" | "things" | "anything" | "everything")
+            && pre.count.is_none()
+        {
             self.pending = None;
             return; // "can barely see a thing"
         }
@@ -175,7 +178,11 @@ impl Parser<'_> {
             }
             self.last = vec![index];
             let walk = |i: &usize| self.mentions[*i].spec.class == Class::Pedestrian;
-            if kind == RelationKind::NextTo && walk(&index) && self.head.iter().all(walk) && !self.head.contains(&index) {
+            if kind == RelationKind::NextTo
+                && walk(&index)
+                && self.head.iter().all(walk)
+                && !self.head.contains(&index)
+            {
                 // Children accompanied by a teacher cross with them.
                 self.head.push(index);
             }

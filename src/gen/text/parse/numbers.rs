@@ -50,12 +50,29 @@ impl Parser<'_> {
             self.mentions[i].uncounted = false;
             return;
         }
-        let more = matches!(self.sense(self.at + 1), Some(Sense::Pick(super::super::words::edits::Pick::More)));
+        let more = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Pick(super::super::words::edits::Pick::More))
+        );
         let placed = matches!(
             self.sense(self.at + 2),
-            Some(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_) | Sense::FarSide | Sense::State(..) | Sense::Possessed(_))
+            Some(
+                Sense::In
+                    | Sense::At
+                    | Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::FarSide
+                    | Sense::State(..)
+                    | Sense::Possessed(_)
+            )
         );
-        if next_is_part && !self.edits && more && placed && self.pending.is_none() && !self.mentions.is_empty() {
+        if next_is_part
+            && !self.edits
+            && more
+            && placed
+            && self.pending.is_none()
+            && !self.mentions.is_empty()
+        {
             // "six people on the left, two more on the right"
             self.at += 1;
             self.again(count, span);
@@ -73,7 +90,12 @@ impl Parser<'_> {
             self.part(false, count, span);
             return;
         }
-        if next_is_part && !self.edits && self.pending.is_none() && count.is_exact() && self.one_more_like_it() {
+        if next_is_part
+            && !self.edits
+            && self.pending.is_none()
+            && count.is_exact()
+            && self.one_more_like_it()
+        {
             // "a car in front, one behind"
             self.again(count, span);
             return;

@@ -100,8 +100,16 @@ impl Parser<'_> {
             self.targets()
         };
         // "three oncoming cars and a man on the crossing": where the cars are was said.
-        let open: Vec<usize> = targets.iter().copied().filter(|t| !self.mentions[*t].said_where).collect();
-        let targets = if targets.len() > 1 && !open.is_empty() { open } else { targets };
+        let open: Vec<usize> = targets
+            .iter()
+            .copied()
+            .filter(|t| !self.mentions[*t].said_where)
+            .collect();
+        let targets = if targets.len() > 1 && !open.is_empty() {
+            open
+        } else {
+            targets
+        };
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()

@@ -1,11 +1,11 @@
 //! One tagged word: what it does to what was read so far.
 
-use super::super::words::objects::NOUNS;
 use super::super::description::{Anchor, Became, Count, Density};
 use super::super::lexicon::Sense;
 use super::super::mention::{Pre, Prep};
 use super::super::tag::{Item, Tag};
 use super::super::words::edits::{Pick, Verb};
+use super::super::words::objects::NOUNS;
 use super::{Parser, is_color, is_prenominal, places_color};
 use crate::scene::Class;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
@@ -52,7 +52,8 @@ impl<'a> Parser<'a> {
                         }
                     }
                     // "the site ahead consists of a digger and two cones"
-                    "consists of" | "consist of" | "consists out of" | "is made up of" | "comprises" | "comprise" | "includes" | "include"
+                    "consists of" | "consist of" | "consists out of" | "is made up of" | "comprises"
+                    | "comprise" | "includes" | "include"
                         if !self.edits =>
                     {
                         self.introduce();
@@ -146,7 +147,9 @@ impl<'a> Parser<'a> {
             }
             // "bicycles and motorbikes are there not any"
             Sense::Not
-                if matches!(item.words.as_str(), "not any" | "none" | "absent") && self.ends(self.at + 1) && self.none_of_these(span) => {}
+                if matches!(item.words.as_str(), "not any" | "none" | "absent")
+                    && self.ends(self.at + 1)
+                    && self.none_of_these(span) => {}
             // "pedestrians: none"
             Sense::Not if item.words == "none" && self.none_of_it(2, span) => {}
             Sense::Not => {
@@ -181,7 +184,9 @@ impl<'a> Parser<'a> {
             }
             Sense::State(state, finite) => self.state(state, finite, prenominal, item),
             // "a Mini"
-            Sense::Size(_) if item.words == "mini" && !self.noun_ahead(self.at + 1) && self.pre.article.is_some() => {
+            Sense::Size(_)
+                if item.words == "mini" && !self.noun_ahead(self.at + 1) && self.pre.article.is_some() =>
+            {
                 self.noun(&NOUNS[0], "mini", false, span);
             }
             Sense::Size(size) => {
@@ -221,12 +226,18 @@ impl<'a> Parser<'a> {
             Sense::Works => self.works(span),
             // "the lead vehicle"
             Sense::Rel(_)
-                if matches!(item.words.as_str(), "lead" | "leading" | "preceding" | "following" | "trailing")
-                    && (self.pre.article.is_some() || item.words == "lead" && self.fresh)
+                if matches!(
+                    item.words.as_str(),
+                    "lead" | "leading" | "preceding" | "following" | "trailing"
+                ) && (self.pre.article.is_some() || item.words == "lead" && self.fresh)
                     && self.noun_directly(self.at + 1) =>
             {
                 let ahead = !matches!(item.words.as_str(), "following" | "trailing");
-                let kind = if ahead { RelationKind::InFrontOf } else { RelationKind::Behind };
+                let kind = if ahead {
+                    RelationKind::InFrontOf
+                } else {
+                    RelationKind::Behind
+                };
                 self.fronted_once(&[kind], span);
             }
             Sense::Possessed(kind) => {
@@ -325,8 +336,10 @@ impl<'a> Parser<'a> {
             }
             // "drives off", "the sun is going down"
             Sense::In
-                if matches!(item.words.as_str(), "up" | "down" | "off" | "over" | "through" | "line" | "lines")
-                    && !self.place_ahead(self.at + 1) =>
+                if matches!(
+                    item.words.as_str(),
+                    "up" | "down" | "off" | "over" | "through" | "line" | "lines"
+                ) && !self.place_ahead(self.at + 1) =>
             {
                 return true;
             }
@@ -354,7 +367,10 @@ impl<'a> Parser<'a> {
                 self.drop_pending();
             }
             Sense::Ego => {
-                let third = !matches!(item.words.as_str(), "me" | "us" | "i" | "we" | "my car" | "our car" | "myself" | "you");
+                let third = !matches!(
+                    item.words.as_str(),
+                    "me" | "us" | "i" | "we" | "my car" | "our car" | "myself" | "you"
+                );
                 if self.pending.is_some() {
                     self.anchor(Anchor::Ego, span);
                 } else {

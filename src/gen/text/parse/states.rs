@@ -10,7 +10,9 @@ impl Parser<'_> {
     pub(super) fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
         let span = item.span;
         self.denied &= !(finite || self.after_is());
-        let meant = self.item(self.at.wrapping_sub(1)).is_some_and(|b| matches!(b.words.as_str(), "to" | "wants to" | "want to"));
+        let meant = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "to" | "wants to" | "want to"));
         if meant && self.ego_subject && self.head.is_empty() {
             return; // "we want to overtake a cyclist"
         }
@@ -70,7 +72,9 @@ impl Parser<'_> {
             return;
         }
         // "waiting to turn left"
-        let aim = self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to");
+        let aim = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.words == "to");
         let stands = |t: &usize| {
             let state = self.mentions[*t].spec.state;
             matches!(state, Some(ObjectState::Waiting | ObjectState::Parked))

@@ -10,10 +10,14 @@ use crate::scene::graph::{LaneRole, RelationKind};
 impl Parser<'_> {
     pub(super) fn place(&mut self, anchor: Anchor, road: Option<Road>, item: &Item) {
         let span = item.span;
-        let own = item.words.starts_with("its ") || item.words.starts_with("their ") || item.words.starts_with("his ");
+        let own = item.words.starts_with("its ")
+            || item.words.starts_with("their ")
+            || item.words.starts_with("his ");
         let against = |t: &usize| {
             let relations = &self.mentions[*t].spec.relations;
-            relations.iter().any(|r| r.relation == RelationKind::OppositeDirection)
+            relations
+                .iter()
+                .any(|r| r.relation == RelationKind::OppositeDirection)
         };
         if own && self.pending.is_some() && self.targets().iter().any(against) {
             self.pending = None; // its own lane is the oncoming one
@@ -23,12 +27,21 @@ impl Parser<'_> {
             self.pending = None; // "we stand by the traffic light" sets the stage
         }
         // "in that same lane"
-        let same = matches!(item.words.as_str(), "same lane" | "lane") && self.item(self.at.wrapping_sub(1)).is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
-        let anchor = match self.last_lane.filter(|_| same && anchor == Anchor::Lane(LaneRole::Ego)) {
+        let same = matches!(item.words.as_str(), "same lane" | "lane")
+            && self
+                .item(self.at.wrapping_sub(1))
+                .is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
+        let anchor = match self
+            .last_lane
+            .filter(|_| same && anchor == Anchor::Lane(LaneRole::Ego))
+        {
             Some(lane) => lane,
             None => anchor,
         };
-        if matches!(anchor, Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)) {
+        if matches!(
+            anchor,
+            Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+        ) {
             self.last_lane = Some(anchor);
         }
         if anchor != Anchor::Lane(LaneRole::Road) {
@@ -95,12 +108,26 @@ impl Parser<'_> {
             }
             return;
         }
-        let opened = self
-            .item(self.at.wrapping_sub(1))
-            .is_some_and(|b| matches!(b.tag, super::super::tag::Tag::Comma | super::super::tag::Tag::Mark));
-        if opened && self.ends(self.at + 1) && !self.head.is_empty() && !matches!(anchor, Anchor::Lane(LaneRole::Road)) {
+        let opened = self.item(self.at.wrapping_sub(1)).is_some_and(|b| {
+            matches!(
+                b.tag,
+                super::super::tag::Tag::Comma | super::super::tag::Tag::Mark
+            )
+        });
+        if opened
+            && self.ends(self.at + 1)
+            && !self.head.is_empty()
+            && !matches!(anchor, Anchor::Lane(LaneRole::Road))
+        {
             // "Ped 2: left pavement", "a van, left lane, 20 m ahead"
-            self.begin(if anchor == Anchor::Junction { Prep::At } else { Prep::In }, span);
+            self.begin(
+                if anchor == Anchor::Junction {
+                    Prep::At
+                } else {
+                    Prep::In
+                },
+                span,
+            );
             self.anchor(anchor, span);
             return;
         }

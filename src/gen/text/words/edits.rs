@@ -37,7 +37,10 @@ pub const VERBS: &[(Verb, &str)] = &[
         Verb::Move,
         "guide|steer|lead|haul over|lug|hoist|transport|transpose|migrate|pull back|pull forward|push back|push forward|push over|set back|move over|move up|move back|shuffle|edge|ease|inch|walk|reseat|re position|re locate|park the|park that|park my|park both|pop over|shove over|nudge over|rearrange|draw|convey|ship|usher|drive|drive over|direct|hurl|fling|haul|manoeuvre|maneuver|scoot over|dislocate|swap places with|put the|place the|put back|put both|put that|put my|set the|move|shift|push|shove|budge|slide over|scoot|roll|place over|carry|take across|swing|back up|pull|slide|drag|nudge|relocate|displace|bring|transfer|translate|reposition|send|advance",
     ),
-    (Verb::Turn, "pivot|point|aim|revolve|twist|about face|orientate|redirect|realign|align|angle|wheel round|wheel around|turn round|turn around|spin round|spin around|reverse|turn|rotate|spin|swivel|face|flip|reorient|orient"),
+    (
+        Verb::Turn,
+        "pivot|point|aim|revolve|twist|about face|orientate|redirect|realign|align|angle|wheel round|wheel around|turn round|turn around|spin round|spin around|reverse|turn|rotate|spin|swivel|face|flip|reorient|orient",
+    ),
     (
         Verb::Replace,
         "make way for|change over|change into|turn into|upgrade|downgrade|switch for|supplant|supersede|swap over|trade in|barter|make into|mutate|transmute|reshape|refashion|remodel|rework|redo|metamorphose|interchange|alternate|replace|swap|substitute|trade|switch out|change out|morph|exchange|convert|transform|swap out",
@@ -54,7 +57,10 @@ pub const VERBS: &[(Verb, &str)] = &[
         Verb::Make,
         "render|force|order|tell|ask|cause|allow|permit|switch over|switch to|modify|edit|tweak|amend|revise|turn on|switch on|put on|make|set|change|switch|let|turn it|make it|set it|get|i want it|alter|adjust",
     ),
-    (Verb::Clear, "sweep|tidy up|tidy|unblock|open up|free up|clear|empty out|clear out|clean up|vacate"),
+    (
+        Verb::Clear,
+        "sweep|tidy up|tidy|unblock|open up|free up|clear|empty out|clear out|clean up|vacate",
+    ),
 ];
 
 /// Which one.
@@ -98,15 +104,24 @@ pub const PICKS: &[(Pick, &str)] = &[
         Pick::Farthest,
         "farther of the two|farther of the|further of the two|further of the|more distant of the two|more distant|farther one|further one|farthest of the|furthest of the|farthest|furthest|remotest|furthest from me|farthest from me|furthest off|most remote|furthest out|farthest out|furthest from us|most distant|farthest away|furthest away",
     ),
-    (Pick::Leftmost, "left one of the|left hand one of the|left of the two|leftmost of the|left one|leftmost|left most|furthest left|farthest left"),
+    (
+        Pick::Leftmost,
+        "left one of the|left hand one of the|left of the two|leftmost of the|left one|leftmost|left most|furthest left|farthest left",
+    ),
     (
         Pick::Rightmost,
         "right one of the|right hand one of the|right of the two|rightmost of the|right one|rightmost|right most|furthest right|farthest right",
     ),
     (Pick::Frontmost, "frontmost|foremost|front most|front one"),
     (Pick::Rearmost, "rearmost|hindmost|backmost|rear most"),
-    (Pick::Largest, "bigger of the two|larger of the two|bigger of the|larger of the|biggest of the|largest of the|biggest|largest|longest|tallest"),
-    (Pick::Smallest, "smaller of the two|smaller of the|smallest of the|smallest|shortest|tiniest"),
+    (
+        Pick::Largest,
+        "bigger of the two|larger of the two|bigger of the|larger of the|biggest of the|largest of the|biggest|largest|longest|tallest",
+    ),
+    (
+        Pick::Smallest,
+        "smaller of the two|smaller of the|smallest of the|smallest|shortest|tiniest",
+    ),
     (
         Pick::Any,
         "any|any one|some random|a random|random|any of the|one of the|any one of the|whichever",

@@ -16,20 +16,73 @@ pub fn sides() -> Vec<(&'static [R], String)> {
     let mut out = Vec::new();
     for (side, relation) in [("left", LEFT), ("right", RIGHT)] {
         for prep in [
-            "on", "to", "at", "from", "along", "down", "off to", "over on", "out on", "out to", "over to", "up on",
-            "towards", "toward", "by", "off on", "away to", "in from", "coming from", "coming in from", "out of", "further to", "somewhere on",
-            "somewhere to", "round to", "around to",
+            "on",
+            "to",
+            "at",
+            "from",
+            "along",
+            "down",
+            "off to",
+            "over on",
+            "out on",
+            "out to",
+            "over to",
+            "up on",
+            "towards",
+            "toward",
+            "by",
+            "off on",
+            "away to",
+            "in from",
+            "coming from",
+            "coming in from",
+            "out of",
+            "further to",
+            "somewhere on",
+            "somewhere to",
+            "round to",
+            "around to",
         ] {
             for whose in [
-                "the", "my", "our", "your", "the drivers", "the egos", "the ego vehicles", "the ego cars", "my own", "ones",
+                "the",
+                "my",
+                "our",
+                "your",
+                "the drivers",
+                "the egos",
+                "the ego vehicles",
+                "the ego cars",
+                "my own",
+                "ones",
             ] {
-                for tail in ["", " side", " hand side", " flank", " hand", " hand edge", " edge", " of me", " of us", " of the ego", " of the ego vehicle", " of my car", " of our car", " of my vehicle"] {
+                for tail in [
+                    "",
+                    " side",
+                    " hand side",
+                    " flank",
+                    " hand",
+                    " hand edge",
+                    " edge",
+                    " of me",
+                    " of us",
+                    " of the ego",
+                    " of the ego vehicle",
+                    " of my car",
+                    " of our car",
+                    " of my vehicle",
+                ] {
                     out.push((relation, format!("{prep} {whose} {side}{tail}")));
                 }
             }
         }
     }
-    for (place, relation) in [("drivers side", LEFT), ("drivers hand", LEFT), ("passenger side", RIGHT), ("passengers side", RIGHT), ("passengers hand", RIGHT)] {
+    for (place, relation) in [
+        ("drivers side", LEFT),
+        ("drivers hand", LEFT),
+        ("passenger side", RIGHT),
+        ("passengers side", RIGHT),
+        ("passengers hand", RIGHT),
+    ] {
         for prep in ["on", "to", "at", "from"] {
             out.push((relation, format!("{prep} the {place}")));
             out.push((relation, format!("{prep} my {place}")));
@@ -48,12 +101,30 @@ pub fn possessed() -> Vec<(R, String)> {
                     out.push((relation, format!("{prep} {whose} {side}{tail}")));
                 }
             }
-            for (end, relation) in [("rear", R::Behind), ("back", R::Behind), ("tail", R::Behind), ("heels", R::Behind), ("bumper", R::Behind), ("wake", R::Behind), ("front", R::InFrontOf), ("side", R::NextTo)] {
+            for (end, relation) in [
+                ("rear", R::Behind),
+                ("back", R::Behind),
+                ("tail", R::Behind),
+                ("heels", R::Behind),
+                ("bumper", R::Behind),
+                ("wake", R::Behind),
+                ("front", R::InFrontOf),
+                ("side", R::NextTo),
+            ] {
                 out.push((relation, format!("{prep} {whose} {end}")));
             }
         }
     }
-    for (whose, relation) in [("in its wake", R::Behind), ("hot on its heels", R::Behind), ("close on its heels", R::Behind), ("in their wake", R::Behind), ("by its side", R::NextTo), ("in its path", R::InFrontOf), ("in its way", R::InFrontOf), ("in his way", R::InFrontOf)] {
+    for (whose, relation) in [
+        ("in its wake", R::Behind),
+        ("hot on its heels", R::Behind),
+        ("close on its heels", R::Behind),
+        ("in their wake", R::Behind),
+        ("by its side", R::NextTo),
+        ("in its path", R::InFrontOf),
+        ("in its way", R::InFrontOf),
+        ("in his way", R::InFrontOf),
+    ] {
         out.push((relation, whose.to_string()));
     }
     out

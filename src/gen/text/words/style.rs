@@ -163,14 +163,26 @@ pub const COUNTS: &[(Count, &str)] = &[
         Count { min: 4, n: 4, max: 4 },
         "four|a quartet of|a group of four|a set of four|a team of four|a party of four|quartet|two pairs of|two couples of|quartet of|a foursome of|fou",
     ),
-    (Count { min: 5, n: 5, max: 5 }, "five|a group of five|a set of five|a team of five|a quintet of|quintet of|a party of five|a handful of five|a fivesome of"),
+    (
+        Count { min: 5, n: 5, max: 5 },
+        "five|a group of five|a set of five|a team of five|a quintet of|quintet of|a party of five|a handful of five|a fivesome of",
+    ),
     (
         Count { min: 6, n: 6, max: 6 },
         "six|half a dozen|a group of six|a set of six|a team of six|a sextet of|a sixsome of|half of a dozen|1/2 dozen|two trios of|half a dozen of|half dozen|a half dozen|a half dozen of",
     ),
-    (Count { min: 7, n: 7, max: 7 }, "seven|a group of seven|a set of seven|a septet of"),
-    (Count { min: 8, n: 8, max: 8 }, "eight|a group of eight|a set of eight|an octet of"),
-    (Count { min: 9, n: 9, max: 9 }, "nine|a group of nine|a set of nine"),
+    (
+        Count { min: 7, n: 7, max: 7 },
+        "seven|a group of seven|a set of seven|a septet of",
+    ),
+    (
+        Count { min: 8, n: 8, max: 8 },
+        "eight|a group of eight|a set of eight|an octet of",
+    ),
+    (
+        Count { min: 9, n: 9, max: 9 },
+        "nine|a group of nine|a set of nine",
+    ),
     (
         Count {
             min: 10,

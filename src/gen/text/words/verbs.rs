@@ -27,7 +27,10 @@ fn ends_in_consonant(word: &str) -> bool {
 }
 
 fn with_s(word: &str) -> String {
-    if ["s", "x", "z", "ch", "sh", "go", "do"].iter().any(|t| word.ends_with(t)) {
+    if ["s", "x", "z", "ch", "sh", "go", "do"]
+        .iter()
+        .any(|t| word.ends_with(t))
+    {
         return format!("{word}es");
     }
     match word.strip_suffix('y') {
@@ -95,10 +98,7 @@ pub const DOING: &[(ObjectState, &str)] = &[
          chat|talk|gossip|smoke|gaze|stare|chatter|converse|confer|argue|laugh|wave|gather|assemble|congregate|huddle|cluster|mill about|stall|yield|give way/gave/given|pull up|draw up/drew/drawn|come to a stop/came/come|come to a halt/came/come|grind to a halt/ground|bide|dither|hesitate|tower|repose|work|dig/dug|repair|inspect|photograph|read/read/read|\
          be lined up/was|be stuck/was|get stuck/got|be stopped/was|pile up|bunch up|back up",
     ),
-    (
-        ObjectState::Parked,
-        "break down/broke/broken|double park",
-    ),
+    (ObjectState::Parked, "break down/broke/broken|double park"),
 ];
 
 /// What something does to what follows; the passive turns it around.
@@ -112,7 +112,10 @@ pub const RELATING: &[(R, &str)] = &[
         R::Following,
         "follow|tail|tailgate|trail|shadow|pursue|chase|track|stalk|trail behind|trail after|tag along behind|drive behind/drove behind/driven behind|ride behind/rode behind/ridden behind|run behind/ran behind/run behind|roll behind|travel behind|cycle behind|queue behind|queue up behind|line up behind|drive after/drove after/driven after|chase after|run after/ran after/run after|keep behind/kept behind/kept behind|stick behind/stuck behind/stuck behind|crawl behind|creep behind/crept behind|come after/came after/come after|come behind/came behind/come behind|come up behind/came up behind/come up behind|catch up with/caught up with/caught up with|close in on|close up on|close up behind|pedal behind|stick to/stuck to/stuck to|hang behind/hung behind/hung behind|ride after/rode after/ridden after|bring up the rear behind/brought up the rear behind/brought up the rear behind",
     ),
-    (R::InFrontOf, "lead/led/led|precede|head up|pull in in front of|cut in in front of|cut up|drive ahead of/drove ahead of/driven ahead of|ride ahead of/rode ahead of/ridden ahead of|run ahead of/ran ahead of/run ahead of|walk ahead of"),
+    (
+        R::InFrontOf,
+        "lead/led/led|precede|head up|pull in in front of|cut in in front of|cut up|drive ahead of/drove ahead of/driven ahead of|ride ahead of/rode ahead of/ridden ahead of|run ahead of/ran ahead of/run ahead of|walk ahead of",
+    ),
     (
         R::Crossing,
         "cross|traverse|cut across/cut across/cut across|step across|walk across|run across/ran across/run across|dash across|dart across|hurry across|rush across|race across|sprint across|jog across|stroll across|amble across|saunter across|wander across|shuffle across|hobble across|limp across|march across|\
@@ -123,8 +126,14 @@ pub const RELATING: &[(R, &str)] = &[
         R::Facing,
         "face|confront|eye|watch|look at|look towards|gaze at|stare at|point at|point to|point straight at|point right at|point towards|aim at|head for|head towards|head toward|make for/made for/made for|bear down on/bore down on|close in on|approach|near",
     ),
-    (R::NextTo, "join|flank|adjoin|border|accompany|escort|abut|hug|skirt|pull alongside|pull up next to|pull up beside|draw level with/drew level with/drawn level with|draw alongside/drew alongside/drawn alongside|keep pace with/kept pace with|push|wheel"),
-    (R::Near, "surround|ring|encircle|enclose|fence in|hem in/hemmed in/hemmed in|protect|shield|secure|screen|mark|mark off|delimit|crowd around|crowd round|gather around|gather round|huddle around|cluster around|mill around|stand around/stood around|attend|attend to|tend to|work on|inspect|repair|look after|examine|talk to|chat with|speak to/spoke to/spoken to"),
+    (
+        R::NextTo,
+        "join|flank|adjoin|border|accompany|escort|abut|hug|skirt|pull alongside|pull up next to|pull up beside|draw level with/drew level with/drawn level with|draw alongside/drew alongside/drawn alongside|keep pace with/kept pace with|push|wheel",
+    ),
+    (
+        R::Near,
+        "surround|ring|encircle|enclose|fence in|hem in/hemmed in/hemmed in|protect|shield|secure|screen|mark|mark off|delimit|crowd around|crowd round|gather around|gather round|huddle around|cluster around|mill around|stand around/stood around|attend|attend to|tend to|work on|inspect|repair|look after|examine|talk to|chat with|speak to/spoke to/spoken to",
+    ),
 ];
 
 /// Something drawn by what comes before: "a tractor tows a trailer", and "a trailer towed by a tractor".
@@ -135,8 +144,14 @@ pub const SAYING: &str = "say/said|state|report|claim|count|observe|see/saw/seen
 
 /// The sky's verbs: weather as in [`super::style::WEATHERS`].
 pub const SKY: &[(super::super::description::Weather, &str)] = &[
-    (super::super::description::Weather::Rain, "rain|pour|pour down|pour with rain|bucket|bucket down|drizzle|pelt down|lash down|teem down|tip down|chuck down|hammer down|belt down|sheet down|spit with rain|rain down|hail|thunder and lightning|piss down"),
-    (super::super::description::Weather::Snow, "snow|snow down|snow heavily|sleet"),
+    (
+        super::super::description::Weather::Rain,
+        "rain|pour|pour down|pour with rain|bucket|bucket down|drizzle|pelt down|lash down|teem down|tip down|chuck down|hammer down|belt down|sheet down|spit with rain|rain down|hail|thunder and lightning|piss down",
+    ),
+    (
+        super::super::description::Weather::Snow,
+        "snow|snow down|snow heavily|sleet",
+    ),
 ];
 
 /// Joined to the back of what follows.
@@ -155,7 +170,10 @@ mod tests {
         assert_eq!(all("creep/crept"), "creep creeps creeping crept crept");
         assert_eq!(all("stop"), "stop stops stopping stopped stopped");
         assert_eq!(all("hurry"), "hurry hurries hurrying hurried hurried");
-        assert_eq!(all("seal off"), "seal off seals off sealing off sealed off sealed off");
+        assert_eq!(
+            all("seal off"),
+            "seal off seals off sealing off sealed off sealed off"
+        );
         assert_eq!(all("queue"), "queue queues queuing queued queued");
         assert_eq!(all("lie/lay/lain"), "lie lies lying lay lain");
         assert_eq!(all("pass"), "pass passes passing passed passed");
