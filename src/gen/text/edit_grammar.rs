@@ -284,8 +284,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
         && matches!(
             items
-                .get(1..4)
-                .and_then(|w| w.iter().find(|i| !is_adjective(i)))
+                .iter()
+                .skip(1)
+                .take(3)
+                .find(|i| !is_adjective(i))
                 .map(|i| i.tag),
             Some(Tag::Is(Sense::Noun(..)))
         );

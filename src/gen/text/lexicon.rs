@@ -382,7 +382,9 @@ fn build() -> Table {
     }
     for (weather, list) in verbs::SKY {
         for f in words(list).map(verbs::forms) {
-            [&f.base, &f.s, &f.ing, &f.past].map(|w| put(w, Sense::Weather(*weather)));
+            for w in [&f.base, &f.s, &f.ing, &f.past] {
+                put(w, Sense::Weather(*weather));
+            }
         }
     }
     for (n, name) in (1..).zip(phrases::HOURS) {
@@ -404,7 +406,9 @@ fn build() -> Table {
     for (state, list) in verbs::DOING {
         for f in words(list).map(verbs::forms) {
             put(&f.ing, Sense::State(*state, false));
-            [&f.base, &f.s, &f.past].map(|w| put(w, Sense::State(*state, true)));
+            for w in [&f.base, &f.s, &f.past] {
+                put(w, Sense::State(*state, true));
+            }
             for have in ["has", "have", "had", "has just", "have just", "having"] {
                 put(&format!("{have} {}", f.participle), Sense::State(*state, true));
             }
@@ -438,7 +442,9 @@ fn build() -> Table {
             &format!("{} behind", f.participle),
             Sense::Rel(RelationKind::Following),
         );
-        [&f.s, &f.ing, &f.past].map(|w| put(w, Sense::Reversed(RelationKind::Following)));
+        for w in [&f.s, &f.ing, &f.past] {
+            put(w, Sense::Reversed(RelationKind::Following));
+        }
     }
     words(verbs::JOINED).for_each(|w| put(w, Sense::Rel(RelationKind::Following)));
     for (verb, list) in edits::VERBS {

@@ -439,6 +439,107 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         // "no more cones" means all of them, as "remove the cones" does
         return (with_verb("remove", first, tail), None);
     }
+    // "could the lorry be swapped for a van?"
+    let asks = matches!(
+        first.text.as_str(),
+        "could" | "can" | "should" | "would" | "must" | "may" | "might" | "shall"
+    );
+    if asks
+        && rest.get(1).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "the" | "both" | "all" | "that" | "those" | "these" | "every"
+            )
+        })
+    {
+        return one(&rest[1..]);
+    }
+    // "leave everything as it is but put a cone there", "change nothing except the weather"
+    let all = rest
+        .get(1)
+        .is_some_and(|t| matches!(t.text.as_str(), "everything" | "all" | "nothing" | "things"));
+    let same = rest.get(1).is_some_and(|t| t.text == "nothing")
+        || rest
+            .iter()
+            .take(8)
+            .any(|t| matches!(t.text.as_str(), "as" | "else" | "unchanged" | "same" | "alone"));
+    if matches!(first.text.as_str(), "leave" | "keep" | "change" | "touch") && all && same {
+        let cut = rest.iter().position(|t| {
+            t.kind == TokenKind::Comma
+                || matches!(
+                    t.text.as_str(),
+                    "but" | "except" | "and" | "only" | "save" | "just"
+                )
+        });
+        let tail = cut.map_or(&[][..], |k| strip(&rest[k + 1..], POLITE));
+        return if tail.is_empty() {
+            (Vec::new(), None)
+        } else {
+            one(tail)
+        };
+    }
+    // "apart from the truck nothing should remain", "only the walkers may stay"
+    let lead = [
+        &["apart", "from"][..],
+        &["except", "for"],
+        &["except"],
+        &["besides"],
+        &["other", "than"],
+        &["save", "for"],
+        &["bar"],
+        &["only"],
+        &["just"],
+        &["nothing", "but"],
+    ]
+    .into_iter()
+    .find(|l| starts_with(rest, l));
+    let stays = rest.iter().position(|t| {
+        matches!(
+            t.text.as_str(),
+            "stay"
+                | "stays"
+                | "remain"
+                | "remains"
+                | "kept"
+                | "left"
+                | "go"
+                | "survive"
+                | "gone"
+                | "disappear"
+                | "removed"
+        )
+    });
+    if let (Some(l), Some(_)) = (lead, stays) {
+        let np = &rest[l.len()..];
+        let end = np.iter().position(|t| {
+            t.kind == TokenKind::Comma
+                || matches!(
+                    t.text.as_str(),
+                    "may"
+                        | "should"
+                        | "can"
+                        | "must"
+                        | "shall"
+                        | "is"
+                        | "are"
+                        | "will"
+                        | "gets"
+                        | "get"
+                        | "everything"
+                        | "nothing"
+                        | "stays"
+                        | "stay"
+                        | "remain"
+                        | "remains"
+                        | "all"
+                        | "has"
+                        | "have"
+                )
+        });
+        if let Some(end) = end.filter(|e| np[..*e].iter().any(is_noun)) {
+            return (with_verb("keep only", first, &np[..end]), None);
+        }
+    }
     // "five people, not three", "four cones instead of six"
     let not_n = (1..rest.len()).find(|i| {
         let n = match rest[*i].text.as_str() {

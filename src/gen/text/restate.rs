@@ -438,8 +438,25 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
     let first = clause.first()?;
     let noun_end = subject(clause)?;
     // What is said of the noun may stand between: "the car on the left has gone".
+    // "two of the three parked cars": any two
+    let some = clause.get(1).is_some_and(|t| text(t) == "of") && number(first).is_some();
+    let skip = clause
+        .iter()
+        .skip(2)
+        .position(|t| !matches!(text(t), "the" | "my" | "those" | "these" | "our") && number(t).is_none())
+        .unwrap_or(0);
+    let few: Vec<Token> = if some {
+        command("any", first, &[&clause[..1], &clause[2 + skip..]])
+    } else {
+        Vec::new()
+    };
     for from in noun_end..clause.len().min(noun_end + 8) {
-        let np = &clause[..from];
+        // "any" comes before, "of the three" is left out
+        let np = if some {
+            few.get(..from.saturating_sub(skip)).unwrap_or(&[])
+        } else {
+            &clause[..from]
+        };
         let mut k = from;
         let mut helped = false;
         let mut not = false;

@@ -171,6 +171,12 @@ impl Parser<'_> {
                     apply(&mut self.mentions[index].spec, &frag);
                     self.reversed = Some((kind, rspan, subjects, topic)); // "by cones and barriers"
                 }
+                // "the view to the left is blocked by a lorry"
+                None if !self.fronted.is_empty() => {
+                    for frag in self.fronted.clone() {
+                        apply(&mut self.mentions[index].spec, &frag);
+                    }
+                }
                 None => self.unread(rspan, Some("of what?".into())),
             }
             if self.head.is_empty() {

@@ -85,7 +85,7 @@ pub const NOUNS: &[Noun] = &[
          tipper lorry|garbage truck|refuse truck|trash truck|bin lorry|dustcart|rubbish truck|recycling truck|garbage lorry|tow truck|\
          breakdown truck|recovery truck|wrecker|flatbed|flatbed truck|tanker|tanker truck|fuel truck|petrol tanker|oil tanker|\
          fire engine|fire truck|firetruck|fire appliance|cement truck|concrete truck|cement mixer|concrete mixer|mixer truck|juggernaut|\
-         tractor trailer|truck trailer|motorhome|motor home|rv|recreational vehicle|food truck|ice cream van|cargo truck|freight truck|\
+         tractor trailer|motorhome|motor home|rv|recreational vehicle|food truck|ice cream van|cargo truck|freight truck|\
          haulage truck|logging truck|mail truck|ups truck|dhl truck|fedex truck|parcel truck|snow plough|snowplow|snow plow|gritter|\
          street sweeper|road sweeper|transport truck|luton van|wheeler|tonner|milk lorry|coal lorry|removal truck|trucl|lorrie/lorries",
     ),
@@ -99,7 +99,7 @@ pub const NOUNS: &[Noun] = &[
     noun(&[Bus], "tram|streetcar|tram car|light rail|light rail train|tram train|cable car|tramway car|trolley|trolley car|light rail vehicle|tramcar").nearest(),
     noun(
         &[Trailer],
-        "trailer|semi trailer|drawbar trailer|box trailer|flat trailer|flat bed trailer|low loader trailer|tipping trailer|tipper trailer|small trailer|single axle trailer|two axle trailer|towing trailer|pulled trailer|goods trailer|freight trailer|garden trailer|luggage trailer|livestock trailer|cattle trailer|horse box|boat on trailer|motorcycle trailer|bike trailer|farm trailer|hay trailer|hay wagon|grain trailer|tractor trailer wagon|advertising trailer|food trailer|office trailer|site trailer|camper trailer|camping caravan|touring caravan|holiday caravan|teardrop trailer|fifth wheel|fifth wheel trailer|trailor|trailler|dolly trailer|truck trailer bed|trailer unit|jet ski trailer|tank trailer|cargo hauler trailer|construction trailer|towed trailer|camping trailer|glamping trailer|mobile home|animal trailer|car hauler trailer|generator trailer|trailer tent|boat on a trailer|container trailer|semitrailer|caravan|travel trailer|cargo trailer|flatbed trailer|boat trailer|horse trailer|horsebox|lorry trailer|\
+        "trailer|truck trailer|semi trailer|drawbar trailer|box trailer|flat trailer|flat bed trailer|low loader trailer|tipping trailer|tipper trailer|small trailer|single axle trailer|two axle trailer|towing trailer|pulled trailer|goods trailer|freight trailer|garden trailer|luggage trailer|livestock trailer|cattle trailer|horse box|boat on trailer|motorcycle trailer|bike trailer|farm trailer|hay trailer|hay wagon|grain trailer|tractor trailer wagon|advertising trailer|food trailer|office trailer|site trailer|camper trailer|camping caravan|touring caravan|holiday caravan|teardrop trailer|fifth wheel|fifth wheel trailer|trailor|trailler|dolly trailer|truck trailer bed|trailer unit|jet ski trailer|tank trailer|cargo hauler trailer|construction trailer|towed trailer|camping trailer|glamping trailer|mobile home|animal trailer|car hauler trailer|generator trailer|trailer tent|boat on a trailer|container trailer|semitrailer|caravan|travel trailer|cargo trailer|flatbed trailer|boat trailer|horse trailer|horsebox|lorry trailer|\
          utility trailer|car trailer|house trailer",
     ),
     noun(

@@ -78,6 +78,7 @@ pub fn sides() -> Vec<(&'static [R], String)> {
     }
     for (place, relation) in [
         ("drivers side", LEFT),
+        ("driver side", LEFT),
         ("drivers hand", LEFT),
         ("passenger side", RIGHT),
         ("passengers side", RIGHT),
