@@ -6,6 +6,7 @@ use std::time::Instant;
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::metrics::stats::median;
 use sceneloom::generation::model::candle_dit::CandleDit;
+use sceneloom::generation::model::candle_vae::CandleVae;
 use sceneloom::generation::model::layers::{View, matmul};
 use sceneloom::generation::model::panels::{Panels, Start};
 use sceneloom::generation::model::{DitCondition, KeysValues, Middle, OccModels};
@@ -59,8 +60,12 @@ fn main() {
     let models = OccModels::bundled().expect("the shipped weights load");
     let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
     let candle = CandleDit::new(bytes, 4).expect("the shipped weights load");
+    let vae_bytes = include_bytes!("../assets/weights/occ_vae.safetensors");
+    let candle_vae =
+        CandleVae::new(vae_bytes, models.vae.config().clone()).expect("the shipped weights load");
     let frame = occupancy_frame(3, 0, |_| None);
     let [mut encode, mut decode, mut ours, mut theirs, mut int8, mut reused] = [const { Vec::new() }; 6];
+    let [mut their_encode, mut their_decode] = [const { Vec::new() }; 2];
     let latent = models.vae.encode(&frame.dense).expect("a sound grid");
     let condition = DitCondition {
         bev: frame.bev,
@@ -82,12 +87,16 @@ fn main() {
                 &mut theirs,
                 &mut int8,
                 &mut reused,
+                &mut their_encode,
+                &mut their_decode,
             ] {
                 values.clear();
             }
         }
         timed(&mut encode, || models.vae.encode(&frame.dense)).expect("a sound grid");
         timed(&mut decode, || models.vae.decode(&latent)).expect("a sound latent");
+        timed(&mut their_encode, || candle_vae.encode(&frame.dense)).expect("a sound grid");
+        timed(&mut their_decode, || candle_vae.decode(&latent)).expect("a sound latent");
         timed(&mut ours, || models.dit.forward(&latent, 500.0, &prepared)).expect("finite");
         let mut added = Vec::new();
         let in_int8 = timed(&mut int8, || {
@@ -124,6 +133,8 @@ fn main() {
     for (name, values) in [
         ("encode", encode),
         ("decode", decode),
+        ("encode, candle", their_encode),
+        ("decode, candle", their_decode),
         ("DiT step", ours),
         ("DiT step, 8 bits", int8),
         ("middle reused", reused),

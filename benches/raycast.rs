@@ -4,7 +4,11 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use sceneloom::generation::sensors::{caster::Caster, lidar, raycast::ColumnMasks};
+use sceneloom::generation::sensors::{
+    caster::Caster,
+    lidar,
+    raycast::{ColumnMasks, LANES, Packet},
+};
 use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
 
 #[path = "timing.rs"]
@@ -44,6 +48,33 @@ fn main() {
     timing::time("cast, one thread", 60, || {
         rays.iter().map(cast).filter(|t| *t > 0.0).count()
     });
+    let packet = |i: usize| {
+        let (column, group) = (i / 4, i % 4);
+        Packet {
+            origin,
+            directions: std::array::from_fn(|lane| rays[(group * LANES + lane) * 1084 + column]),
+        }
+    };
+    timing::time("packets, one thread", 60, || {
+        let mut hits = 0;
+        masks.cast_packets(1084 * 4, f64::INFINITY, packet, |_, met| {
+            hits += met.iter().filter(|m| m.is_some_and(|m| m.0 > 0.0)).count();
+        });
+        hits
+    });
+    for i in 0..1084 * 4 {
+        masks.cast_packets(
+            1,
+            f64::INFINITY,
+            |_| packet(i),
+            |_, met| {
+                for (lane, met) in met.iter().enumerate() {
+                    let d = packet(i).directions[lane];
+                    assert_eq!(*met, masks.cast_in_voxels(origin, d, f64::INFINITY), "{d}");
+                }
+            },
+        );
+    }
     let mut ranges = vec![0.0f32; rays.len()];
     timing::time("cast, all threads", 60, || {
         let pairs = ranges.par_chunks_mut(512).zip(rays.par_chunks(512));

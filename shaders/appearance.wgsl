@@ -1312,7 +1312,8 @@ fn thing_surface(a: u32, part: u32, p: vec3f, n: vec3f, fp: f32) -> Surface {
                 out.albedo = vec3f(0.32, 0.008, 0.010);
                 out.mirror = 0.06;
                 out.gloss = 0.95;
-                out.emit = tail_color * (0.03 + 2.6 * lamps);
+                let aside = max(abs((z - 0.4675) / 0.0675), abs(y - 0.74) / 0.26);
+                out.emit = tail_color * (0.03 + lamps * (0.40 + 0.85 * ramp(1.0, 0.25, aside)));
             }
             if x < -0.47 && n.x < -0.5 && y < 0.3 && z > 0.36 && z < 0.44 {
                 out.albedo = gray(0.62);
@@ -1379,7 +1380,7 @@ fn thing_surface(a: u32, part: u32, p: vec3f, n: vec3f, fp: f32) -> Surface {
                 }
             }
             if abs(n.x) > 0.6 && y > 0.62 && z > 0.17 && z < 0.25 {
-                out.emit = select(tail_color * 2.6, head_color, n.x > 0.0) * lamps;
+                out.emit = select(tail_color * 0.9, head_color, n.x > 0.0) * lamps;
                 out.albedo = select(vec3f(0.3, 0.01, 0.01), gray(0.5), n.x > 0.0);
             }
             if n.x > 0.6 && z > 0.30 && z < 0.74 && y < 0.9 {
@@ -1400,7 +1401,7 @@ fn thing_surface(a: u32, part: u32, p: vec3f, n: vec3f, fp: f32) -> Surface {
             out.gloss = 0.6;
             if n.x < -0.6 && z < 0.36 && y > 0.68 {
                 out.albedo = vec3f(0.3, 0.01, 0.01);
-                out.emit = tail_color * (0.03 + 2.6 * lamps);
+                out.emit = tail_color * (0.03 + 0.87 * lamps);
             }
             if n.x < -0.6 && y < 0.02 {
                 out.albedo *= 0.4;
@@ -1528,7 +1529,7 @@ fn lamp_light(p: vec3f, lift: vec3f, n: vec3f, to_eye: vec3f, s: Surface, shadow
             beam = ramp(-0.15, 0.6, cosine);
         } else if kind == 1u {
             let up = -l.z - axis.z;
-            let aim = min(pow(0.055 / (0.022 + max(-up, 0.0)), 1.25), 2.4);
+            let aim = min(pow(0.055 / (0.022 + max(-up, 0.0)), 1.25), min(2.4, 0.12 * sqrt(d2)));
             beam = ramp(0.80, 0.985, cosine) * (0.07 + 0.93 * ramp(0.025, -0.02, up)) * aim + 0.02 * ramp(0.2, 0.9, cosine);
         } else {
             beam = ramp(-0.1, 0.8, cosine);
@@ -1537,12 +1538,14 @@ fn lamp_light(p: vec3f, lift: vec3f, n: vec3f, to_eye: vec3f, s: Surface, shadow
             continue;
         }
         let fade = ramp(1.0, 0.55, sqrt(d2) / range_m);
-        let shine = num3(a + 8u) * (beam * fade / (d2 + 0.6));
+        let near = select(0.6, HEAD_NEAR_M2, kind == 1u);
+        let shine = num3(a + 8u) * (beam * fade / (d2 + near));
         let behind = s.through * max(-facing, 0.0) * 0.5;
-        if shadows && kind == 1u && max(facing, behind) * max3(shine) * a_exposure() > LAMP_SHADOW_LIGHT {
+        if shadows && kind != 2u && max(facing, behind) * max3(shine) * a_exposure() > LAMP_SHADOW_LIGHT {
             let way = num3(a) - lift;
             let far = length(way);
-            if far > LAMP_CLEAR_M && trace(lift, way / far, far - LAMP_CLEAR_M, 2u).kind != KIND_NONE {
+            let clear = select(LAMP_CLEAR_M, LAMP_CLEAR_M * far / max(length(way.xy), 1e-3), kind == 0u);
+            if far > clear && trace(lift, way / far, far - clear, 2u).kind != KIND_NONE {
                 continue;
             }
         }

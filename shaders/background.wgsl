@@ -13,3 +13,8 @@ fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let noise = fract(52.9829189 * fract(dot(at.xy, vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
     return vec4<f32>(background_at(at.y) + noise / 255.0, 1.0);
 }
+
+@fragment
+fn fs_nothing() -> @location(0) vec4<f32> {
+    return vec4<f32>(0.0);
+}

@@ -4,6 +4,8 @@
 struct Screen {
     size_points: vec2<f32>,
     padding: vec2<f32>,
+    // Gamma-encoded: what is behind everything.
+    clear: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> screen: Screen;
@@ -33,4 +35,20 @@ fn vs_main(
 @fragment
 fn fs_main(in: Corner) -> @location(0) vec4<f32> {
     return in.color * textureSample(picture, filtered, in.at);
+}
+
+// One triangle over all of the target.
+@vertex
+fn vs_all(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fs_wipe() -> @location(0) vec4<f32> {
+    return screen.clear;
+}
+
+@fragment
+fn fs_copy(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(picture, vec2<i32>(at.xy), 0);
 }

@@ -1,6 +1,8 @@
 //! The fused kernels of the networks against the same network written with candle 0.11 (f32 both).
 
+use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::model::candle_dit::CandleDit;
+use sceneloom::generation::model::candle_vae::CandleVae;
 use sceneloom::generation::model::{DitCondition, OccModels};
 
 const WEIGHTS: &[u8] = include_bytes!("../assets/weights/occ_dit.safetensors");
@@ -48,4 +50,35 @@ fn dit_agrees_with_candle() {
             "t {t}: {worst} of {largest}"
         );
     }
+}
+
+/// Tolerance 1e-4 of the largest value, and one label of ten thousand where two classes are as likely.
+#[test]
+fn vae_agrees_with_candle() {
+    let models = OccModels::bundled().expect("the shipped weights load");
+    let bytes = include_bytes!("../assets/weights/occ_vae.safetensors");
+    let candle = CandleVae::new(bytes, models.vae.config().clone()).expect("the shipped weights load");
+    let frame = occupancy_frame(3, 1, |_| None);
+    let ours = models.vae.encode(&frame.dense).expect("a sound grid");
+    let theirs = candle.encode(&frame.dense).expect("a sound grid");
+    let largest = theirs.iter().fold(0f32, |m, v| m.max(v.abs()));
+    let worst = ours
+        .iter()
+        .zip(&theirs)
+        .fold(0f32, |m, (a, b)| m.max((a - b).abs()));
+    assert_eq!(ours.len(), theirs.len());
+    assert!(largest > 0.1 && worst <= 1e-4 * largest, "{worst} of {largest}");
+    let ours = models.vae.decode(&theirs).expect("a sound latent").to_dense();
+    let theirs = candle.decode(&theirs).expect("a sound latent");
+    assert_eq!(ours.len(), theirs.len());
+    let differ = ours
+        .iter()
+        .zip(&theirs)
+        .filter(|(a, b)| u32::from(**a) != **b)
+        .count();
+    assert!(
+        differ <= ours.len() / 10_000,
+        "{differ} of {} labels differ",
+        ours.len()
+    );
 }

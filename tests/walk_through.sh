@@ -1,22 +1,8 @@
 #!/bin/bash
 # The animated walk-through of README: open, paint, generate, compare. tests/walk_through.sh OUT.gif
-# Needs Xvfb, xdotool and ImageMagick, and `cargo build --release`.
-set -euo pipefail
 out=$(realpath -m "${1:?the file to write}")
-binary=${SCENELOOM:-$(realpath target/release/sceneloom)}
 scene=$(realpath assets/scenes/first_light.loom)
-work=$(mktemp -d)
-export XDG_RUNTIME_DIR=$work SCENELOOM_CONFIG_DIR=$work/config SCENELOOM_STATE_DIR=$work/state DISPLAY=${PICTURES_DISPLAY:-:97}
-chmod 700 "$work"
-app= server=
-trap 'kill $app $server 2>/dev/null; rm -rf "$work"' EXIT
-if ! xdotool getmouselocation >/dev/null 2>&1; then
-    Xvfb "$DISPLAY" -screen 0 1600x960x24 >/dev/null 2>&1 &
-    server=$!
-    sleep 2
-fi
-mkdir -p "$SCENELOOM_CONFIG_DIR"
-echo '{"start_screen": false}' >"$SCENELOOM_CONFIG_DIR/settings.json"
+source "$(dirname "$0")/window.sh"
 number=0 x=0 y=0 frames=()
 at() { x=$1 y=$2; xdotool mousemove "$x" "$y"; sleep 0.3; }
 # shot CENTISECONDS: a frame with a pointer drawn where it is.
@@ -28,18 +14,7 @@ shot() {
         -draw "path 'M $x,$y l 0,24 l 6,-5 l 4,9 l 5,-2 l -4,-9 l 8,0 z'" -resize 960x570 "$file"
     frames+=(-delay "$1" "$file")
 }
-"$binary" "$scene" &
-app=$!
-window=
-for _ in $(seq 120); do
-    window=$(xdotool search --onlyvisible --name Sceneloom 2>/dev/null | tail -1 || true)
-    [ -n "$window" ] && break
-    sleep 0.5
-done
-sleep 2
-xdotool windowmove "$window" 0 0 windowsize "$window" 1600 950
-sleep 1
-xdotool windowfocus "$window"
+open_window dark 1600x950 "$scene"
 at 700 800
 sleep "${READY_S:-30}" # the networks get ready
 shot 120

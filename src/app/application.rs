@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, TryRecvError};
 use egui::{Rect, Ui};
@@ -45,6 +45,7 @@ use super::perf::Perf;
 use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
+use super::software_ui;
 use super::state::{Pane, UiState};
 use super::theme;
 use super::tuning::Tuning;
@@ -207,7 +208,11 @@ impl SceneloomApp {
         let view3d = View3d::new(render_state.clone());
         let mut versions = Versions::default();
         versions.push("As opened".into(), String::new(), Arc::new(config.scene.clone()));
-        let wake = waker(ctx, if view3d.is_software() { 0.15 } else { 0.015 });
+        let (between_frames_s, sensing_grace) = match view3d.is_software() {
+            true => (0.15, Duration::from_millis(25)),
+            false => (0.015, Duration::ZERO),
+        };
+        let wake = waker(ctx, between_frames_s);
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
@@ -240,7 +245,7 @@ impl SceneloomApp {
             io: (config.open, config.save, config.new_scene),
             clock: Instant::now(),
             gate: UpdateGate::default(),
-            sensing: Sensing::spawn(wake)?,
+            sensing: Sensing::spawn(sensing_grace, wake)?,
             strip: CameraStrip::default(),
             sweep: SweepPane::default(),
             box_views: BoxViewsPane::default(),
@@ -376,7 +381,7 @@ impl SceneloomApp {
         match self.live.advise(&scene, self.document.is_dragging(), now_s) {
             Advice::Rest => {}
             Advice::Wait(seconds) => {
-                ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
+                ctx.request_repaint_after(Duration::from_secs_f64(seconds));
             }
             Advice::Cancel => self.worker.cancel(),
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
@@ -717,7 +722,7 @@ fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync +
     move || {
         let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let now = Instant::now();
-        let every = std::time::Duration::from_secs_f64(every_s);
+        let every = Duration::from_secs_f64(every_s);
         match last.map(|at| now.saturating_duration_since(at)) {
             Some(since) if since < every => ctx.request_repaint_after(every - since),
             _ => {
@@ -774,7 +779,10 @@ impl eframe::App for SceneloomApp {
         }
     }
 
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        if self.passes == 0 && self.view3d.is_software() {
+            software_ui::wait_for_no_screen(frame);
+        }
         self.draw(ui);
     }
 

@@ -77,9 +77,69 @@ pub fn unobserved(mask: &Unobserved) -> ColorImage {
     ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
 }
 
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Left and upper edge.
+    pub min: [usize; 2],
+    /// Width and height.
+    pub size: [usize; 2],
+}
+
+impl Pixels {
+    /// False if it holds none.
+    pub fn is_positive(self) -> bool {
+        self.size[0] > 0 && self.size[1] > 0
+    }
+}
+
+/// The rectangle around the pixels that differ; `None` for pictures of different size.
+pub fn differing(a: &ColorImage, b: &ColorImage) -> Option<Pixels> {
+    if a.size != b.size {
+        return None;
+    }
+    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+    let width = a.size[0].max(1);
+    for (y, (ours, theirs)) in a.pixels.chunks(width).zip(b.pixels.chunks(width)).enumerate() {
+        if ours == theirs {
+            continue;
+        }
+        for x in (0..ours.len()).filter(|&x| ours[x] != theirs[x]) {
+            low = [low[0].min(x), low[1].min(y)];
+            high = [high[0].max(x + 1), high[1].max(y + 1)];
+        }
+    }
+    let nothing = low[0] == usize::MAX;
+    Some(match nothing {
+        true => Pixels {
+            min: [0; 2],
+            size: [0; 2],
+        },
+        false => Pixels {
+            min: low,
+            size: [high[0] - low[0], high[1] - low[1]],
+        },
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_differs_lies_in_the_rectangle() {
+        let before = ColorImage::filled([7, 5], Color32::BLACK);
+        let mut after = before.clone();
+        let rect = |min, size| Some(Pixels { min, size });
+        assert_eq!(differing(&after, &before), rect([0, 0], [0, 0]));
+        after[(2, 3)] = Color32::RED;
+        after[(5, 1)] = Color32::RED;
+        assert_eq!(differing(&after, &before), rect([2, 1], [4, 3]));
+        assert_eq!(
+            differing(&after, &ColorImage::filled([5, 7], Color32::BLACK)),
+            None
+        );
+    }
 
     #[test]
     fn forward_is_up_and_left_is_left() {

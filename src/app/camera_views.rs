@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use egui::ColorImage;
+
 use super::graphics::Graphics;
 use super::state::{CameraMode, CameraSource, LidarModel, UiState};
 use crate::generation::sensors::appearance::{CameraImage, Conditions, Look, Quality};
@@ -96,6 +98,26 @@ pub struct CameraView {
     pub camera: usize,
     /// What it shows.
     pub picture: Arc<CameraPicture>,
+    /// The same in the colours of a mode, made beforehand so that the window need not.
+    shown: Option<(CameraMode, Arc<ColorImage>)>,
+}
+
+impl CameraView {
+    /// With the colours of a mode made now; which plane is shown is decided later.
+    pub fn colored(mut self, mode: CameraMode) -> Self {
+        if mode != CameraMode::Planes {
+            self.shown = Some((mode, Arc::new(self.picture.colors(mode, 0.0))));
+        }
+        self
+    }
+
+    /// The picture in colours; `plane_m` is the depth of the plane that is shown.
+    pub fn colors(&self, mode: CameraMode, plane_m: f64) -> Arc<ColorImage> {
+        match &self.shown {
+            Some((of, image)) if *of == mode => image.clone(),
+            _ => Arc::new(self.picture.colors(mode, plane_m)),
+        }
+    }
 }
 
 /// A picture, as data.
@@ -112,6 +134,12 @@ pub enum CameraPicture {
 }
 
 impl CameraPicture {
+    /// The same as a picture of egui.
+    fn colors(&self, mode: CameraMode, plane_m: f64) -> ColorImage {
+        let (size, rgba) = self.rgba(mode, plane_m);
+        ColorImage::from_rgba_unmultiplied(size, &rgba)
+    }
+
     /// Width, height and RGBA; `plane_m` is the depth of the plane that is shown.
     pub fn rgba(&self, mode: CameraMode, plane_m: f64) -> ([usize; 2], Vec<u8>) {
         match self {
@@ -219,6 +247,7 @@ impl Prepared {
         CameraView {
             camera,
             picture: Arc::new(picture),
+            shown: None,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! The bird's-eye view: a frame from above with forward up, drawn and taken hold of. Gestures are
 //! in `canvas_tools.rs`.
 
+use std::sync::Arc;
+
 use egui::accesskit::Role;
 use egui::{
-    Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions,
-    Ui, WidgetInfo, pos2, vec2,
+    Color32, ColorImage, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 
@@ -61,12 +63,19 @@ pub struct Canvas {
     pub(super) gesture: Gesture,
     /// The last map from ego to screen; tests click with it.
     pub map: Option<ScreenMap>,
-    layers: Option<(LayersKey, TextureHandle)>,
-    occupancy: Option<(SceneRev, TextureHandle)>,
-    unobserved: Option<(SceneRev, TextureHandle)>,
+    layers: Option<Shown<LayersKey>>,
+    occupancy: Option<Shown<SceneRev>>,
+    unobserved: Option<Shown<SceneRev>>,
 }
 
 type LayersKey = (SceneRev, u32, u8);
+
+/// A picture on the device: what it was made from, and what it holds.
+struct Shown<K> {
+    key: K,
+    image: Arc<ColorImage>,
+    handle: TextureHandle,
+}
 
 /// What the canvas draws.
 pub struct CanvasInput<'a> {
@@ -349,10 +358,10 @@ fn draws_a_line(state: &UiState) -> bool {
 
 fn texture<K: PartialEq>(
     ui: &Ui,
-    slot: &mut Option<(K, TextureHandle)>,
+    slot: &mut Option<Shown<K>>,
     key: K,
     name: &str,
-    make: impl FnOnce() -> egui::ColorImage,
+    make: impl FnOnce() -> ColorImage,
 ) -> egui::TextureId {
     // Large cells stay crisp; small ones are averaged, or thin lines would flicker.
     let options = TextureOptions {
@@ -360,15 +369,28 @@ fn texture<K: PartialEq>(
         ..TextureOptions::LINEAR
     };
     match slot {
-        Some((old, _)) if *old == key => {}
-        Some((old, handle)) => {
-            handle.set(make(), options);
-            *old = key;
+        Some(shown) if shown.key == key => {}
+        Some(shown) => {
+            let image = Arc::new(make());
+            // Only what differs goes to the device.
+            match bev_image::differing(&image, &shown.image) {
+                None => shown.handle.set(image.clone(), options),
+                Some(rect) if rect.is_positive() => {
+                    let part = image.region_by_pixels(rect.min, rect.size);
+                    shown.handle.set_partial(rect.min, part, options);
+                }
+                Some(_) => {}
+            }
+            (shown.key, shown.image) = (key, image);
         }
-        None => *slot = Some((key, ui.ctx().load_texture(name, make(), options))),
+        None => {
+            let image = Arc::new(make());
+            let handle = ui.ctx().load_texture(name, image.clone(), options);
+            *slot = Some(Shown { key, image, handle });
+        }
     }
     slot.as_ref()
-        .map_or(egui::TextureId::default(), |(_, handle)| handle.id())
+        .map_or(egui::TextureId::default(), |shown| shown.handle.id())
 }
 
 /// What is under a point of the view, for the status bar.

@@ -149,7 +149,7 @@ impl Compare {
         }
         if self.sensing.is_none() {
             // Without a thread the cameras of the other state stay empty; the views do not need it.
-            self.sensing = Sensing::spawn(wake).ok();
+            self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
         }
         if let Some(sensing) = &mut self.sensing {
             sensing.ask(scene, wanted, false);

@@ -12,6 +12,7 @@ pub mod checking;
 pub mod cli;
 pub mod command;
 pub mod compare;
+mod damage;
 pub mod dock;
 mod dock_ui;
 mod enrich;

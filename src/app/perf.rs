@@ -197,6 +197,7 @@ impl Perf {
                 "kind": "frame",
                 "t_s": round(frame.began_s),
                 "busy_ms": round(busy_s * 1e3),
+                "waited_ms": round(frame.waited_s * 1e3),
                 "logic_ms": round(frame.logic_s * 1e3),
                 "draw_ms": round(frame.draw_s * 1e3),
                 "events": frame.events,

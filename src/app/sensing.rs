@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
@@ -42,14 +43,14 @@ pub struct Sensing {
 }
 
 impl Sensing {
-    /// Starts the thread `sensing`. `wake` is called after each piece of news. Errors if the system
-    /// gives no thread.
-    pub fn spawn(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    /// Starts the thread `sensing`, which takes up a scene after a `grace`: where the processor draws, an edit is shown
+    /// first. `wake` is called after each piece of news. Errors if the system gives no thread.
+    pub fn spawn(grace: Duration, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let (requests, requests_in) = unbounded();
         let (news_out, news) = unbounded();
         let thread = std::thread::Builder::new()
             .name("sensing".into())
-            .spawn(move || sense_all(&requests_in, &news_out, &wake))?;
+            .spawn(move || sense_all(&requests_in, grace, &news_out, &wake))?;
         Ok(Self {
             requests: Some(requests),
             news,
@@ -130,9 +131,10 @@ impl Drop for Sensing {
     }
 }
 
-fn sense_all(requests: &Receiver<Request>, news: &Sender<News>, wake: &dyn Fn()) {
+fn sense_all(requests: &Receiver<Request>, grace: Duration, news: &Sender<News>, wake: &dyn Fn()) {
     let mut kept = Kept::default();
     while let Ok(first) = requests.recv() {
+        std::thread::sleep(grace);
         let newest = requests.try_iter().last().unwrap_or(first);
         sense(&newest, requests, &mut kept, |piece| {
             // The receiver lives as long as the thread, except at the very end.
@@ -221,7 +223,9 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
             (prepared, on_card)
         });
         let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        prepared.view(scene, camera, size, quick, card)
+        prepared
+            .view(scene, camera, size, quick, card)
+            .colored(wanted.mode)
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
@@ -268,7 +272,7 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
 
 #[cfg(test)]
 mod tests {
-    use std::time::{Duration, Instant};
+    use std::time::Instant;
 
     use super::*;
     use crate::generation::world::World;
@@ -280,7 +284,7 @@ mod tests {
         let occupancy = draft::draft(&world.layout, world.boxes.values());
         let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
         let mut scene = Scene::single("test", frame, Arc::default(), 3);
-        let mut sensing = Sensing::spawn(|| {}).expect("a thread");
+        let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
         for _ in 0..20 {
             scene.rev = SceneRev::fresh();
             sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);

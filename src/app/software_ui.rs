@@ -1,13 +1,17 @@
-//! On a software rasteriser the window's panels are drawn by a shader of ours: the shapes that egui is about to hand over
-//! are replaced by one callback that draws them all.
+//! On a software rasteriser the window's panels are drawn by a shader of ours, and only where they changed: the shapes
+//! that egui is about to hand over are replaced by one callback, which brings a picture of the window up to date and
+//! shows it.
 
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::epaint::{ClippedPrimitive, ClippedShape, Primitive};
-use egui::{Context, FullOutput, Rect, Shape, TextureId};
+use egui::epaint::ClippedShape;
+use egui::{Context, FullOutput, Id, Rect, Shape, TextureId, pos2};
 use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 
-use crate::viewport::panels::{PanelMesh, PanelVertex, Panels};
+use super::damage::{Frame, Touched};
+use super::theme;
+use crate::viewport::panels::{PanelMesh, Panels};
 
 /// Puts itself between egui and its renderer. Only where it pays, and where the target is not sRGB-converting.
 pub fn install(ctx: &Context, render_state: &RenderState) {
@@ -15,15 +19,108 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
     if software && !render_state.target_format.is_srgb() {
         let panels = Panels::new(&render_state.device, render_state.target_format);
         ctx.add_plugin(SoftwareUi {
-            panels: Arc::new(Mutex::new(panels)),
-            renderer: render_state.renderer.clone(),
+            shared: Arc::new(Mutex::new(Shared {
+                panels,
+                waiting: Damage::All,
+            })),
+            render_state: render_state.clone(),
+            before: Before::default(),
+            touched: Vec::new(),
+            sizes: HashMap::new(),
         });
     }
 }
 
+/// Shows frames when they are ready: the screen that a software driver would wait for is made up, and waiting for it takes
+/// longer than drawing a frame. Frames are drawn when something changes, so they do not run away.
+pub fn wait_for_no_screen(frame: &mut eframe::Frame) {
+    if let Some(config) = frame.wgpu_surface_config() {
+        frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig {
+            present_mode: wgpu::PresentMode::AutoNoVsync,
+            ..config
+        });
+    }
+}
+
+/// Says that a texture which egui does not own was drawn into; `share` is the part of it, 0 to 1, none: all.
+pub fn picture_changed(ctx: &Context, texture: TextureId, share: Option<Rect>) {
+    ctx.data_mut(|data| {
+        let list: &mut Arc<Mutex<Vec<Touched>>> = data.get_temp_mut_or_default(Id::unique("pictures drawn"));
+        let mut list = list.lock().unwrap_or_else(PoisonError::into_inner);
+        // Nobody takes them where a graphics card draws.
+        if list.len() < 64 {
+            list.push((texture, share));
+        }
+    });
+}
+
+/// What of the window has to be drawn again.
+enum Damage {
+    All,
+    Parts(Vec<Rect>), // points
+}
+
+impl Damage {
+    fn add(&mut self, other: Damage) {
+        match (&mut *self, other) {
+            (Self::Parts(these), Self::Parts(others)) => these.extend(others),
+            (this, _) => *this = Self::All,
+        }
+    }
+}
+
+struct Shared {
+    panels: Panels,
+    /// Not drawn yet.
+    waiting: Damage,
+}
+
+/// The frame handed over last.
+#[derive(Default)]
+struct Before {
+    frame: Arc<Frame>,
+    scale: f32,
+    screen: Option<Rect>,
+    clear: [f32; 4],
+}
+
 struct SoftwareUi {
-    panels: Arc<Mutex<Panels>>,
-    renderer: Arc<egui::mutex::RwLock<egui_wgpu::Renderer>>,
+    shared: Arc<Mutex<Shared>>,
+    render_state: RenderState,
+    before: Before,
+    touched: Vec<Touched>,
+    sizes: HashMap<TextureId, [usize; 2]>, // of egui's textures
+}
+
+impl SoftwareUi {
+    /// Takes note of the textures that were written; false if one was that all text comes from.
+    fn note_textures(&mut self, ctx: &Context, output: &FullOutput) -> bool {
+        let pictures: Arc<Mutex<Vec<Touched>>> = ctx.data_mut(|data| {
+            data.get_temp_mut_or_default::<Arc<Mutex<Vec<Touched>>>>(Id::unique("pictures drawn"))
+                .clone()
+        });
+        let mut pictures = pictures.lock().unwrap_or_else(PoisonError::into_inner);
+        self.touched.append(&mut pictures);
+        let mut fonts_stay = true;
+        let written = output.textures_delta.set.iter();
+        for (id, delta) in written.flat_map(|(id, deltas)| deltas.iter().map(move |d| (id, d))) {
+            match (*id == TextureId::default(), delta.pos) {
+                // New letters beside those there.
+                (true, Some(_)) => {}
+                (true, None) => fonts_stay = false,
+                (false, None) => {
+                    self.sizes.insert(*id, delta.image.size());
+                    self.touched.push((*id, None));
+                }
+                (false, Some(at)) => {
+                    let size = self.sizes.get(id).copied();
+                    let part = size.map(|size| part_of(at, delta.image.size(), size));
+                    self.touched.push((*id, part));
+                }
+            }
+        }
+        fonts_stay
+    }
 }
 
 impl egui::Plugin for SoftwareUi {
@@ -33,55 +130,43 @@ impl egui::Plugin for SoftwareUi {
 
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
         let callback = |s: &ClippedShape| matches!(s.shape, Shape::Callback(_));
+        let fonts_stay = self.note_textures(ctx, output);
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        if !fonts_stay {
+            shared.waiting = Damage::All;
+        }
         if output.shapes.is_empty() || output.shapes.iter().any(callback) {
             return;
         }
-        let scale = output.pixels_per_point;
-        let screen = ctx.viewport_rect();
-        let frame = Frame::new(ctx.tessellate(std::mem::take(&mut output.shapes), scale));
+        let (scale, screen) = (output.pixels_per_point, ctx.viewport_rect());
+        let frame = Arc::new(Frame::new(
+            ctx.tessellate(std::mem::take(&mut output.shapes), scale),
+        ));
+        let clear = theme::panel().to_normalized_gamma_f32();
+        let before = &self.before;
+        let same_window = (before.scale, before.screen, before.clear) == (scale, Some(screen), clear);
+        shared.waiting.add(match same_window {
+            true => Damage::Parts(frame.damage(&before.frame, &self.touched)),
+            false => Damage::All,
+        });
+        self.touched.clear();
+        self.before = Before {
+            frame: frame.clone(),
+            scale,
+            screen: Some(screen),
+            clear,
+        };
         let all = Painted {
             frame,
-            panels: self.panels.clone(),
-            renderer: self.renderer.clone(),
+            clear,
+            shared: self.shared.clone(),
+            render_state: self.render_state.clone(),
         };
         output.shapes = vec![ClippedShape {
             clip_rect: Rect::EVERYTHING,
             transform_after_tessellation: egui::emath::TSTransform::IDENTITY,
             shape: Shape::Callback(egui_wgpu::Callback::new_paint_callback(screen, all)),
         }];
-    }
-}
-
-/// All triangles of a frame.
-#[derive(Default)]
-struct Frame {
-    vertices: Vec<PanelVertex>,
-    indices: Vec<u32>,
-    parts: Vec<(Rect, TextureId, PanelMesh)>,
-}
-
-impl Frame {
-    fn new(primitives: Vec<ClippedPrimitive>) -> Self {
-        let mut out = Self::default();
-        for ClippedPrimitive { clip_rect, primitive } in primitives {
-            let Primitive::Mesh(mesh) = primitive else {
-                continue;
-            };
-            let (first, base_vertex) = (out.indices.len() as u32, out.vertices.len() as i32);
-            out.vertices.extend(mesh.vertices.iter().map(|v| PanelVertex {
-                position: [v.pos.x, v.pos.y],
-                at: [v.uv.x, v.uv.y],
-                color: v.color.to_array(),
-            }));
-            out.indices.extend_from_slice(&mesh.indices);
-            let mesh_of = PanelMesh {
-                scissor: [0; 4],
-                indices: first..out.indices.len() as u32,
-                base_vertex,
-            };
-            out.parts.push((clip_rect, mesh.texture_id, mesh_of));
-        }
-        out
     }
 }
 
@@ -93,10 +178,18 @@ fn scissor(rect: Rect, scale: f32, size: [u32; 2]) -> Option<[u32; 4]> {
     (right > left && bottom > top).then(|| [left, top, right - left, bottom - top])
 }
 
+/// What two rectangles of pixels share.
+fn common(a: [u32; 4], b: [u32; 4]) -> Option<[u32; 4]> {
+    let low = [0, 1].map(|i| a[i].max(b[i]));
+    let high = [0, 1].map(|i| (a[i] + a[i + 2]).min(b[i] + b[i + 2]));
+    (high[0] > low[0] && high[1] > low[1]).then(|| [low[0], low[1], high[0] - low[0], high[1] - low[1]])
+}
+
 struct Painted {
-    frame: Frame,
-    panels: Arc<Mutex<Panels>>,
-    renderer: Arc<egui::mutex::RwLock<egui_wgpu::Renderer>>,
+    frame: Arc<Frame>,
+    clear: [f32; 4],
+    shared: Arc<Mutex<Shared>>,
+    render_state: RenderState,
 }
 
 impl CallbackTrait for Painted {
@@ -109,8 +202,13 @@ impl CallbackTrait for Painted {
         _resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         let size = screen.size_in_pixels.map(|s| s as f32 / screen.pixels_per_point);
-        let mut panels = self.panels.lock().unwrap_or_else(PoisonError::into_inner);
-        panels.upload(device, queue, size, &self.frame.vertices, &self.frame.indices);
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let frame = &self.frame;
+        let panels = &mut shared.panels;
+        panels.upload(device, queue, size, self.clear, (&frame.vertices, &frame.indices));
+        if panels.fit(device, screen.size_in_pixels) {
+            shared.waiting = Damage::All;
+        }
         Vec::new()
     }
 
@@ -120,35 +218,68 @@ impl CallbackTrait for Painted {
         pass: &mut wgpu::RenderPass<'static>,
         _resources: &CallbackResources,
     ) {
-        let panels = self.panels.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let (size, scale) = (info.screen_size_px, info.pixels_per_point);
+        let damage: Vec<[u32; 4]> = match std::mem::replace(&mut shared.waiting, Damage::Parts(Vec::new())) {
+            Damage::All => vec![[0, 0, size[0], size[1]]],
+            // Outward to whole pixels: they are smooth at their edges.
+            Damage::Parts(rects) => rects
+                .into_iter()
+                .filter_map(|r| scissor(r.expand(1.0 / scale), scale, size))
+                .collect(),
+        };
         // The window holds the same lock for reading while it draws.
-        let renderer = self.renderer.read();
-        let cut: Vec<(PanelMesh, TextureId)> = self
-            .frame
-            .parts
-            .iter()
-            .filter_map(|(rect, texture, mesh)| {
-                let scissor = scissor(*rect, info.pixels_per_point, info.screen_size_px)?;
-                Some((
-                    PanelMesh {
-                        scissor,
-                        ..mesh.clone()
-                    },
-                    *texture,
-                ))
+        let renderer = self.render_state.renderer.read();
+        let frame = &self.frame;
+        let placed: Vec<_> = (0..frame.parts.len())
+            .filter_map(|i| {
+                let (clip, texture, mesh) = &frame.parts[i];
+                let clip = scissor(*clip, scale, size)?;
+                let covered = scissor(frame.bounds(i).expand(1.0 / scale), scale, size)?;
+                let group = renderer.texture(texture).map(|t| &t.bind_group)?;
+                Some((mesh, clip, covered, group))
             })
             .collect();
-        let parts = cut.iter().map(|(mesh, texture)| {
-            let group = renderer.texture(texture).map(|t| &t.bind_group);
-            (mesh, group)
+        let (device, queue) = (&self.render_state.device, &self.render_state.queue);
+        shared.panels.draw(device, queue, &damage, |rect| {
+            placed
+                .iter()
+                .filter_map(|(mesh, clip, covered, group)| {
+                    common(*covered, rect)?;
+                    let scissor = common(*clip, rect)?;
+                    let mesh = PanelMesh {
+                        scissor,
+                        ..(*mesh).clone()
+                    };
+                    Some((mesh, *group))
+                })
+                .collect()
         });
-        panels.draw(pass, parts);
+        shared.panels.show(pass, size);
     }
+}
+
+/// Texels of a texture as shares of its width and height, with one more on each side: they may be averaged.
+fn part_of(at: [usize; 2], part: [usize; 2], size: [usize; 2]) -> Rect {
+    let low = at.map(|v| v.saturating_sub(1));
+    let high = [0, 1].map(|i| (at[i] + part[i] + 1).min(size[i]));
+    let [x, y, w, h] = [low[0], low[1], high[0] - low[0], high[1] - low[1]].map(|v| v as u32);
+    share([x, y, w, h], size.map(|s| s as u32))
+}
+
+/// Pixels of a picture of `size` as shares of its width and height.
+pub fn share(of_px: [u32; 4], size: [u32; 2]) -> Rect {
+    let part = |v: u32, all: u32| v as f32 / all.max(1) as f32;
+    let [x, y, w, h] = of_px;
+    Rect::from_min_max(
+        pos2(part(x, size[0]), part(y, size[1])),
+        pos2(part(x + w, size[0]), part(y + h, size[1])),
+    )
 }
 
 #[cfg(test)]
 mod tests {
-    use egui::{Color32, pos2, vec2};
+    use egui::vec2;
 
     use super::*;
 
@@ -166,40 +297,7 @@ mod tests {
         );
         assert_eq!(scissor(rect(40.0, 0.0, 5.0, 5.0), 1.0, [30, 20]), None);
         assert_eq!(scissor(Rect::NOTHING, 1.0, [30, 20]), None);
-    }
-
-    /// Every triangle that egui would draw is in the frame, with its own vertices.
-    #[test]
-    fn a_frame_holds_what_egui_tessellated() {
-        let ctx = Context::default();
-        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            ui.label("text");
-            ui.painter().rect_filled(rect_of(ui), 0.0, Color32::RED);
-        });
-        let primitives = ctx.tessellate(output.shapes, 1.0);
-        let meshes: Vec<_> = primitives
-            .iter()
-            .filter_map(|p| match &p.primitive {
-                Primitive::Mesh(mesh) => Some(mesh.clone()),
-                Primitive::Callback(_) => None,
-            })
-            .collect();
-        let frame = Frame::new(primitives);
-        assert!(!meshes.is_empty() && frame.parts.len() == meshes.len());
-        for (mesh, (_, texture, part)) in meshes.iter().zip(&frame.parts) {
-            assert_eq!(*texture, mesh.texture_id);
-            let indices = &frame.indices[part.indices.start as usize..part.indices.end as usize];
-            for (ours, theirs) in indices.iter().zip(&mesh.indices) {
-                let vertex = frame.vertices[(*ours as i32 + part.base_vertex) as usize];
-                let of = mesh.vertices[*theirs as usize];
-                assert_eq!(vertex.position, [of.pos.x, of.pos.y]);
-                assert_eq!(vertex.color, of.color.to_array());
-            }
-            assert_eq!(indices.len(), mesh.indices.len());
-        }
-    }
-
-    fn rect_of(ui: &egui::Ui) -> Rect {
-        Rect::from_min_size(ui.max_rect().min, vec2(10.0, 10.0))
+        assert_eq!(common([0, 0, 10, 10], [5, 6, 10, 10]), Some([5, 6, 5, 4]));
+        assert_eq!(common([0, 0, 10, 10], [10, 0, 5, 5]), None);
     }
 }

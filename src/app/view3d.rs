@@ -8,7 +8,7 @@ use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, Widg
 use glam::{DVec2, DVec3};
 
 use crate::editor::pick::{self, Hit, Ray};
-use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev};
+use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
 use crate::viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
@@ -16,6 +16,7 @@ use crate::viewport::{
 
 use super::command::Command;
 use super::pointer::{self, Held, Step};
+use super::software_ui;
 use super::state::{Tool, UiState, VoxelVerb, position_text};
 use super::theme;
 use super::tools::VoxelMode;
@@ -53,7 +54,6 @@ pub struct View3d {
     pub rect: Rect,
     colors: Option<(Arc<LidarSweep>, LidarColorMode, Vec<[u8; 4]>)>,
     last_motion_s: f64,
-    painted: Option<SceneRev>,
     frame_s: f32,
     frames: u32,
     pixels_per_point: f32,
@@ -104,7 +104,6 @@ impl View3d {
             rect: Rect::NOTHING,
             colors: None,
             last_motion_s: f64::NEG_INFINITY,
-            painted: None,
             frame_s: 0.0,
             frames: 0,
             pixels_per_point: 1.0,
@@ -157,8 +156,9 @@ impl View3d {
             state.readout = readout(input.scene, hit, &pointer.ray);
         }
         let now_s = ui.input(|i| i.time);
+        // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.
         let brushes = state.tool != Tool::Select && response.hovered() && ui.input(|i| i.pointer.is_moving());
-        if moved || input.dragging || brushes {
+        if moved || (input.dragging || brushes) && !self.is_software() {
             self.last_motion_s = now_s;
         }
         self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
@@ -302,15 +302,6 @@ impl View3d {
             ui.ctx().request_repaint();
             return;
         }
-        // A change is seen at once, coarse, and fine a moment later.
-        if self
-            .painted
-            .replace(input.scene.rev)
-            .is_some_and(|rev| rev != input.scene.rev)
-            && self.is_software()
-        {
-            self.last_motion_s = now_s;
-        }
         let moving = now_s - self.last_motion_s < SETTLE_S;
         if moving {
             let dt = ui.input(|i| i.unstable_dt).min(0.5);
@@ -334,8 +325,7 @@ impl View3d {
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
-            // On a software rasteriser a new picture for every box the pointer crosses is too much.
-            Some(Hit::Box { id, .. }) if state.tool == Tool::Select && !self.is_software() => Some(*id),
+            Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
             _ => None,
         };
         let Some(gpu) = &mut self.gpu else { return };
@@ -368,9 +358,14 @@ impl View3d {
         };
         let [w, h] = if coarse { size.map(|s| s.div_ceil(2)) } else { size };
         let wgpu = &gpu.render_state;
-        gpu.viewport
+        let drawn = gpu
+            .viewport
             .render(&wgpu.device, &wgpu.queue, &self.camera, &view, w, h);
         let texture = register(gpu, options.samples);
+        if drawn && gpu.software {
+            let share = software_ui::share(gpu.viewport.drawn_rect(), gpu.viewport.size());
+            software_ui::picture_changed(ui.ctx(), texture, Some(share));
+        }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }

@@ -33,7 +33,10 @@ pub const KERB_SEEN_M: f32 = 0.2;
 pub const KERB_EDGE_M: f32 = 0.008;
 /// Farthest shadow caster, m.
 pub const SHADOW_M: f32 = 45.0;
-/// Light of a head lamp on a surface, times exposure, from which on its shadow is looked for.
+/// Light of a head lamp falls off with 1 / (distance^2 + this), m^2: its reflector is wide and aims ahead, so that it
+/// does not burn out what is near.
+pub const HEAD_NEAR_M2: f32 = 60.0;
+/// Light of a lamp on a surface, times exposure, from which on its shadow is looked for.
 pub const LAMP_SHADOW_LIGHT: f32 = 0.02;
 /// Nothing this near to a lamp keeps its light back, m: it sits in a vehicle.
 pub const LAMP_CLEAR_M: f32 = 0.6;

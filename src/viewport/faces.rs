@@ -25,6 +25,14 @@ pub(super) struct FaceVertex {
 
 const _: () = assert!(size_of::<FaceVertex>() == 20);
 
+impl FaceVertex {
+    /// Ego frame, m.
+    pub fn position_m(&self) -> DVec3 {
+        let [x, y, z, _] = self.p_style.map(f64::from);
+        DVec3::new(x, y, z)
+    }
+}
+
 /// Rectangles being collected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct FaceList {

@@ -1,5 +1,6 @@
 //! The layout: road markings painted on ground voxels, and a thin plane with all of its layers.
 
+use super::change::{Change, Part};
 use super::shared::{PipelineSpec, Shared};
 use super::{LayoutPlane, ViewOptions};
 use crate::scene::{BevLayer, Class, GridSpec, VoxelGrid};
@@ -44,7 +45,7 @@ impl Ground {
         .build(device, shared, samples)
     }
 
-    /// Uploads the textures if they differ from the last ones.
+    /// Uploads the textures if they differ from the last ones; what is seen differently by that.
     pub fn update(
         &mut self,
         queue: &wgpu::Queue,
@@ -52,18 +53,49 @@ impl Ground {
         bev: &[u32],
         grid: &VoxelGrid,
         options: &ViewOptions,
-    ) {
+    ) -> Change {
         let markings = marking_texels(bev);
         let plane = plane_texels(bev, grid, options);
-        if markings != self.markings || plane != self.plane {
-            shared.write_layout(queue, &markings, &plane);
-            (self.markings, self.plane) = (markings, plane);
+        if markings == self.markings && plane == self.plane {
+            return Change::None;
         }
+        shared.write_layout(queue, &markings, &plane);
+        // Shown on top of the ground voxels of a column, and beneath them.
+        let mut seen = Change::None;
+        for (texels, old) in [(&markings, &self.markings), (&plane, &self.plane)] {
+            seen.add(differing(texels, old, grid));
+        }
+        (self.markings, self.plane) = (markings, plane);
+        seen
     }
 
     /// True if the plane would show anything.
     pub fn is_visible(&self) -> bool {
         self.plane.iter().any(|t| t[3] != 0)
+    }
+}
+
+/// Where texels `[y][x]` differ, up to the highest ground voxel.
+fn differing(new: &[[u8; 4]], old: &[[u8; 4]], grid: &VoxelGrid) -> Change {
+    if new.len() != old.len() {
+        return Change::All;
+    }
+    let (mut low, mut high) = ([usize::MAX, usize::MAX, 0], [0, 0, 1]);
+    for (i, _) in new.iter().zip(old).enumerate().filter(|(_, (a, b))| a != b) {
+        let (x, y) = (i % GridSpec::NX, i / GridSpec::NX);
+        let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
+        let top = grid.column(x, y).iter().rposition(is_ground).map_or(1, |z| z + 1);
+        low = [low[0].min(x), low[1].min(y), 0];
+        high = [high[0].max(x + 1), high[1].max(y + 1), high[2].max(top)];
+    }
+    match low[0] {
+        usize::MAX => Change::None,
+        _ => {
+            let part = Part::of_voxels(low, high);
+            // The plane lies just above the top of the lowest bin.
+            let high_m = part.high_m + glam::DVec3::Z * 0.05;
+            Change::part(Part { high_m, ..part }, 2.0)
+        }
     }
 }
 

@@ -8,6 +8,11 @@ use super::{ViewCamera, ViewScene, Viewport, ViewportError};
 pub const MAX_SUPERSAMPLE: u32 = 8;
 
 impl Viewport {
+    /// The picture drawn last as RGBA8, sRGB, premultiplied alpha, top row first.
+    pub fn shown(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<u8>, ViewportError> {
+        read_back(device, queue, &self.target)
+    }
+
     /// Draws a scene as RGBA8, sRGB, straight alpha, `width * height * 4` bytes, top row first.
     ///
     /// `supersample` N draws N x N pictures, each shifted by a part of a pixel, and averages them

@@ -17,6 +17,8 @@ pub const VOLUME: [usize; 3] = [GridSpec::NX + 2, GridSpec::NY + 2, GridSpec::NZ
 /// Farthest that light looks sideways, in columns: a change reaches no farther than this.
 pub const REACH: usize = 14;
 
+/// Columns up to which no other threads are asked.
+const FEW: usize = 64 * 64;
 const SUN_RAYS: usize = 8;
 const SKY_RAYS: usize = 24;
 const SKY_REACH: f64 = 9.0;
@@ -87,19 +89,20 @@ impl LightRays {
     pub fn bake(&self, solid: &Solidity, origin: [usize; 2], size: [usize; 2]) -> LightBlock {
         // One more column on every side, because drawn voxels take the sun of their neighbours.
         let (w, h) = (size[0] + 2, size[1] + 2);
-        let traced: Vec<Column> = (0..w * h)
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|i| {
-                // The margin of the padded columns is wide enough for this one and for every ray.
-                let at = Solidity::index(origin[0] + i % w, origin[1] + i / w) - Solidity::STRIDE - 1;
-                Column {
-                    own: solid.padded()[at],
-                    sun: free_counts(solid.padded(), &self.sun, at),
-                    sky: free_counts(solid.padded(), &self.sky, at),
-                }
-            })
-            .collect();
+        let column = |i: usize| {
+            // The margin of the padded columns is wide enough for this one and for every ray.
+            let at = Solidity::index(origin[0] + i % w, origin[1] + i / w) - Solidity::STRIDE - 1;
+            Column {
+                own: solid.padded()[at],
+                sun: free_counts(solid.padded(), &self.sun, at),
+                sky: free_counts(solid.padded(), &self.sky, at),
+            }
+        };
+        // Around an edit in this thread: the others may be busy generating.
+        let traced: Vec<Column> = match w * h {
+            0..=FEW => (0..w * h).map(column).collect(),
+            _ => (0..w * h).into_par_iter().with_min_len(64).map(column).collect(),
+        };
         let mut cells = vec![[0; 2]; size[0] * size[1] * GridSpec::NZ];
         for y in 0..size[1] {
             for x in 0..size[0] {

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
+use super::change::{Change, Part};
 use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
@@ -57,6 +58,21 @@ impl Marks {
             marks.cells(brush.cells, brush.color);
         }
         marks
+    }
+
+    /// What of the picture differs from that with other marks; `pixels_per_point` scales the width of lines.
+    pub fn change_from(&self, old: &Marks, pixels_per_point: f64) -> Change {
+        let mut seen = Change::None;
+        let lines = [(&self.see_through, &old.see_through), (&self.plain, &old.plain)];
+        for (new, old) in lines {
+            let differing = differing(&new.vertices, &old.vertices);
+            let width_pt = differing.iter().map(|v| v.line().1).fold(0.0, f64::max);
+            let ends = differing.iter().flat_map(|v| v.line().0);
+            seen.add(marked(ends, width_pt * pixels_per_point + 2.0));
+        }
+        let faces = differing(&self.faces.vertices, &old.faces.vertices);
+        seen.add(marked(faces.iter().map(|v| v.position_m()), 2.0));
+        seen
     }
 
     fn metre_grid(&mut self) {
@@ -196,6 +212,30 @@ impl Marks {
             }
         }
     }
+}
+
+/// What is in one of two lists of rectangles (four vertices each) and not at the same place, from the front or from the
+/// back, in the other.
+fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
+    let whole = |vertices: usize| vertices / 4 * 4;
+    let same = whole(a.iter().zip(b).take_while(|(a, b)| a == b).count());
+    let (a, b) = (&a[same..], &b[same..]);
+    let same = whole(
+        (a.iter().rev())
+            .zip(b.iter().rev())
+            .take_while(|(a, b)| a == b)
+            .count(),
+    );
+    [&a[..a.len() - same], &b[..b.len() - same]].concat()
+}
+
+fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> Change {
+    let mut points_m = points_m.peekable();
+    if points_m.peek().is_none() {
+        return Change::None;
+    }
+    // They are drawn a little nearer to the viewer than they are, along the line of sight: at the same pixels.
+    Part::around(points_m).map_or(Change::All, |part| Change::part(part, around_px))
 }
 
 fn lighter(color: [u8; 3], by: f32) -> [u8; 3] {

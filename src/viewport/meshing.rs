@@ -133,12 +133,17 @@ pub const NORMALS: [[i32; 3]; 6] = [
 
 const NONE: u8 = u8::MAX;
 
-/// Meshes of several bricks, in parallel; the result does not depend on the number of threads.
+/// Bricks up to which meshing goes on in this thread: the others may be busy generating, and an edit must not wait for
+/// them.
+const FEW: usize = 16;
+
+/// Meshes of several bricks, in parallel if they are many; the result does not depend on the number of threads.
 pub fn mesh_bricks(grid: &VoxelGrid, solid: &Solidity, bricks: &[usize]) -> Vec<BrickMesh> {
-    bricks
-        .par_iter()
-        .map(|&b| mesh_brick(&grid.bricks()[b], b, solid))
-        .collect()
+    let mesh = |&b: &usize| mesh_brick(&grid.bricks()[b], b, solid);
+    match bricks.len() {
+        0..=FEW => bricks.iter().map(mesh).collect(),
+        _ => bricks.par_iter().map(mesh).collect(),
+    }
 }
 
 /// The faces of a brick between a drawn voxel and one that is not drawn.

@@ -8,6 +8,7 @@
 pub mod appearance;
 mod background;
 mod camera;
+mod change;
 mod device;
 mod ego;
 mod error;
@@ -38,6 +39,7 @@ pub use shared::{COLOR_FORMAT, FRAME_UNIFORM_BYTES, FrameUniforms};
 pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};
 
 use crate::scene::{BoxId, GridSpec, LidarSweep, SceneBox, SensorRig, VoxelGrid};
+use change::{Change, PixelRect};
 use marks::Marks;
 use shared::Shared;
 use target::Target;
@@ -199,6 +201,7 @@ pub struct Viewport {
     pipelines: [Option<Pipelines>; 2], // 1 sample, 4 samples
     target: Target,
     drawn: Option<Drawn>,
+    drawn_rect: PixelRect,
     voxels: voxels::Voxels,
     ground: ground::Ground,
     lines: lines::Lines,
@@ -213,7 +216,6 @@ pub struct Viewport {
 struct Drawn {
     uniforms: FrameUniforms,
     options: ViewOptions,
-    bev: u64,
 }
 
 /// Fingerprints of what the device holds; `None` before the first upload.
@@ -231,6 +233,7 @@ struct Pipelines {
     ego: wgpu::RenderPipeline,
     points: wgpu::RenderPipeline,
     background: wgpu::RenderPipeline,
+    eraser: wgpu::RenderPipeline,
     ground: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
     hidden_lines: wgpu::RenderPipeline,
@@ -259,6 +262,7 @@ impl Viewport {
             pipelines: [None, None],
             target: Target::new(device, [1, 1], 1),
             drawn: None,
+            drawn_rect: [0; 4],
             voxels: voxels::Voxels::new(),
             ground: ground::Ground::default(),
             lines: lines::Lines::default(),
@@ -291,19 +295,37 @@ impl Viewport {
         let now = Drawn {
             uniforms: FrameUniforms::new(camera, scene.options, size, [0.0; 2]),
             options: scene.options.clone(),
-            bev: fingerprint_of_words(scene.bev),
         };
-        let uploads = self.upload(device, queue, scene, now.bev);
-        if !uploads && self.drawn.as_ref() == Some(&now) {
-            return false;
-        }
+        let mut change = self.upload(device, queue, scene, fingerprint_of_words(scene.bev));
+        let same_view = |drawn: &Drawn| drawn.uniforms == now.uniforms && drawn.options == now.options;
         if self.target.size != size || self.target.samples != samples {
             self.target = Target::new(device, size, samples);
+            change = Change::All;
+        } else if !self.target.keeps() && change != Change::None
+            || !self.drawn.as_ref().is_some_and(same_view)
+        {
+            change = Change::All;
         }
+        let clip = camera.sane().clip_from_world(size);
+        let part = match change::touched(&change, &clip, size) {
+            Ok(None) => {
+                self.drawn = Some(now);
+                return false;
+            }
+            Ok(part) => part,
+            Err(change::Whole) => None,
+        };
         self.build_pipelines(device, samples);
-        self.draw(device, queue, &self.target, camera, &now.uniforms, scene.options);
+        let whole = (camera, &now.uniforms, scene.options);
+        self.draw(device, queue, &self.target, whole, part);
+        self.drawn_rect = part.unwrap_or([0, 0, size[0], size[1]]);
         self.drawn = Some(now);
         true
+    }
+
+    /// What of the picture was drawn last, pixels: left, top, width, height of all of it or of what a change touched.
+    pub fn drawn_rect(&self) -> [u32; 4] {
+        self.drawn_rect
     }
 
     /// The picture drawn last, [`COLOR_FORMAT`]: sRGB-encoded, premultiplied alpha, not converted on
@@ -335,7 +357,7 @@ impl Viewport {
         self.upload(device, queue, scene, fingerprint_of_words(scene.bev));
         self.build_pipelines(device, target.samples);
         let uniforms = FrameUniforms::new(camera, scene.options, target.size, jitter_px);
-        self.draw(device, queue, target, camera, &uniforms, scene.options);
+        self.draw(device, queue, target, (camera, &uniforms, scene.options), None);
     }
 
     /// Makes the next [`Viewport::render`] draw in any case.
@@ -343,51 +365,57 @@ impl Viewport {
         self.drawn = None;
     }
 
-    /// Brings the drawables up to date; true if any content changed.
+    /// Brings the drawables up to date; what of the picture that changes.
     fn upload(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &ViewScene<'_>,
         bev: u64,
-    ) -> bool {
-        let (options, mut changed) = (scene.options, false);
+    ) -> Change {
+        let (options, mut change) = (scene.options, Change::None);
+        let px = f64::from(options.pixels_per_point);
         let grid_changed = !self.voxels.holds(scene.grid, options);
         if grid_changed {
-            changed |= self
-                .voxels
-                .update(device, queue, &self.shared, scene.grid, options);
+            change.add(
+                self.voxels
+                    .update(device, queue, &self.shared, scene.grid, options),
+            );
         }
         let layout = (bev, options.layout_plane, options.voxels);
         if grid_changed || self.uploaded.layout != Some(layout) {
-            self.ground
-                .update(queue, &self.shared, scene.bev, scene.grid, options);
+            change.add(
+                self.ground
+                    .update(queue, &self.shared, scene.bev, scene.grid, options),
+            );
             self.uploaded.layout = Some(layout);
-            changed = true;
         }
         let marks = Marks::of(scene);
         if self.uploaded.marks.as_ref() != Some(&marks) {
             self.lines.write(device, queue, &marks.see_through, &marks.plain);
             self.faces.write(device, queue, &marks.faces);
+            change.add(match &self.uploaded.marks {
+                Some(old) => marks.change_from(old, px),
+                None => Change::All,
+            });
             self.uploaded.marks = Some(marks);
-            changed = true;
         }
         let lidar = scene.lidar.filter(|_| options.lidar);
         let points = lidar.map_or(0, fingerprint_of_points);
         if self.uploaded.points != Some(points) {
             let nothing = LidarSweep::default();
             let (sweep, colors) = lidar.map_or((&nothing, &[][..]), |l| (l.sweep, l.colors));
-            self.points.write(device, queue, sweep, colors);
+            let point_px = f64::from(options.point_px);
+            change.add(self.points.write(device, queue, sweep, colors, point_px));
             self.uploaded.points = Some(points);
-            changed = true;
         }
         let ego = Some((scene.rig, options.drop_m.to_bits()));
         if self.uploaded.ego.as_ref().map(|(rig, drop)| (rig, *drop)) != ego {
             self.ego.write(device, queue, scene.rig, drop_m(options));
             self.uploaded.ego = Some((scene.rig.clone(), options.drop_m.to_bits()));
-            changed = true;
+            change = Change::All;
         }
-        changed
+        change
     }
 
     fn build_pipelines(&mut self, device: &wgpu::Device, samples: u32) {
@@ -397,6 +425,7 @@ impl Viewport {
             ego: ego::Ego::pipeline(device, shared, samples),
             points: points::Points::pipeline(device, shared, samples),
             background: background::pipeline(device, shared, samples),
+            eraser: background::eraser(device, shared, samples),
             ground: ground::Ground::pipeline(device, shared, samples),
             lines: lines::Lines::pipeline(device, shared, samples, false),
             hidden_lines: lines::Lines::pipeline(device, shared, samples, true),
@@ -404,26 +433,36 @@ impl Viewport {
         });
     }
 
+    /// Draws all of a picture, or only what lies in a rectangle of it.
     fn draw(
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         target: &Target,
-        camera: &ViewCamera,
-        uniforms: &FrameUniforms,
-        options: &ViewOptions,
+        (camera, uniforms, options): (&ViewCamera, &FrameUniforms, &ViewOptions),
+        part: Option<PixelRect>,
     ) {
         let Some(pipelines) = &self.pipelines[usize::from(target.samples > 1)] else {
             return;
         };
+        let [w, h] = target.size;
+        let rect = part.unwrap_or([0, 0, w, h]);
+        let margin_px = points::Points::reach_px(f64::from(options.point_px));
+        let camera = &camera.sane();
+        let clip = change::crop(rect, margin_px, target.size) * camera.clip_from_world(target.size);
         let shared = &self.shared;
         shared.write_uniforms(queue, uniforms);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
             label: Some("viewport"),
         });
         {
-            let mut pass = target.begin(&mut encoder);
+            let mut pass = target.begin(&mut encoder, part.is_some());
             pass.set_bind_group(0, &shared.bind_group, &[]);
+            if let Some([x, y, w, h]) = part {
+                pass.set_scissor_rect(x, y, w, h);
+                pass.set_pipeline(&pipelines.eraser);
+                pass.draw(0..3, 0..1);
+            }
             // Opaque things first and near ones before far ones: a software rasteriser then shades
             // little that is covered later.
             if options.ego {
@@ -431,9 +470,9 @@ impl Viewport {
                 self.ego.draw(&mut pass, shared);
             }
             pass.set_pipeline(&pipelines.points);
-            self.points.draw(&mut pass);
+            self.points.draw(&mut pass, &clip);
             pass.set_pipeline(&pipelines.voxels);
-            self.voxels.draw(&mut pass, shared, &camera.sane(), target.size);
+            self.voxels.draw(&mut pass, shared, camera, &clip);
             if options.background != Background::Transparent {
                 pass.set_pipeline(&pipelines.background);
                 pass.draw(0..3, 0..1);

@@ -5,7 +5,7 @@ use super::shaders::SHADERS;
 
 /// A corner of a triangle, as egui lays it out: position and texture coordinate in points and parts, RGBA.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct PanelVertex {
     /// Points.
     pub position: [f32; 2],
@@ -28,15 +28,32 @@ pub struct PanelMesh {
     pub base_vertex: i32,
 }
 
-/// Pipeline and buffers.
+/// Pipelines, buffers, and the picture of the window.
 #[derive(Debug)]
 pub struct Panels {
     pipeline: wgpu::RenderPipeline,
+    wipe: wgpu::RenderPipeline,
+    copy: wgpu::RenderPipeline,
     screen: wgpu::Buffer,
     screen_group: wgpu::BindGroup,
+    texture_layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
+    format: wgpu::TextureFormat,
+    canvas: Option<Canvas>,
 }
+
+/// What the window shows; the target that it hands over for a frame does not keep the last one.
+#[derive(Debug)]
+struct Canvas {
+    size: [u32; 2],
+    view: wgpu::TextureView,
+    group: wgpu::BindGroup,
+}
+
+/// Size of the uniforms, bytes: width and height of the window in points, two unused, the colour behind everything.
+const SCREEN_BYTES: u64 = 32;
 
 fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
@@ -68,7 +85,11 @@ impl Panels {
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let screen_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("panels: screen"),
-            entries: &[entry(0, wgpu::ShaderStages::VERTEX, uniform(16))],
+            entries: &[entry(
+                0,
+                wgpu::ShaderStages::VERTEX_FRAGMENT,
+                uniform(SCREEN_BYTES),
+            )],
         });
         let texture = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: true },
@@ -103,39 +124,56 @@ impl Panels {
             operation: wgpu::BlendOperation::Add,
         };
         use wgpu::BlendFactor::{One, OneMinusDstAlpha, OneMinusSrcAlpha};
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("panels"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vs_main"),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<PanelVertex>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
-                })],
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fs_main"),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: Some(wgpu::BlendState {
-                        color: over(One, OneMinusSrcAlpha),
-                        alpha: over(OneMinusDstAlpha, One),
-                    }),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-            }),
-            multiview_mask: None,
-            cache: None,
+        let blend = wgpu::BlendState {
+            color: over(One, OneMinusSrcAlpha),
+            alpha: over(OneMinusDstAlpha, One),
+        };
+        let vertices = [Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<PanelVertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
+        })];
+        let plain = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("panels: wipe"),
+            bind_group_layouts: &[Some(&screen_layout)],
+            immediate_size: 0,
         });
-        let screen = buffer(device, "panels: screen", 16, wgpu::BufferUsages::UNIFORM);
+        let pipeline = |vertex, fragment, blend: Option<wgpu::BlendState>| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(if fragment == "fs_wipe" { &plain } else { &layout }),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    buffers: if blend.is_some() { &vertices } else { &[] },
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format,
+                        blend,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let wipe = pipeline("vs_all", "fs_wipe", None);
+        let copy = pipeline("vs_all", "fs_copy", None);
+        let pipeline = pipeline("vs_main", "fs_main", Some(blend));
+        let screen = buffer(
+            device,
+            "panels: screen",
+            SCREEN_BYTES,
+            wgpu::BufferUsages::UNIFORM,
+        );
         let screen_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("panels: screen"),
             layout: &screen_layout,
@@ -146,24 +184,32 @@ impl Panels {
         });
         Self {
             pipeline,
+            wipe,
+            copy,
             screen,
             screen_group,
+            texture_layout,
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor::default()),
             vertices: buffer(device, "panels: vertices", 1 << 20, wgpu::BufferUsages::VERTEX),
             indices: buffer(device, "panels: indices", 1 << 19, wgpu::BufferUsages::INDEX),
+            format,
+            canvas: None,
         }
     }
 
-    /// Brings a frame to the device. `size_points` is that of the window.
+    /// Brings a frame to the device: vertices and indices. `size_points` is that of the window, `clear` the colour behind
+    /// everything, gamma-encoded.
     pub fn upload(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         size_points: [f32; 2],
-        vertices: &[PanelVertex],
-        indices: &[u32],
+        clear: [f32; 4],
+        (vertices, indices): (&[PanelVertex], &[u32]),
     ) {
-        let [w, h] = size_points;
-        queue.write_buffer(&self.screen, 0, bytemuck::cast_slice(&[w, h, 0.0, 0.0]));
+        let ([w, h], [r, g, b, a]) = (size_points, clear);
+        let screen = [w, h, 0.0, 0.0, r, g, b, a];
+        queue.write_buffer(&self.screen, 0, bytemuck::cast_slice(&screen));
         let (vertices, indices): (&[u8], &[u8]) =
             (bytemuck::cast_slice(vertices), bytemuck::cast_slice(indices));
         let room = |bytes: &[u8]| (bytes.len() as u64).next_power_of_two();
@@ -179,22 +225,106 @@ impl Panels {
         queue.write_buffer(&self.indices, 0, indices);
     }
 
-    /// Draws parts of the frame uploaded last, each with its texture; those without one are left out.
+    /// Makes the picture as large as the window, pixels; true if it is a new one, of which nothing is drawn.
+    pub fn fit(&mut self, device: &wgpu::Device, size: [u32; 2]) -> bool {
+        let size = size.map(|s| s.max(1));
+        if self.canvas.as_ref().is_some_and(|c| c.size == size) {
+            return false;
+        }
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("window"),
+            size: wgpu::Extent3d {
+                width: size[0],
+                height: size[1],
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.format,
+            usage,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("window"),
+            layout: &self.texture_layout,
+            entries: &[
+                entry(0, wgpu::BindingResource::TextureView(&view)),
+                entry(1, wgpu::BindingResource::Sampler(&self.sampler)),
+                entry(2, self.screen.as_entire_binding()),
+            ],
+        });
+        self.canvas = Some(Canvas { size, view, group });
+        true
+    }
+
+    /// Draws some rectangles of the picture again, pixels: `parts` says what of the frame uploaded last lies in one, each
+    /// with its texture.
     pub fn draw<'t>(
         &self,
-        pass: &mut wgpu::RenderPass<'static>,
-        parts: impl Iterator<Item = (&'t PanelMesh, Option<&'t wgpu::BindGroup>)>,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        rects: &[[u32; 4]],
+        parts: impl Fn([u32; 4]) -> Vec<(PanelMesh, &'t wgpu::BindGroup)>,
     ) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.screen_group, &[]);
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (mesh, texture) in parts {
-            let Some(texture) = texture else { continue };
-            let [x, y, width, height] = mesh.scissor;
-            pass.set_bind_group(1, texture, &[]);
-            pass.set_scissor_rect(x, y, width, height);
-            pass.draw_indexed(mesh.indices.clone(), mesh.base_vertex, 0..1);
+        let Some(canvas) = self.canvas.as_ref().filter(|_| !rects.is_empty()) else {
+            return;
+        };
+        let [w, h] = canvas.size;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("window"),
+        });
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("window"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &canvas.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Load,
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: None,
+                timestamp_writes: None,
+                occlusion_query_set: None,
+                multiview_mask: None,
+            });
+            pass.set_bind_group(0, &self.screen_group, &[]);
+            for rect in rects {
+                let [x, y] = [rect[0].min(w), rect[1].min(h)];
+                let [width, height] = [rect[2].min(w - x), rect[3].min(h - y)];
+                pass.set_pipeline(&self.wipe);
+                pass.set_scissor_rect(x, y, width, height);
+                pass.draw(0..3, 0..1);
+                pass.set_pipeline(&self.pipeline);
+                pass.set_vertex_buffer(0, self.vertices.slice(..));
+                pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+                for (mesh, texture) in parts([x, y, width, height]) {
+                    let [x, y, width, height] = mesh.scissor;
+                    pass.set_bind_group(1, texture, &[]);
+                    pass.set_scissor_rect(x, y, width, height);
+                    pass.draw_indexed(mesh.indices.clone(), mesh.base_vertex, 0..1);
+                }
+            }
         }
+        queue.submit([encoder.finish()]);
+    }
+
+    /// Shows the picture in a target of `size` pixels.
+    pub fn show(&self, pass: &mut wgpu::RenderPass<'static>, size: [u32; 2]) {
+        let Some(canvas) = self.canvas.as_ref().filter(|c| c.size == size) else {
+            return;
+        };
+        pass.set_pipeline(&self.copy);
+        pass.set_bind_group(0, &self.screen_group, &[]);
+        pass.set_bind_group(1, &canvas.group, &[]);
+        pass.set_viewport(0.0, 0.0, size[0] as f32, size[1] as f32, 0.0, 1.0);
+        pass.set_scissor_rect(0, 0, size[0], size[1]);
+        pass.draw(0..3, 0..1);
     }
 }

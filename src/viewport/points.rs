@@ -1,7 +1,11 @@
-//! LiDAR returns: small discs, and the colours they can have.
+//! LiDAR returns: small discs, and the colours they can have. They are held in squares of the ground, so that those out of
+//! view cost nothing, and an edit draws again only what it changed.
 
 use bytemuck::{Pod, Zeroable};
 
+use glam::{DMat4, DVec3};
+
+use super::change::{Change, Part, may_be_seen};
 use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use crate::scene::{Class, LidarPoint, LidarSweep};
 
@@ -74,10 +78,35 @@ fn ramp(t: f32) -> [u8; 4] {
     [mix(0), mix(1), mix(2), 255]
 }
 
-/// Drawable of a sweep.
+/// Edge of a square of the ground, m, and squares along a side; the outermost hold what is beyond them too.
+const SQUARE_M: f32 = 8.0;
+const SQUARES: usize = 16;
+
+/// Returns over one square.
 #[derive(Debug, Default)]
-pub(super) struct Points {
+struct Square {
     triangles: VertexBuffer,
+    vertices: Vec<PointVertex>, // as uploaded
+    part: Option<Part>,
+}
+
+/// Drawable of a sweep.
+#[derive(Debug)]
+pub(super) struct Points {
+    squares: Vec<Square>,
+}
+
+impl Default for Points {
+    fn default() -> Self {
+        Self {
+            squares: (0..SQUARES * SQUARES).map(|_| Square::default()).collect(),
+        }
+    }
+}
+
+fn square_of([x, y, _]: [f32; 3]) -> usize {
+    let along = |v: f32| (v / SQUARE_M + SQUARES as f32 / 2.0).clamp(0.0, SQUARES as f32 - 1.0) as usize;
+    along(x) * SQUARES + along(y)
 }
 
 impl Points {
@@ -91,14 +120,22 @@ impl Points {
         .build(device, shared, samples)
     }
 
-    /// Uploads the returns; a return without a colour is white, a non-finite one is left out.
+    /// How far a disc of `point_px` may reach from the point, px: the triangle around it is twice as large as it is, and
+    /// nearby it is twice as large as was asked for.
+    pub fn reach_px(point_px: f64) -> f64 {
+        4.0 * point_px + 2.0
+    }
+
+    /// Uploads the returns; a return without a colour is white, a non-finite one is left out. What is seen differently
+    /// by that, with discs of `point_px`.
     pub fn write(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         sweep: &LidarSweep,
         colors: &[[u8; 4]],
-    ) {
+        point_px: f64,
+    ) -> Change {
         // The ground is drawn where the labels have it; so is what was measured on the physical one.
         let lift_m = if sweep.physical {
             super::GROUND_TOP_M as f32
@@ -106,23 +143,41 @@ impl Points {
             0.0
         };
         let at = |[x, y, z]: [f32; 3]| [x, y, z + lift_m];
-        let vertices: Vec<PointVertex> = sweep
-            .points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.position_in_ego.iter().all(|v| v.is_finite()))
-            .flat_map(|(i, p)| {
-                [PointVertex {
+        let mut squares: Vec<Vec<PointVertex>> = vec![Vec::new(); SQUARES * SQUARES];
+        for (i, p) in sweep.points.iter().enumerate() {
+            if p.position_in_ego.iter().all(|v| v.is_finite()) {
+                let vertex = PointVertex {
                     position_m: at(p.position_in_ego),
                     color: colors.get(i).copied().unwrap_or([255; 4]),
-                }; 3]
-            })
-            .collect();
-        self.triangles.write(device, queue, "points", &vertices);
+                };
+                squares[square_of(vertex.position_m)].extend([vertex; 3]);
+            }
+        }
+        let mut seen = Change::None;
+        for (square, vertices) in self.squares.iter_mut().zip(squares) {
+            if square.vertices == vertices {
+                continue;
+            }
+            let at = |v: &PointVertex| DVec3::from_array(v.position_m.map(f64::from));
+            let part = Part::around(vertices.iter().map(at));
+            for part in [part, square.part].into_iter().flatten() {
+                seen.add(Change::part(part, Self::reach_px(point_px)));
+            }
+            square.triangles.write(device, queue, "points", &vertices);
+            (square.vertices, square.part) = (vertices, part);
+        }
+        seen
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.triangles.draw_triangles(pass);
+    /// Draws the squares in view. What `clip` maps beyond -1 or 1 is not: it leaves room for the discs, see
+    /// [`Points::reach_px`].
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, clip: &DMat4) {
+        for square in &self.squares {
+            let seen = |p: Part| may_be_seen(p.low_m, p.high_m, clip);
+            if square.part.is_some_and(seen) {
+                square.triangles.draw_triangles(pass);
+            }
+        }
     }
 }
 

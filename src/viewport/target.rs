@@ -51,8 +51,14 @@ impl Target {
         }
     }
 
-    /// Starts a pass that clears both.
-    pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+    /// True if what was drawn is kept, colour and depth: one sample a pixel.
+    pub fn keeps(&self) -> bool {
+        self.multisampled.is_none()
+    }
+
+    /// Starts a pass that clears both, or goes on with what is kept.
+    pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, go_on: bool) -> wgpu::RenderPass<'e> {
+        let go_on = go_on && self.keeps();
         let (view, resolve_target) = match &self.multisampled {
             Some(multisampled) => (multisampled, Some(&self.color_view)),
             None => (&self.color_view, None),
@@ -64,7 +70,10 @@ impl Target {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    load: match go_on {
+                        true => wgpu::LoadOp::Load,
+                        false => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    },
                     store: if resolve_target.is_some() {
                         wgpu::StoreOp::Discard
                     } else {
@@ -75,8 +84,14 @@ impl Target {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Discard,
+                    load: match go_on {
+                        true => wgpu::LoadOp::Load,
+                        false => wgpu::LoadOp::Clear(0.0),
+                    },
+                    store: match self.keeps() {
+                        true => wgpu::StoreOp::Store,
+                        false => wgpu::StoreOp::Discard,
+                    },
                 }),
                 stencil_ops: None,
             }),

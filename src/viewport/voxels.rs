@@ -1,16 +1,23 @@
-//! Occupancy as voxel faces, brick by brick; only bricks whose memory changed are meshed again.
+//! Occupancy as voxel faces, brick by brick; only bricks whose memory changed are meshed again, and only voxels and light
+//! that differ count as changed.
 
 use std::sync::Arc;
 
+use glam::DMat4;
+
+use super::change::{Change, Part, may_be_seen};
 use super::light::{LightBlock, LightRays, REACH};
 use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
 use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use super::{ViewCamera, ViewOptions};
-use crate::scene::grid::{BRICK, BRICKS};
+use crate::scene::grid::{BRICK, BRICKS, Brick};
 use crate::scene::{GridSpec, VoxelGrid};
 
 /// A vertex is one word; see [`BrickMesh::vertices`].
 const STRIDE: usize = 4;
+
+/// How far the picture of a voxel reaches beyond its projection, px.
+const EDGE_PX: f64 = 2.0;
 
 /// Drawable of the occupancy.
 #[derive(Debug)]
@@ -19,6 +26,7 @@ pub(super) struct Voxels {
     visible: Visible,
     solid: Solidity,
     rays: LightRays,
+    light: Vec<[u8; 2]>, // as uploaded, `[z][y][x]`
     bricks: Vec<BrickBuffer>,
 }
 
@@ -56,6 +64,7 @@ impl Voxels {
             grid,
             visible,
             rays: LightRays::new(),
+            light: vec![[255; 2]; GridSpec::COLUMNS * GridSpec::NZ],
             bricks: (0..BRICKS * BRICKS).map(|_| BrickBuffer::default()).collect(),
         }
     }
@@ -71,7 +80,7 @@ impl Voxels {
         .build(device, shared, samples)
     }
 
-    /// Takes over a grid; true if anything had to be uploaded.
+    /// Takes over a grid; what of it is seen differently now.
     pub fn update(
         &mut self,
         device: &wgpu::Device,
@@ -79,17 +88,22 @@ impl Voxels {
         shared: &Shared,
         grid: &VoxelGrid,
         options: &ViewOptions,
-    ) -> bool {
+    ) -> Change {
         let visible = visible(options);
-        let changed: Vec<usize> = if visible == self.visible {
+        let same_view = visible == self.visible;
+        let changed: Vec<usize> = if same_view {
             grid.changed_bricks(&self.grid)
         } else {
             (0..BRICKS * BRICKS).collect()
         };
         self.visible = visible;
         if changed.is_empty() {
-            return false;
+            return Change::None;
         }
+        let mut seen = match same_view {
+            true => self.differing(grid, &changed),
+            false => Change::All,
+        };
         let mut stale = [false; BRICKS * BRICKS];
         let mut shape_changed = None;
         for &b in &changed {
@@ -114,19 +128,50 @@ impl Voxels {
         if let Some((origin, size)) = shape_changed.map(lit_area) {
             let block: LightBlock = self.rays.bake(&self.solid, origin, size);
             shared.write_light(queue, &block);
+            seen.add(self.keep_light(&block));
         }
-        true
+        seen
     }
 
-    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye.
-    pub fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        shared: &Shared,
-        camera: &ViewCamera,
-        size: [u32; 2],
-    ) {
-        for (b, _) in self.in_view(camera, size) {
+    /// Where the labels of some bricks differ from those held.
+    fn differing(&self, grid: &VoxelGrid, bricks: &[usize]) -> Change {
+        let mut seen = Change::None;
+        for &b in bricks {
+            if let Some(part) = differing_part(b, &grid.bricks()[b], &self.grid.bricks()[b]) {
+                seen.add(Change::part(part, EDGE_PX));
+            }
+        }
+        seen
+    }
+
+    /// Remembers baked light; where surfaces look different by it.
+    fn keep_light(&mut self, block: &LightBlock) -> Change {
+        let ([x0, y0], [w, h]) = (block.origin, block.size);
+        let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
+        for (i, new) in block.cells.iter().enumerate() {
+            let at = [x0 + i % w, y0 + i / w % h, i / (w * h)];
+            let old = &mut self.light[(at[2] * GridSpec::NY + at[1]) * GridSpec::NX + at[0]];
+            if std::mem::replace(old, *new) != *new {
+                low = [0, 1, 2].map(|k| low[k].min(at[k]));
+                high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));
+            }
+        }
+        if low[0] == usize::MAX {
+            return Change::None;
+        }
+        // Light is interpolated half a voxel off a surface.
+        let part = Part::of_voxels(low, high);
+        let wider = Part {
+            low_m: part.low_m - 2.0 * GridSpec::VOXEL_M,
+            high_m: part.high_m + 2.0 * GridSpec::VOXEL_M,
+        };
+        Change::part(wider, EDGE_PX)
+    }
+
+    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. What `clip` maps beyond -1
+    /// or 1 is out of view.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, camera: &ViewCamera, clip: &DMat4) {
+        for (b, _) in self.in_view(camera, clip) {
             let brick = &self.bricks[b];
             for range in facing(b, &brick.quads, camera) {
                 brick.vertices.draw_quads(pass, shared, range);
@@ -139,35 +184,19 @@ impl Voxels {
         self.bricks.iter().map(|b| b.vertices.quads() as usize).sum()
     }
 
-    fn in_view(&self, camera: &ViewCamera, size: [u32; 2]) -> Vec<(usize, f64)> {
-        let clip = camera.clip_from_world(size);
+    fn in_view(&self, camera: &ViewCamera, clip: &DMat4) -> Vec<(usize, f64)> {
         let (eye, forward) = (camera.eye_m(), camera.axes()[2]);
         let mut seen: Vec<(usize, f64)> = (0..self.bricks.len())
             .filter(|&b| self.bricks[b].vertices.quads() > 0)
             .filter_map(|b| {
                 let (low, high) = bounds_m(b);
-                let corners = (0..8).map(|i| {
-                    let pick = |axis: usize| {
-                        if i >> axis & 1 == 0 { low[axis] } else { high[axis] }
-                    };
-                    clip * glam::DVec4::new(pick(0), pick(1), pick(2), 1.0)
-                });
-                // Out of view if all corners are beyond one and the same edge of the picture.
-                let mut beyond = 0b11111u32;
-                for c in corners {
-                    let sides = [c.x < -c.w, c.x > c.w, c.y < -c.w, c.y > c.w, c.w <= 0.0];
-                    beyond &= sides
-                        .iter()
-                        .enumerate()
-                        .fold(0, |m, (i, s)| m | u32::from(*s) << i);
-                }
                 let middle = (low + high) / 2.0;
                 let distance = if camera.ortho {
                     middle.dot(forward)
                 } else {
                     (middle - eye).length()
                 };
-                (beyond == 0).then_some((b, distance))
+                may_be_seen(low, high, clip).then_some((b, distance))
             })
             .collect();
         seen.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -204,6 +233,23 @@ fn facing(brick: usize, quads: &[std::ops::Range<u32>; 6], camera: &ViewCamera) 
         }
     }
     out
+}
+
+/// The box around the voxels whose label differs.
+fn differing_part(brick: usize, new: &Brick, old: &Brick) -> Option<Part> {
+    let [x0, y0] = brick_origin(brick);
+    let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
+    for (column, (new, old)) in new.chunks(BRICK).zip(old.chunks(BRICK)).enumerate() {
+        if new == old {
+            continue;
+        }
+        for z in (0..BRICK).filter(|&z| new[z] != old[z]) {
+            let at = [x0 + column / BRICK, y0 + column % BRICK, z];
+            low = [0, 1, 2].map(|k| low[k].min(at[k]));
+            high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));
+        }
+    }
+    (low[0] < usize::MAX).then(|| Part::of_voxels(low, high))
 }
 
 fn neighbours(brick: usize) -> impl Iterator<Item = usize> {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{
-    Align2, Color32, ColorImage, Rect, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, Rect, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+    vec2,
 };
 use glam::DVec3;
 
@@ -162,8 +162,7 @@ impl CameraStrip {
         let count = views.iter().map(|v| v.camera + 1).max().unwrap_or(0);
         self.textures.resize(count, None);
         for view in views.iter() {
-            let (size, rgba) = view.picture.rgba(mode, plane_m);
-            let image = ColorImage::from_rgba_unmultiplied(size, &rgba);
+            let image = view.colors(mode, plane_m);
             match &mut self.textures[view.camera] {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
                 empty => *empty = Some(ui.ctx().load_texture("camera", image, TextureOptions::LINEAR)),

@@ -2,6 +2,7 @@
 //! files have the same names and the same order of blocks.
 
 pub mod candle_dit;
+pub mod candle_vae;
 pub mod encoder;
 #[cfg(test)]
 mod golden;

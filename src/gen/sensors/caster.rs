@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::lidar::{EgoBox, Rays, look_through};
-use super::raycast::ColumnMasks;
+use super::raycast::{ColumnMasks, LANES, Met, Packet};
 use crate::scene::grid::{BRICK, BRICKS};
 use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
 
@@ -13,8 +13,14 @@ use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelG
 const MAX_BOXES: usize = 16;
 /// Widens changed boxes by far more than rounding, voxels.
 const MARGIN: f64 = 1e-6;
-/// Rays per task.
-const CHUNK: usize = 512;
+/// Columns of the pattern per task.
+const TASK: usize = 16;
+/// Tests of a ray against a changed box per task, and rays cast one by one per task.
+const TESTS: usize = 8192;
+const RAYS: usize = 512;
+
+/// How far a ray is free, m, and what it returns.
+type Found = (f32, Option<LidarPoint>);
 
 /// One LiDAR, the voxels that it saw last and what each ray found.
 #[derive(Clone, Debug)]
@@ -23,13 +29,14 @@ pub struct Caster {
     exclude: Option<EgoBox>,
     rays: Rays,
     columns: usize,
-    /// Origin of each column and 1 / direction of each ray, in voxel units, for the test against changed boxes.
+    /// Origin of each column, voxel units.
     origins: Vec<DVec3>,
-    inverses: Vec<DVec3>,
+    /// Unit normal of the plane that holds the rays of each column.
+    normals: Vec<DVec3>,
     grid: VoxelGrid,
     masks: ColumnMasks,
     /// Per ray: how far it is free, m, and what it returns.
-    found: Vec<(f32, Option<LidarPoint>)>,
+    found: Vec<Found>,
     cast: usize,
 }
 
@@ -59,11 +66,7 @@ impl Caster {
                 .iter()
                 .map(|o| GridSpec::to_voxel_units(*o))
                 .collect(),
-            inverses: rays
-                .directions
-                .iter()
-                .map(|d| d.to_array().map(inverse).into())
-                .collect(),
+            normals: rays.normals(pattern),
             found: vec![(0.0, None); rays.directions.len()],
             rays,
             grid: grid.clone(),
@@ -93,24 +96,30 @@ impl Caster {
             self.cast_all();
             return;
         }
-        let (kept, changed) = (&*self, &changed);
-        let found = &kept.found;
+        // The rays of a column lie in one plane: only columns whose plane meets a box are looked at ray by ray.
+        let columns: Vec<usize> = (0..self.columns)
+            .filter(|&c| changed.iter().any(|b| b.cuts(self.origins[c], self.normals[c])))
+            .collect();
+        let beams = self.found.len() / self.columns.max(1);
+        let (kept, changed, columns) = (&*self, &changed, &columns);
         let beam = |beam: usize| {
-            (0..kept.columns).filter_map(move |column| {
+            columns.iter().filter_map(move |&column| {
                 let ray = beam * kept.columns + column;
                 let reach = f64::from(kept.found[ray].0) / GridSpec::VOXEL_M;
-                let (origin, inverse) = (kept.origins[column], kept.inverses[ray]);
-                changed
-                    .iter()
-                    .any(|c| c.is_met(origin, inverse, reach))
-                    .then_some(ray)
+                let inverse = kept.rays.directions[ray].to_array().map(inverse).into();
+                let met = |b: &Changed| b.is_met(kept.origins[column], inverse, reach);
+                changed.iter().any(met).then_some(ray)
             })
         };
-        let beams = found.len() / self.columns.max(1);
-        let again: Vec<usize> = (0..beams).into_par_iter().flat_map_iter(beam).collect();
+        let at_once = TESTS / (columns.len() * changed.len()).max(1) + 1;
+        let again: Vec<usize> = (0..beams)
+            .into_par_iter()
+            .with_min_len(at_once)
+            .flat_map_iter(beam)
+            .collect();
         let new: Vec<_> = again
             .par_iter()
-            .with_min_len(CHUNK / 4)
+            .with_min_len(RAYS)
             .map(|&ray| self.cast_one(ray))
             .collect();
         for (&ray, new) in again.iter().zip(new) {
@@ -139,30 +148,65 @@ impl Caster {
         }
     }
 
+    /// Casts the rays of a column in packets.
     fn cast_all(&mut self) {
         let mut found = std::mem::take(&mut self.found);
-        found
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, found)| {
-                for (i, found) in found.iter_mut().enumerate() {
-                    *found = self.cast_one(chunk * CHUNK + i);
+        let columns = self.columns.max(1);
+        let beams = found.len() / columns;
+        // Each task fills a few columns of all rows.
+        let mut rows: Vec<_> = found
+            .chunks_mut(columns)
+            .map(|row| row.chunks_mut(TASK))
+            .collect();
+        let tasks: Vec<Vec<&mut [Found]>> = (0..columns.div_ceil(TASK))
+            .map(|_| rows.iter_mut().filter_map(Iterator::next).collect())
+            .collect();
+        let groups = beams.div_ceil(LANES).max(1);
+        tasks.into_par_iter().enumerate().for_each(|(task, mut rows)| {
+            let packet = |i: usize| {
+                let (column, group) = (task * TASK + i / groups, i % groups);
+                let mut directions = [DVec3::ZERO; LANES];
+                for (lane, d) in directions.iter_mut().enumerate() {
+                    *d = self.rays.directions[(group * LANES + lane).min(beams - 1) * columns + column];
+                }
+                Packet {
+                    origin: self.origins[column],
+                    directions,
+                }
+            };
+            let count = rows.first().map_or(0, |row| row.len() * groups);
+            let max_t = self.pattern.max_range_m / GridSpec::VOXEL_M;
+            self.masks.cast_packets(count, max_t, packet, |i, met| {
+                let (column, first) = (i / groups, i % groups * LANES);
+                for (beam, met) in (first..beams).zip(met) {
+                    rows[beam][column] = self.found(beam * columns + task * TASK + column, *met);
                 }
             });
+        });
         self.cast = found.len();
         self.found = found;
     }
 
     #[inline]
-    fn cast_one(&self, ray: usize) -> (f32, Option<LidarPoint>) {
-        let (origin, direction) = self.rays.get(ray);
-        let Some(hit) = self.masks.cast(origin, direction, self.pattern.max_range_m) else {
+    fn cast_one(&self, ray: usize) -> Found {
+        let (origin, direction) = (self.origins[ray % self.columns], self.rays.directions[ray]);
+        let max_t = self.pattern.max_range_m / GridSpec::VOXEL_M;
+        let met = self.masks.cast_in_voxels(origin, direction, max_t);
+        self.found(ray, met.map(|(t, voxel)| (t, voxel.map(|v| v as u8))))
+    }
+
+    /// What a ray returns that met a voxel, or none.
+    #[inline]
+    fn found(&self, ray: usize, met: Met) -> Found {
+        let Some((t, voxel)) = met else {
             return (f32::INFINITY, None);
         };
-        let [x, y, z] = hit.voxel;
+        let (origin, direction) = self.rays.get(ray);
+        let range_m = t * GridSpec::VOXEL_M;
+        let [x, y, z] = voxel.map(usize::from);
         let point = || LidarPoint {
-            position_in_ego: (origin + direction * hit.range_m).as_vec3().to_array(),
-            range_m: hit.range_m as f32,
+            position_in_ego: (origin + direction * range_m).as_vec3().to_array(),
+            range_m: range_m as f32,
             ring: (ray / self.columns) as u16,
             azimuth: (ray % self.columns) as u16,
             // A label outside the table can only come from a damaged grid; it still reflects.
@@ -171,8 +215,8 @@ impl Caster {
             drop_probability: 0.0,
         };
         // Rounded up, so that the voxel that was hit is within reach.
-        let reach = (hit.range_m as f32).next_up();
-        (reach, (hit.range_m >= self.pattern.min_range_m).then(point))
+        let reach = (range_m as f32).next_up();
+        (reach, (range_m >= self.pattern.min_range_m).then(point))
     }
 }
 
@@ -209,6 +253,16 @@ fn inverse(d: f64) -> f64 {
 }
 
 impl Changed {
+    /// True if a plane through `origin` with the unit normal `normal` meets the box.
+    #[inline]
+    fn cuts(&self, origin: DVec3, normal: DVec3) -> bool {
+        let (middle, half) = ((self.low + self.high) / 2.0, (self.high - self.low) / 2.0);
+        // Wider by far more than rounding, from any origin that f64 can tell voxels apart from.
+        let wide = 1e-3 + 1e-12 * origin.abs().max_element();
+        let beside = normal.dot(middle - origin).abs() > normal.abs().dot(half) + wide;
+        !beside
+    }
+
     /// True if a ray meets the box at most `reach` from its origin (slab test).
     #[inline]
     fn is_met(&self, origin: DVec3, inverse: DVec3, reach: f64) -> bool {

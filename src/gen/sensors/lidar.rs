@@ -69,6 +69,16 @@ impl Rays {
         }
     }
 
+    /// Unit normals, ego frame, of the planes that hold the rays of each column of their `pattern`.
+    pub fn normals(&self, pattern: &LidarPattern) -> Vec<DVec3> {
+        let rotation = pattern.ego_from_sensor().rotation;
+        let normal = |column: usize| {
+            let (sin_a, cos_a) = pattern.azimuth_rad(column as u32).sin_cos();
+            rotation * DVec3::new(-sin_a, cos_a, 0.0)
+        };
+        (0..self.origins.len()).map(normal).collect()
+    }
+
     /// Origin and direction of a ray in the ego frame.
     #[inline]
     pub fn get(&self, ray: usize) -> (DVec3, DVec3) {

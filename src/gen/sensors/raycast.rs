@@ -4,13 +4,16 @@
 //! of columns that may hold a hit, and `walk` goes through that slab voxel by voxel. The scan only
 //! ever leaves out slabs that are provably empty, so the result is the walk's.
 
+mod packet;
 mod scan;
 mod walk;
+mod wide;
 
 use glam::DVec3;
 
 use crate::scene::grid::{BRICK, BRICKS};
 use crate::scene::{Class, GridSpec, VoxelGrid};
+pub use packet::{LANES, Met, Packet};
 use scan::{Scan, Slab};
 pub use walk::{Span, grid_span};
 use walk::{Start, walk};

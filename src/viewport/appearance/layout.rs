@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use crate::scene::look::{
-    BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HIGHEST_M, KERB_EDGE_M, KERB_M, KERB_SEEN_M,
-    LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LEAVES, LookData, MIRROR_M, NX, NY, NZ, PART_WORDS, SECTIONS, SHADOW_M,
-    SURFACE, THING_WORDS, TRUNK,
+    BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M, KERB_EDGE_M, KERB_M,
+    KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LEAVES, LookData, MIRROR_M, NX, NY, NZ, PART_WORDS,
+    SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
 };
 use crate::scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
 
@@ -104,6 +104,7 @@ pub fn appearance_source() -> &'static str {
             ("KERB_SEEN_M", KERB_SEEN_M),
             ("HIGHEST_M", HIGHEST_M),
             ("SHADOW_M", SHADOW_M),
+            ("HEAD_NEAR_M2", HEAD_NEAR_M2),
             ("LAMP_SHADOW_LIGHT", LAMP_SHADOW_LIGHT),
             ("LAMP_CLEAR_M", LAMP_CLEAR_M),
             ("MIRROR_M", MIRROR_M),

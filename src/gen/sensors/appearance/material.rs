@@ -59,6 +59,9 @@ fn gray(v: f32) -> Vec3 {
     Vec3::splat(v)
 }
 
+/// Light of tail lamps: exposed at night just beyond white in red alone, so that they stay red and keep a soft halo.
+const TAIL: Vec3 = Vec3::new(1.0, 0.035, 0.02);
+
 impl Look {
     /// The surface at a hit; `footprint` is the width of a pixel on it in m.
     pub(super) fn surface(&self, hit: &Hit, dir: Vec3, footprint: f32) -> Surface {
@@ -516,7 +519,9 @@ impl Look {
                 if x < -0.455 && y > 0.48 && z > 0.40 && z < 0.535 && n.x < 0.3 {
                     out.albedo = Vec3::new(0.32, 0.008, 0.010);
                     (out.mirror, out.gloss) = (0.06, 0.95);
-                    out.emit = Vec3::new(1.0, 0.035, 0.02) * (0.03 + 2.6 * lamps);
+                    // Brighter towards the bulb in its middle.
+                    let aside = ((z - 0.4675) / 0.0675).abs().max((y - 0.74).abs() / 0.26);
+                    out.emit = TAIL * (0.03 + lamps * (0.40 + 0.85 * ramp(1.0, 0.25, aside)));
                 }
                 if x < -0.47 && n.x < -0.5 && y < 0.3 && z > 0.36 && z < 0.44 {
                     out.albedo = gray(0.62);
@@ -579,7 +584,7 @@ impl Look {
                     out.emit = if n.x > 0.0 {
                         Vec3::new(1.0, 0.95, 0.85) * 7.0
                     } else {
-                        Vec3::new(1.0, 0.035, 0.02) * 2.6
+                        TAIL * 0.9
                     } * lamps;
                     out.albedo = if n.x > 0.0 {
                         gray(0.5)
@@ -603,7 +608,7 @@ impl Look {
                 (out.mirror, out.gloss) = (0.03, 0.6);
                 if n.x < -0.6 && z < 0.36 && y > 0.68 {
                     out.albedo = Vec3::new(0.3, 0.01, 0.01);
-                    out.emit = Vec3::new(1.0, 0.035, 0.02) * (0.03 + 2.6 * lamps);
+                    out.emit = TAIL * (0.03 + 0.87 * lamps);
                 }
                 if n.x < -0.6 && y < 0.02 {
                     out.albedo *= 0.4;

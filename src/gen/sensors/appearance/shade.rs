@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::look::{Beam, Hit, Look, What};
 use super::material::Surface;
 use super::noise::ramp;
-use crate::scene::look::{FAR_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, MIRROR_M, SHADOW_M};
+use crate::scene::look::{FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, MIRROR_M, SHADOW_M};
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
@@ -226,8 +226,11 @@ impl Look {
                 Beam::Head => {
                     // Wide on the sides, cut off above the horizon.
                     let up = -l.z - lamp.axis.z;
-                    // Brightest just below the horizon, so that the road is lit evenly.
-                    let aim = (0.055 / (0.022 + (-up).max(0.0))).powf(1.25).min(2.4);
+                    // Brightest just below the horizon, so that the road is lit evenly; what stands near is not.
+                    let aim = (0.055 / (0.022 + (-up).max(0.0)))
+                        .powf(1.25)
+                        .min(2.4)
+                        .min(0.12 * d2.sqrt());
                     ramp(0.80, 0.985, cos) * (0.07 + 0.93 * ramp(0.025, -0.02, up)) * aim
                         + 0.02 * ramp(0.2, 0.9, cos)
                 }
@@ -237,16 +240,26 @@ impl Look {
                 continue;
             }
             let fade = ramp(1.0, 0.55, d2.sqrt() / lamp.range_m);
-            let light = lamp.color * (beam * fade / (d2 + 0.6));
+            let near = if lamp.beam == Beam::Head {
+                HEAD_NEAR_M2
+            } else {
+                0.6
+            };
+            let light = lamp.color * (beam * fade / (d2 + near));
             let through = s.through * (-facing).max(0.0) * 0.5;
-            // Shadows of head lights, where they would be seen.
+            // Shadows of head lights and street lamps, where they would be seen.
             if shadows
-                && lamp.beam == Beam::Head
+                && lamp.beam != Beam::Glow
                 && facing.max(through) * light.max_element() * self.air.exposure > LAMP_SHADOW_LIGHT
             {
                 let way = lamp.at - lift;
                 let far = way.length();
-                if far > LAMP_CLEAR_M && self.occluded(lift, way / far, far - LAMP_CLEAR_M) {
+                // A street lamp hangs beside its post, not on it: nothing around the post's axis counts.
+                let clear = match lamp.beam {
+                    Beam::Street => LAMP_CLEAR_M * far / way.truncate().length().max(1e-3),
+                    _ => LAMP_CLEAR_M,
+                };
+                if far > clear && self.occluded(lift, way / far, far - clear) {
                     continue;
                 }
             }

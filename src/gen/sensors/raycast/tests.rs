@@ -283,3 +283,114 @@ fn update_follows_changed_bricks() {
     assert_eq!(masks.column(0, 0), 0);
     assert_eq!(masks.column(199, 199), 0);
 }
+
+/// Rays cast in packets find what each finds alone: fans of any tilt and spread, along axes and diagonals, from
+/// planes, from outside, with limited range, through few voxels and through many.
+#[test]
+fn row_45_packets_equal_single_rays() {
+    let (mut hits, mut misses) = (0, 0);
+    for count in [0, 30, 1000, 30_000, 300_000] {
+        let masks = scattered_voxels(count);
+        let ray = |i: u64| {
+            let at = |k: u64| scatter(9_000_000 + i * 16 + k);
+            let mut origin = DVec3::new(at(0) * 200.0, at(1) * 200.0, at(2) * 16.0);
+            if i % 5 == 0 {
+                origin = origin.floor();
+            }
+            if i % 31 == 0 {
+                origin.z += 10.0;
+            }
+            let tilt = glam::DQuat::from_rotation_x((at(3) - 0.5) * [0.0, 0.04, 0.5][i as usize % 3]);
+            let (azimuth, lowest, step) = (at(4) * std::f64::consts::TAU, (at(5) - 0.5) * 1.2, at(6) * 0.1);
+            let directions = std::array::from_fn(|lane| {
+                let elevation = lowest + step * lane as f64;
+                if i % 4 == 0 {
+                    let flat = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0).round();
+                    return flat + DVec3::Z * (elevation * 8.0).round() / 8.0;
+                }
+                let (sin_e, cos_e) = elevation.sin_cos();
+                tilt * DVec3::new(cos_e * azimuth.cos(), cos_e * azimuth.sin(), sin_e)
+            });
+            Packet { origin, directions }
+        };
+        for (max_t, from) in [(1e9, 0), (60.0, 20_000), (0.0, 40_000), (f64::NAN, 40_100)] {
+            let packets = if max_t >= 1.0 { 20_000 } else { 100 };
+            let mut seen = 0;
+            masks.cast_packets(
+                packets,
+                max_t,
+                |i| ray(from + i as u64),
+                |i, met| {
+                    assert_eq!(i, seen);
+                    seen += 1;
+                    let Packet { origin, directions } = ray(from + i as u64);
+                    for (met, d) in met.iter().zip(directions) {
+                        let alone = masks.cast_in_voxels(origin, d, max_t);
+                        let alone = alone.map(|(t, voxel)| (t, voxel.map(|v| v as u8)));
+                        assert_eq!(*met, alone, "origin {origin}, direction {d}, range {max_t}");
+                        hits += u32::from(met.is_some());
+                        misses += u32::from(met.is_none());
+                    }
+                },
+            );
+            assert_eq!(seen, packets);
+        }
+    }
+    assert!(hits > 100_000 && misses > 100_000, "{hits} {misses}");
+    // Nonsense among the rays does not disturb the others.
+    let masks = scattered_voxels(30_000);
+    let mut directions = [DVec3::new(0.8, 0.6, -0.02); LANES];
+    directions[1] = DVec3::NAN;
+    directions[2] = DVec3::ZERO;
+    directions[3] = DVec3::Z;
+    directions[4] = -directions[0];
+    directions[5] = DVec3::new(1e300, 1e300, 0.0);
+    for origin in [DVec3::new(100.5, 99.5, 8.5), DVec3::NAN, DVec3::splat(-1e9)] {
+        masks.cast_packets(
+            1,
+            1e9,
+            |_| Packet { origin, directions },
+            |_, met| {
+                for (met, d) in met.iter().zip(directions) {
+                    let alone = masks.cast_in_voxels(origin, d, 1e9);
+                    assert_eq!(
+                        *met,
+                        alone.map(|(t, voxel)| (t, voxel.map(|v| v as u8))),
+                        "{origin} {d}"
+                    );
+                }
+            },
+        );
+    }
+}
+
+/// The instructions make no difference.
+#[test]
+fn wide_operations_equal_plain_ones() {
+    use super::wide::{Plain, Wide, Work};
+    struct Check;
+    impl Work for Check {
+        fn with(self, wide: impl Wide) {
+            for i in 0..20_000u64 {
+                let at = |k: u64| scatter(77_000_000 + i * 32 + k);
+                let of = |from: u64, span: f64| -> [i32; LANES] {
+                    std::array::from_fn(|lane| ((at(from + lane as u64) - 0.4) * span * 4_194_304.0) as i32)
+                };
+                let (height, step) = (of(0, 30.0), of(8, if i % 3 == 0 { 0.01 } else { 2.0 }));
+                let (slabs, union) = (
+                    (at(16) * 9.0) as i32,
+                    (at(17) * 65_536.0) as u32 & (at(18) * 65_536.0) as u32,
+                );
+                let touching = wide.touching(&height, &step, slabs, union << 1);
+                assert_eq!(touching, Plain.touching(&height, &step, slabs, union << 1));
+                let (mut a, mut b) = (height, height);
+                wide.climb(&mut a, &step, slabs);
+                Plain.climb(&mut b, &step, slabs);
+                assert_eq!(a, b);
+                assert_eq!(wide.bounds(&height), Plain.bounds(&height));
+            }
+        }
+    }
+    super::wide::run(Check);
+    Plain.run(Check);
+}

@@ -24,14 +24,13 @@ pub struct Span {
 /// none (a start inside counts, a mere touch does not), or for NaN and a zero direction. A ray
 /// parallel to a face is inside if its origin is at or above the lower plane and below the upper one.
 pub fn grid_span(origin: DVec3, direction: DVec3) -> Option<Span> {
-    span_of(origin, direction, inverse_of(direction))
+    span_of(origin, direction, direction.to_array().map(inverse_of).into())
 }
 
-/// 1 / direction, infinite for axes at rest.
-#[inline]
-fn inverse_of(direction: DVec3) -> DVec3 {
-    let inverse = |d: f64| if d.abs() < STILL { f64::INFINITY } else { 1.0 / d };
-    DVec3::new(inverse(direction.x), inverse(direction.y), inverse(direction.z))
+/// 1 / a component of the direction, infinite for an axis at rest.
+#[inline(always)]
+pub(super) fn inverse_of(d: f64) -> f64 {
+    if d.abs() < STILL { f64::INFINITY } else { 1.0 / d }
 }
 
 #[inline]
@@ -94,7 +93,7 @@ impl Start {
     /// `None` if the ray misses the grid or its range ends before.
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3, max_t: f64) -> Option<Start> {
-        let inverse = inverse_of(direction);
+        let inverse = DVec3::from_array(direction.to_array().map(inverse_of));
         let span = span_of(origin, direction, inverse)?;
         if max_t.is_nan() || span.enter > max_t {
             return None;
