@@ -195,6 +195,78 @@ impl Parser<'_> {
         true
     }
 
+    /// "witnesses counted five cones": who tells of the scene is not in it. True if it was that.
+    pub(super) fn tells(&mut self, noun: &'static Noun) -> bool {
+        static SAYING: std::sync::LazyLock<std::collections::HashSet<String>> =
+            std::sync::LazyLock::new(|| {
+                use super::words::verbs::{SAYING, forms};
+                let all = SAYING.split('|').map(forms);
+                all.flat_map(|f| [f.base, f.s, f.past, f.participle]).collect()
+            });
+        if noun.classes[0] != Class::Pedestrian {
+            return false;
+        }
+        let mut j = self.at + 1;
+        while self
+            .item(j)
+            .is_some_and(|n| matches!(n.words.as_str(), "has" | "have" | "had"))
+        {
+            j += 1;
+        }
+        let items = self.items;
+        let words = |k: usize| items.get(k).map_or("", |n| n.words.as_str());
+        let one = words(j)
+            .trim_start_matches("has ")
+            .trim_start_matches("have ")
+            .trim_start_matches("had ");
+        let two = format!("{one} {}", words(j + 1));
+        let said = SAYING.contains(one)
+            && self
+                .item(j)
+                .is_some_and(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
+            || SAYING.contains(&two);
+        if said {
+            // past the verb, and a "that" after it
+            self.at = j + usize::from(SAYING.contains(&two));
+            if words(self.at + 1) == "that" {
+                self.at += 1;
+            }
+            self.new_clause();
+            self.fresh = true;
+        }
+        said
+    }
+
+    /// Where "both" points: to two that were named right before, or to a group of two. True if it was that.
+    pub(super) fn both_of_them(&mut self) -> bool {
+        if self.edits || self.pending.is_some() || self.noun_ahead(self.at + 1) {
+            return false;
+        }
+        let there: Vec<usize> = (0..self.mentions.len())
+            .rev()
+            .filter(|i| !self.mentions[*i].gone)
+            .take(2)
+            .collect();
+        let both = match there.as_slice() {
+            [a, ..] if self.mentions[*a].spec.count.n == 2 => vec![*a],
+            [a, b] if self.mentions[*a].spec.count.n == 1 && self.mentions[*b].spec.count.n == 1 => {
+                vec![*b, *a]
+            }
+            _ => return false,
+        };
+        if self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom"))
+        {
+            self.at += 1;
+        }
+        self.last = both;
+        self.relative = true;
+        self.fresh = false;
+        self.chain = false;
+        true
+    }
+
     /// "Wrong-way driver: a car comes at us": a bare noun before a colon is a heading.
     pub(super) fn heading(&mut self) {
         let listed = matches!(
@@ -232,6 +304,7 @@ impl Parser<'_> {
                         | Sense::Size(_)
                         | Sense::Attribute(_)
                         | Sense::State(_, false)
+                        | Sense::Noun(_, false)
                 )
             )
         {
@@ -242,6 +315,21 @@ impl Parser<'_> {
             .and_then(|i| self.item(i))
             .map_or("", |i| i.words.as_str());
         let article = pre.article == Some(false);
+        // "the pedestrian, an adult male, stood there"
+        let set_apart = lead == ","
+            && article
+            && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+            && matches!(
+                before.checked_sub(2).and_then(|i| self.sense(i)),
+                Some(Sense::Noun(..))
+            )
+            && self
+                .head
+                .last()
+                .is_some_and(|i| self.mentions[*i].definite && self.mentions[*i].classes == noun.classes);
+        if set_apart {
+            return true;
+        }
         let is =
             matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
@@ -303,11 +391,78 @@ impl Parser<'_> {
         true
     }
 
+    /// "cars and buses are there none": takes the list back. True if it was that.
+    pub(super) fn none_of_these(&mut self, span: Span) -> bool {
+        let verb = (1..=2).any(|k| {
+            let before = self.at.checked_sub(k).and_then(|i| self.item(i));
+            before.is_some_and(|b| {
+                matches!(
+                    b.words.as_str(),
+                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are"
+                )
+            })
+        });
+        let all = self.head.clone();
+        let open = |i: &usize| {
+            self.mentions[*i].uncounted && self.mentions[*i].plural && !self.mentions[*i].is_anchor
+        };
+        if !verb || all.is_empty() || !all.iter().all(open) {
+            return false;
+        }
+        for i in all {
+            self.mentions[i].gone = true;
+            let (classes, whole) = (
+                self.mentions[i].classes.to_vec(),
+                self.mentions[i].spec.span.to(span),
+            );
+            self.absent(classes, None, whole);
+        }
+        self.head.clear();
+        self.last.clear();
+        true
+    }
+
+    /// "there" at the end of a clause: at the place that was named last.
+    pub(super) fn there(&mut self, span: Span) {
+        let Some(place) = self.last_place else {
+            return;
+        };
+        let placed = |i: &usize| {
+            let of_place = |a: Anchor| !matches!(a, Anchor::Ego | Anchor::Object(_));
+            self.mentions[*i]
+                .spec
+                .relations
+                .iter()
+                .any(|r| of_place(r.anchor))
+        };
+        if self.head.is_empty() || self.pending.is_some() || self.head.iter().any(placed) {
+            return;
+        }
+        let lane = matches!(place, Anchor::Lane(_));
+        self.begin(if lane { Prep::In } else { Prep::At }, span);
+        self.anchor(place, span);
+    }
+
+    /// After "consists of": what follows is a list of its own.
+    pub(super) fn end_list(&mut self) {
+        if !self.listed.is_empty() {
+            self.head.clear();
+            self.chain = true;
+        }
+    }
+
     /// "a car in front, one behind": true if a number without a noun means one more of what was named last.
     pub(super) fn one_more_like_it(&self) -> bool {
         let told = matches!(
             self.sense(self.at + 1),
-            Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
+            Some(
+                Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::In
+                    | Sense::At
+                    | Sense::FarSide
+                    | Sense::State(_, false)
+            )
         );
         let last = (0..self.mentions.len())
             .rev()

@@ -14,9 +14,13 @@ use super::place::place_with;
 use super::rephrase::Change;
 use super::select::{Candidate, Chosen, choose, where_is};
 use super::to_graph::to_graph;
+use super::tokens::{LONGEST, Span};
 use super::words::edits::Verb;
 use crate::scene::graph::{LaneRole, Locked, Node, NodeKind, ObjectNode, ObjectState, RelationKind};
 use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+
+/// Most commands of one text that are carried out.
+pub const MOST_COMMANDS: usize = 100;
 
 /// One change of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -113,7 +117,24 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         seed,
         out: EditReading::default(),
     };
-    for (i, command) in commands(text).into_iter().enumerate() {
+    let all = commands(text);
+    if all.len() > MOST_COMMANDS {
+        editor.note(format!(
+            "{} commands were given: the first {MOST_COMMANDS} are carried out",
+            all.len()
+        ));
+    }
+    if text.len() > LONGEST {
+        editor.out.not_understood.push(Unread {
+            span: Span {
+                start: LONGEST,
+                end: text.len(),
+            },
+            text: "...".into(),
+            why: Some(format!("only the first {LONGEST} bytes are read")),
+        });
+    }
+    for (i, command) in all.into_iter().take(MOST_COMMANDS).enumerate() {
         let before = editor.out.edits.len();
         let asked = editor.out.questions.len();
         let meaning = editor.carry_out(&command);
@@ -183,7 +204,11 @@ impl Editor<'_> {
         }
         match c.verb {
             Verb::Remove | Verb::Clear => {
-                if c.reading.description.foreground.is_empty() && c.verb == Verb::Clear && done.is_empty() {
+                if c.reading.description.foreground.is_empty()
+                    && c.reading.description.absent.is_empty()
+                    && c.verb == Verb::Clear
+                    && done.is_empty()
+                {
                     // "clear my lane"
                     if let Some(role) = c.place {
                         let ids: Vec<BoxId> = self
@@ -195,6 +220,10 @@ impl Editor<'_> {
                         ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
                         done.push("cleared".into());
                     }
+                } else if c.targets.is_empty() && !c.reading.description.absent.is_empty() {
+                    // "clear the kerb: no parked cars"
+                    self.take_absent(&c.reading.description);
+                    done.push("removed".into());
                 } else if let Some(ids) = self.targets(c, true) {
                     ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
                     done.push("removed".into());
@@ -361,6 +390,11 @@ impl Editor<'_> {
                 .filter(|b| o.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
                 .copied()
                 .collect();
+            let fits = if o.count.n == 1 {
+                super::select::of_size(&fits, &o.noun, o.size_m)
+            } else {
+                fits
+            };
             let nodes = graphed.nodes.get(i).cloned().unwrap_or_default();
             if fits.len() > nodes.len() {
                 self.out.questions.push(Question {

@@ -284,8 +284,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
         && matches!(
             items
-                .get(1..4)
-                .and_then(|w| w.iter().find(|i| !is_adjective(i)))
+                .iter()
+                .skip(1)
+                .take(3)
+                .find(|i| !is_adjective(i))
                 .map(|i| i.tag),
             Some(Tag::Is(Sense::Noun(..)))
         );
@@ -361,8 +363,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     // What the target is turned into.
     if matches!(verb, Verb::Replace | Verb::Turn | Verb::Make) {
         let cut = items.iter().enumerate().skip(after_noun).find_map(|(k, i)| {
-            let word = matches!(i.words.as_str(), "with" | "by" | "for" | "into" | "to")
-                || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
+            let word = matches!(
+                i.words.as_str(),
+                "with" | "by" | "for" | "into" | "to" | "against"
+            ) || (verb == Verb::Make && matches!(i.tag, Tag::Is(Sense::Article(false))));
             let noun_follows = items[k + 1..]
                 .iter()
                 .take(5)
@@ -526,7 +530,11 @@ fn moving(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
             metres = Some(m);
             cut = cut.min(i);
             let next = items.get(i + n);
-            if next.is_some_and(|x| matches!(x.tag, Tag::Is(Sense::Rel(_)))) {
+            let of_ego = next.is_some_and(|x| {
+                matches!(x.tag, Tag::Is(Sense::EgoRel(_)))
+                    && [" me", " us", " of the ego"].iter().any(|t| x.words.ends_with(t))
+            });
+            if of_ego || next.is_some_and(|x| matches!(x.tag, Tag::Is(Sense::Rel(_)))) {
                 place_from.get_or_insert(i);
                 break;
             }
@@ -760,6 +768,7 @@ fn turning(text: &str, items: &[Item], after_noun: usize, c: &mut Command) {
         .find(|(_, i)| {
             let w = i.words.as_str();
             is_turn_word(w)
+                || i.tag == Tag::Is(Sense::EgoRel(&[RelationKind::SameDirection]))
                 || matches!(
                     w,
                     "by" | "to"

@@ -55,6 +55,26 @@ fn distance_ahead(spec: &mut ObjectSpec) {
                 Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
             )
     });
+    let far = spec
+        .relations
+        .iter()
+        .find(|r| {
+            r.anchor == Anchor::Ego
+                && matches!(r.relation, R::Facing | R::OppositeDirection)
+                && r.distance_m.is_some()
+        })
+        .copied()
+        .filter(|_| lane && !sided);
+    if let Some(r) = far {
+        spec.relations
+            .iter_mut()
+            .filter(|x| **x == r)
+            .for_each(|x| x.distance_m = None);
+        spec.relations.push(Stated {
+            relation: R::InFrontOf,
+            ..r
+        });
+    }
     for r in spec.relations.iter_mut().filter(|_| lane && !sided) {
         if r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d > 6.0) {
             r.relation = R::InFrontOf;

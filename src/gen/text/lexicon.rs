@@ -380,6 +380,29 @@ fn build() -> Table {
     for (share, list) in places::FRACTIONS {
         words(list).for_each(|w| put(w, Sense::Fraction(*share)));
     }
+    for (weather, list) in verbs::SKY {
+        for f in words(list).map(verbs::forms) {
+            for w in [&f.base, &f.s, &f.ing, &f.past] {
+                put(w, Sense::Weather(*weather));
+            }
+        }
+    }
+    for (n, name) in (1..).zip(phrases::HOURS) {
+        for (part, pm) in [
+            ("in the morning", false),
+            ("am", false),
+            ("at night", true),
+            ("in the evening", true),
+            ("in the afternoon", true),
+            ("pm", true),
+        ] {
+            let hour = if n == 12 && part == "at night" { 0 } else { n };
+            let time = super::tag::time_of(f64::from(hour), pm && !(part == "at night" && n < 5));
+            for tail in ["", " oclock"] {
+                put(&format!("{name}{tail} {part}"), Sense::Time(time));
+            }
+        }
+    }
     for (state, list) in verbs::DOING {
         for f in words(list).map(verbs::forms) {
             put(&f.ing, Sense::State(*state, false));

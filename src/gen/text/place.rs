@@ -378,6 +378,7 @@ impl Placer<'_> {
         let walk = BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
         let mut on = true;
         let allowed = match class {
+            _ if vehicle && spot.anywhere => surface | walk, // left on the sidewalk
             _ if vehicle => surface,
             Class::Pedestrian if !spot.anywhere => walk | if spot.on_road { surface } else { 0 },
             Class::Bicycle if !spot.anywhere => surface | walk,

@@ -74,6 +74,22 @@ const POLITE: &[&[&str]] = &[
     &["better", "if"],
     &["would", "you", "mind"],
     &["kindly"],
+    &["upon", "closer", "inspection"],
+    &["on", "closer", "inspection"],
+    &["on", "reflection"],
+    &["in", "reality"],
+    &["in", "truth"],
+    &["in", "fact"],
+    &["as", "it", "turns", "out"],
+    &["it", "turns", "out", "that"],
+    &["it", "turned", "out", "that"],
+    &["turns", "out"],
+    &["according", "to", "the", "witness"],
+    &["according", "to", "witnesses"],
+    &["according", "to", "the", "report"],
+    &["according", "to", "the", "driver"],
+    &["correction"],
+    &["rather"],
     &["do"],
     &["next"],
     &["finally"],
@@ -278,6 +294,16 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
     }
     let cut = (1..body.len()).find(|i| {
         let mark = body[*i].kind == TokenKind::Comma || body[*i].kind == TokenKind::Mark;
+        let next = i + 1 + strip_len(&body[i + 1..]);
+        if definite
+            && mark
+            && body.get(next).is_some_and(is_verb)
+            && body.get(next + 1).is_none_or(|t| {
+                is_place_word(t) || matches!(t.text.as_str(), "to" | "away" | "out" | "off" | "onto" | "into")
+            })
+        {
+            return true; // "the man on the zebra, kindly shift to the left"
+        }
         mark && body.get(i + 1).is_some_and(is_verb)
             && body[i + 1..]
                 .iter()
@@ -299,16 +325,29 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
     } else {
         np.extend_from_slice(&body[..cut]);
     }
-    let it = (cut + 1..body.len()).find(|i| {
+    let start = cut + 1 + strip_len(&body[cut + 1..]);
+    let it = (start..body.len()).find(|i| {
         matches!(
             body[*i].text.as_str(),
             "it" | "them" | "him" | "her" | "that" | "this"
         )
-    })?;
-    let mut out = body[cut + 1..it].to_vec();
+    });
+    let Some(it) = it else {
+        let verb = body.get(start)?.clone();
+        let mut out = vec![verb];
+        out.extend(np);
+        out.extend_from_slice(&body[start + 1..]);
+        return Some(out);
+    };
+    let mut out = body[start..it].to_vec();
     out.extend(np);
     out.extend_from_slice(&body[it + 1..]);
     Some(out)
+}
+
+/// How many polite words begin a clause.
+fn strip_len(tokens: &[Token]) -> usize {
+    tokens.len() - strip(tokens, POLITE).len()
 }
 
 /// "everyone on the pavement" is "all people on the pavement".
@@ -399,6 +438,127 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         let tail = &tail[..end.map_or(tail.len(), |e| e + 1)];
         // "no more cones" means all of them, as "remove the cones" does
         return (with_verb("remove", first, tail), None);
+    }
+    // "could the lorry be swapped for a van?"
+    let asks = matches!(
+        first.text.as_str(),
+        "could" | "can" | "should" | "would" | "must" | "may" | "might" | "shall"
+    );
+    if asks
+        && rest.get(1).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "the" | "both" | "all" | "that" | "those" | "these" | "every"
+            )
+        })
+    {
+        return one(&rest[1..]);
+    }
+    // "leave everything as it is but put a cone there", "change nothing except the weather"
+    let all = rest
+        .get(1)
+        .is_some_and(|t| matches!(t.text.as_str(), "everything" | "all" | "nothing" | "things"));
+    let same = rest.get(1).is_some_and(|t| t.text == "nothing")
+        || rest
+            .iter()
+            .take(8)
+            .any(|t| matches!(t.text.as_str(), "as" | "else" | "unchanged" | "same" | "alone"));
+    if matches!(first.text.as_str(), "leave" | "keep" | "change" | "touch") && all && same {
+        let cut = rest.iter().position(|t| {
+            t.kind == TokenKind::Comma
+                || matches!(
+                    t.text.as_str(),
+                    "but" | "except" | "and" | "only" | "save" | "just"
+                )
+        });
+        let tail = cut.map_or(&[][..], |k| strip(&rest[k + 1..], POLITE));
+        return if tail.is_empty() {
+            (Vec::new(), None)
+        } else {
+            one(tail)
+        };
+    }
+    // "apart from the truck nothing should remain", "only the walkers may stay"
+    let lead = [
+        &["apart", "from"][..],
+        &["except", "for"],
+        &["except"],
+        &["besides"],
+        &["other", "than"],
+        &["save", "for"],
+        &["bar"],
+        &["only"],
+        &["just"],
+        &["nothing", "but"],
+    ]
+    .into_iter()
+    .find(|l| starts_with(rest, l));
+    let stays = rest.iter().position(|t| {
+        matches!(
+            t.text.as_str(),
+            "stay"
+                | "stays"
+                | "remain"
+                | "remains"
+                | "kept"
+                | "left"
+                | "go"
+                | "survive"
+                | "gone"
+                | "disappear"
+                | "removed"
+        )
+    });
+    if let (Some(l), Some(_)) = (lead, stays) {
+        let np = &rest[l.len()..];
+        let end = np.iter().position(|t| {
+            t.kind == TokenKind::Comma
+                || matches!(
+                    t.text.as_str(),
+                    "may"
+                        | "should"
+                        | "can"
+                        | "must"
+                        | "shall"
+                        | "is"
+                        | "are"
+                        | "will"
+                        | "gets"
+                        | "get"
+                        | "everything"
+                        | "nothing"
+                        | "stays"
+                        | "stay"
+                        | "remain"
+                        | "remains"
+                        | "all"
+                        | "has"
+                        | "have"
+                )
+        });
+        if let Some(end) = end.filter(|e| np[..*e].iter().any(is_noun)) {
+            return (with_verb("keep only", first, &np[..end]), None);
+        }
+    }
+    // "five people, not three", "four cones instead of six"
+    let not_n = (1..rest.len()).find(|i| {
+        let n = match rest[*i].text.as_str() {
+            "not" => 1,
+            "instead" | "rather" => 2,
+            _ => return false,
+        };
+        rest.get(i + n).is_some_and(|t| number(t).is_some())
+    });
+    if let Some(k) = not_n
+        && let Some(n) = rest[..k].iter().position(|t| number(t).is_some())
+        && rest[n..k].iter().any(is_noun)
+    {
+        let end = if rest[k - 1].kind == TokenKind::Comma {
+            k - 1
+        } else {
+            k
+        };
+        return (with_verb("keep exactly", first, &rest[n..end]), None);
     }
     if let Some(found) = restate(rest) {
         return found;

@@ -384,9 +384,17 @@ fn trimmed(mut tokens: &[Token]) -> &[Token] {
 /// The end of the noun phrase that begins a clause, if it is a definite one: one past its noun.
 fn subject(tokens: &[Token]) -> Option<usize> {
     let first = tokens.first()?;
+    // "bicycle change to scooter"
+    let bare = noun_in(tokens).filter(|n| n.0 == 0 && leads(&tokens[n.1..], BECOMES).is_some());
+    if let Some((_, end)) = bare {
+        return Some(end);
+    }
     let definite = matches!(
         text(first),
-        "the"
+        "it" | "they"
+            | "he"
+            | "she"
+            | "the"
             | "both"
             | "all"
             | "my"
@@ -405,7 +413,10 @@ fn subject(tokens: &[Token]) -> Option<usize> {
     if !definite {
         return None;
     }
-    if matches!(text(first), "everyone" | "everybody" | "everything") {
+    if matches!(
+        text(first),
+        "everyone" | "everybody" | "everything" | "it" | "they" | "he" | "she"
+    ) {
         return Some(1);
     }
     let (noun, mut end) = noun_in(tokens).filter(|n| n.0 < 8)?;
@@ -427,8 +438,25 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
     let first = clause.first()?;
     let noun_end = subject(clause)?;
     // What is said of the noun may stand between: "the car on the left has gone".
+    // "two of the three parked cars": any two
+    let some = clause.get(1).is_some_and(|t| text(t) == "of") && number(first).is_some();
+    let skip = clause
+        .iter()
+        .skip(2)
+        .position(|t| !matches!(text(t), "the" | "my" | "those" | "these" | "our") && number(t).is_none())
+        .unwrap_or(0);
+    let few: Vec<Token> = if some {
+        command("any", first, &[&clause[..1], &clause[2 + skip..]])
+    } else {
+        Vec::new()
+    };
     for from in noun_end..clause.len().min(noun_end + 8) {
-        let np = &clause[..from];
+        // "any" comes before, "of the three" is left out
+        let np = if some {
+            few.get(..from.saturating_sub(skip)).unwrap_or(&[])
+        } else {
+            &clause[..from]
+        };
         let mut k = from;
         let mut helped = false;
         let mut not = false;
@@ -482,6 +510,9 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                 ))
         {
             let turned = matches!(tail.get(1).map(text), Some("lane" | "side" | "hand")); // "should be left of me"
+            if let Some(more) = likewise(tail) {
+                return Some(command("remove", first, &[np, &command("and", first, &[]), more]));
+            }
             let goes_to = text(&tail[0]) == "go"
                 && tail.len() > 1
                 && !matches!(text(&tail[1]), "away" | "home" | "please" | "now")
@@ -513,11 +544,34 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                     Verb::Paint => "paint",
                     Verb::Keep | Verb::Make => return None,
                 };
+                if let (Some(more), "remove") = (likewise(tail), verb) {
+                    return Some(command("remove", first, &[np, &command("and", first, &[]), more]));
+                }
                 if verb == "move" && tail.len() == n {
                     return None;
                 }
                 return Some(command(verb, first, &[np, &tail[n..]]));
             }
+        }
+        // "the car behind should keep 30 m distance"
+        let keeps = tail
+            .first()
+            .is_some_and(|t| matches!(text(t), "keep" | "keeps" | "stay" | "stays" | "hold" | "leave"));
+        if keeps
+            && tail.len() > 2
+            && number(&tail[1]).is_some()
+            && matches!(look_up(text(&tail[2])), Some(Sense::Unit(_)))
+        {
+            let back = np.iter().any(|t| matches!(text(t), "back" | "behind" | "rear"));
+            return Some(command(
+                "move",
+                first,
+                &[
+                    np,
+                    &tail[1..3],
+                    &command(if back { "behind us" } else { "in front of us" }, first, &[]),
+                ],
+            ));
         }
         let turned = [
             "opposite direction",
@@ -540,6 +594,19 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                     | "faces"
                     | "travel"
                     | "travels"
+                    | "travelling"
+                    | "traveling"
+                    | "moving"
+                    | "moves"
+                    | "move"
+                    | "rolling"
+                    | "riding"
+                    | "rides"
+                    | "drove"
+                    | "went"
+                    | "came"
+                    | "headed"
+                    | "travelled"
                     | "come"
                     | "comes"
                     | "driving"
@@ -562,13 +629,13 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         ];
         if goes && ours.iter().any(|w| said.contains(w)) {
             return Some(command(
-                "turn",
+                "rotate",
                 first,
                 &[np, &command("going my way", first, &[])],
             ));
         }
         if goes && turned.iter().any(|w| said.contains(w)) {
-            return Some(command("turn", first, &[np, &command("around", first, &[])]));
+            return Some(command("rotate", first, &[np, &command("around", first, &[])]));
         }
         if goes
             && [
@@ -582,7 +649,11 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
             .iter()
             .any(|w| said.ends_with(w))
         {
-            return Some(command("turn", first, &[np, &command("to face me", first, &[])]));
+            return Some(command(
+                "rotate",
+                first,
+                &[np, &command("to face me", first, &[])],
+            ));
         }
         // "the car pull over and park on the right": where it ends up
         let acts = (1..=3.min(tail.len())).rev().any(|n| {
@@ -628,6 +699,44 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
         }
     }
     None
+}
+
+/// "..., and likewise the barriers"
+fn likewise(tail: &[Token]) -> Option<&[Token]> {
+    let k = tail.iter().position(|t| matches!(text(t), "and" | "as"))?;
+    let mut rest = &tail[k + 1..];
+    while rest.first().is_some_and(|t| {
+        matches!(
+            text(t),
+            "likewise"
+                | "also"
+                | "so"
+                | "do"
+                | "does"
+                | "is"
+                | "are"
+                | "too"
+                | "with"
+                | "should"
+                | "must"
+                | "as"
+                | "well"
+                | "equally"
+                | "similarly"
+        )
+    }) {
+        rest = &rest[1..];
+    }
+    let definite = rest.first().is_some_and(|t| {
+        matches!(
+            text(t),
+            "the" | "both" | "all" | "every" | "that" | "those" | "these"
+        )
+    });
+    let plain = rest
+        .iter()
+        .all(|t| !HELPERS.contains(&text(t)) || matches!(text(t), "both" | "all"));
+    (definite && plain && has_noun(rest)).then_some(rest)
 }
 
 fn is_place_word(t: &Token) -> bool {
@@ -1023,6 +1132,7 @@ pub fn clauses(sentence: &[Token]) -> Vec<&[Token]> {
     let mut i = 1;
     while i < sentence.len() {
         let link = sentence[i].kind == TokenKind::Comma
+            || sentence[i].kind == TokenKind::Mark
             || matches!(text(&sentence[i]), "and" | "but" | "while" | "then" | "whereas");
         if link && i > from {
             let mut next = i + 1;
@@ -1035,7 +1145,8 @@ pub fn clauses(sentence: &[Token]) -> Vec<&[Token]> {
             }) {
                 next += 1;
             }
-            let rest = &sentence[next.min(sentence.len())..];
+            // A statement shows itself at once; so a long sentence costs no more than many short ones.
+            let rest = &sentence[next.min(sentence.len())..(next + 40).min(sentence.len())];
             let states = stated(rest).is_some()
                 || there(rest).is_some() && rest.first().is_some_and(|t| text(t) == "there");
             let spoken = sentence[from..i].iter().any(is_noun)

@@ -192,6 +192,40 @@ pub fn in_order(
     }
 }
 
+/// Of boxes of one class those that the word means: a van is longer and higher than a taxi. All, if none differs.
+pub fn of_size(boxes: &[SceneBox], noun: &str, size_m: Option<[f64; 3]>) -> Vec<SceneBox> {
+    let generic = matches!(
+        noun,
+        "car"
+            | "cars"
+            | "vehicle"
+            | "vehicles"
+            | "object"
+            | "box"
+            | "person"
+            | "people"
+            | "pedestrian"
+            | "pedestrians"
+            | "truck"
+            | "trucks"
+    );
+    let first = boxes.first().map(|b| b.class);
+    let (Some(class), false) = (
+        first.filter(|c| boxes.iter().all(|b| b.class == *c)),
+        generic && size_m.is_none(),
+    ) else {
+        return boxes.to_vec();
+    };
+    let Some(size) = size_m.or(class.typical_size_m()) else {
+        return boxes.to_vec();
+    };
+    let near = |b: &&SceneBox| {
+        (b.size_m.z - size[2]).abs() < 0.12 * size[2] && (b.size_m.x - size[0]).abs() < 0.12 * size[0]
+    };
+    let fit: Vec<SceneBox> = boxes.iter().filter(near).copied().collect();
+    if fit.is_empty() { boxes.to_vec() } else { fit }
+}
+
 /// Decides: all, a picked one, so many, or a question.
 pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Chosen {
     let fit = fitting(map, boxes, m, all);
@@ -234,6 +268,16 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         sorted.truncate(n.max(1));
         return Chosen::These(sorted);
     }
+    let fit = match fit.len() {
+        0 | 1 => fit,
+        _ => {
+            let all: Vec<SceneBox> = fit.iter().map(|id| boxes[id]).collect();
+            of_size(&all, &m.spec.noun, m.spec.size_m)
+                .iter()
+                .map(|b| b.id)
+                .collect()
+        }
+    };
     let n = m.spec.count.n as usize;
     if m.plural && m.uncounted {
         return Chosen::These(fit); // "remove the cars"

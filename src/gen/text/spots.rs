@@ -37,6 +37,7 @@ struct Gather<'a, 'b> {
     draw: &'b mut Draw,
     out: Vec<Spot>,
     base: Spot,
+    against: bool, // it comes towards the ego
     own_way: bool, // traffic of the ego's direction is meant
 }
 
@@ -81,6 +82,7 @@ pub fn spots(
             on_road: false,
             anywhere: false,
         },
+        against: said(RelationKind::OppositeDirection),
         own_way: (said(RelationKind::InFrontOf)
             || said(RelationKind::Behind)
             || said(RelationKind::Blocking))
@@ -217,6 +219,18 @@ impl Gather<'_, '_> {
             Some((_, LaneRole::Carpark)) => self.carpark(),
             Some((_, role)) if is_roadside(role) => self.edge(role),
             Some((_, role)) if is_walk(role) && o.class == Class::Bicycle => self.walks(),
+            // Left on the sidewalk, along the road.
+            Some((relation, role)) if is_walk(role) => {
+                (self.base.still, self.base.moves, self.base.anywhere) = (true, false, true);
+                let map = self.map;
+                self.cells(BevLayer::Walkway.bit(), 2, |p| {
+                    map.nearest(p).map_or(0.0, |l| l.dir.to_angle())
+                });
+                self.base.anywhere = false;
+                if relation == RelationKind::ParkedOn {
+                    self.edge(LaneRole::Roadside); // half on it will do
+                }
+            }
             Some((_, role)) if across => {
                 self.crosswise(role);
                 self.lanes(LaneRole::Cross, false);
@@ -293,7 +307,11 @@ impl Gather<'_, '_> {
                 0.0
             };
             let across = self.draw.range(-0.25, 0.25);
+            let wrong_way = self.against
+                && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right)
+                && l.role == role;
             let yaw = l.dir.to_angle()
+                + if wrong_way { PI } else { 0.0 }
                 + if people {
                     self.draw.range(-PI, PI)
                 } else {

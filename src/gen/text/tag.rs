@@ -74,7 +74,18 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
         };
         let found = (1..=LONGEST).rev().find_map(|n| {
             let words = run(i, n)?;
-            let sense = look_up(&words)?;
+            let mut sense = look_up(&words);
+            // "the lane to the left of yours"
+            if sense.is_none()
+                && n > 1
+                && (i..i + n).any(|k| {
+                    word(k).is_some_and(|w| matches!(w, "your" | "our" | "yours" | "ours" | "you" | "us"))
+                })
+            {
+                let mine: Vec<&str> = (i..i + n).filter_map(word).map(as_mine).collect();
+                sense = look_up(&mine.join(" "));
+            }
+            let sense = sense?;
             // "on the left" must not tear "left lane" apart.
             let torn = n > 1
                 && !is_place_like(sense)
@@ -106,6 +117,15 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
     settle(out)
 }
 
+fn as_mine(word: &str) -> &str {
+    match word {
+        "your" | "our" => "my",
+        "yours" | "ours" => "mine",
+        "you" | "us" => "me",
+        other => other,
+    }
+}
+
 fn is_side(word: &str) -> bool {
     let sides = places::LEFT.split('|').chain(places::RIGHT.split('|'));
     sides.into_iter().any(|s| s.split(' ').next() == Some(word))
@@ -118,7 +138,12 @@ fn number(v: f64, _next: Option<&Token>) -> Tag {
 /// Words whose sense hangs on their neighbours: "crossing", "pedestrian crossing", "parking", "twenty five".
 fn settle(items: Vec<Item>) -> Vec<Item> {
     let mut out: Vec<Item> = Vec::new();
+    let mut skip = 0;
     for (i, item) in items.iter().enumerate() {
+        if skip > 0 {
+            skip -= 1;
+            continue;
+        }
         let next = items.get(i + 1);
         let after_next = items.get(i + 2);
         let before = out.last();
@@ -241,6 +266,50 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     tag: Tag::Is(Sense::Time(time_of(hour, false))),
                     ..item.clone()
                 });
+                skip = 2;
+                if items
+                    .get(i + 3)
+                    .is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "hour" | "h" | "oclock"))
+                {
+                    skip = 3;
+                }
+            }
+            // "0340 hrs"
+            (_, Tag::Number(clock))
+                if next.is_some_and(|n| matches!(n.words.as_str(), "hrs" | "hours" | "h"))
+                    && item.span.end - item.span.start == 4
+                    && clock < 2400.0 =>
+            {
+                out.push(Item {
+                    tag: Tag::Is(Sense::Time(time_of((clock / 100.0).floor(), false))),
+                    ..item.clone()
+                });
+                skip = 1;
+            }
+            // "at 3 in the morning"
+            (_, Tag::Number(hour))
+                if hour <= 12.0
+                    && next.is_some_and(|n| {
+                        matches!(
+                            n.words.as_str(),
+                            "in the morning" | "in the evening" | "in the afternoon" | "at night"
+                        )
+                    }) =>
+            {
+                let part = next.map_or("", |n| n.words.as_str());
+                let pm = part != "in the morning" && !(part == "at night" && hour < 5.0);
+                out.push(Item {
+                    tag: Tag::Is(Sense::Time(time_of(hour, pm))),
+                    ..item.clone()
+                });
+                skip = 1;
+            }
+            // "two nos. JCB"
+            ("nos" | "numbers" | "no", _)
+                if before.is_some_and(|b| matches!(b.tag, Tag::Is(Sense::Count(_)) | Tag::Number(_)))
+                    && (item.words != "no" || item.span.end - item.span.start == 3) =>
+            {
+                skip = usize::from(next.is_some_and(|n| n.tag == Tag::Stop) && items.get(i + 2).is_some());
             }
             _ => out.push(item.clone()),
         }
@@ -248,7 +317,7 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
     out
 }
 
-fn time_of(hour: f64, pm: bool) -> super::description::TimeOfDay {
+pub(super) fn time_of(hour: f64, pm: bool) -> super::description::TimeOfDay {
     use super::description::TimeOfDay::{Dawn, Day, Dusk, Night};
     let hour = if pm && hour < 12.0 { hour + 12.0 } else { hour };
     match hour {

@@ -132,6 +132,34 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
                 .flat_map(|(_, c)| c.to_lowercase())
                 .filter(|c| !matches!(c, '\'' | '’' | '`'))
                 .collect();
+            // "the truck's nose", "the truck's parked": the truck
+            let own = ["'s", "’s", "`s"].iter().any(|e| {
+                chars[i..j]
+                    .iter()
+                    .rev()
+                    .take(2)
+                    .map(|(_, c)| *c)
+                    .eq(e.chars().rev())
+            });
+            let whole = matches!(
+                text.as_str(),
+                "its"
+                    | "thats"
+                    | "theres"
+                    | "lets"
+                    | "whos"
+                    | "whats"
+                    | "heres"
+                    | "wheres"
+                    | "hes"
+                    | "shes"
+                    | "hows"
+                    | "whens"
+            );
+            let text = match text.strip_suffix('s').filter(|_| own && !whole) {
+                Some(stem) => stem.to_string(),
+                None => text,
+            };
             if !text.is_empty() {
                 push(TokenKind::Word, text, i, j);
             }

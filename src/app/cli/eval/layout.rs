@@ -18,8 +18,8 @@ use crate::generation::text::edit::read_edit;
 use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
-/// The prompts, in three sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 3] = [
+/// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
+const SETS: [(&str, &str); 5] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -31,6 +31,14 @@ const SETS: [(&str, &str); 3] = [
     (
         "strangers_2.jsonl",
         include_str!("../../../../tests/data/strangers_2.jsonl"),
+    ),
+    (
+        "strangers_3.jsonl",
+        include_str!("../../../../tests/data/strangers_3.jsonl"),
+    ),
+    (
+        "strangers_4.jsonl",
+        include_str!("../../../../tests/data/strangers_4.jsonl"),
     ),
 ];
 

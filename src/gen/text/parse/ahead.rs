@@ -41,6 +41,10 @@ impl Parser<'_> {
                             | "are"
                             | "my"
                             | "another"
+                            | "have"
+                            | "has"
+                            | "we have"
+                            | "i have"
                     ) => {}
                 Tag::Number(_) if !matches!(self.sense(j + 1), Some(Sense::Unit(_))) => {}
                 Tag::Unknown => {}
@@ -99,7 +103,8 @@ impl Parser<'_> {
                 | "ring"
         );
         let participle = item.words.split(' ').next().is_some_and(|w| w.ends_with("ed"));
-        (adverb || participle) && !self.anchor_ahead(self.at + 1) || participle && self.after_is()
+        (adverb || participle) && !self.anchor_ahead(self.at + 1)
+            || participle && !item.words.contains(' ') && self.after_is()
     }
 
     pub(super) fn after_is(&self) -> bool {

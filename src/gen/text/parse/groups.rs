@@ -6,6 +6,7 @@ use super::super::mention::{Pre, Prep};
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::{Parser, is_color};
+use crate::scene::Class;
 
 impl Parser<'_> {
     /// A group that a number without a noun can be a part of.
@@ -182,6 +183,10 @@ impl Parser<'_> {
                     subject.or_else(|| (0..self.mentions.len()).rev().find(one))
                 }
                 _ => {
+                    // "it" is no person.
+                    let person = |i: &usize| self.mentions[*i].spec.class == Class::Pedestrian;
+                    let thing = (0..self.mentions.len()).any(|i| !skip(&i) && !person(&i));
+                    let skip = |i: &usize| skip(i) || thing && item.words == "it" && person(i);
                     let host = targets.first().and_then(|t| self.mentions[*t].host);
                     let subject = self.head.iter().chain(&self.before).copied().find(|i| !skip(i));
                     host.or(subject)

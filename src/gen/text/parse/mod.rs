@@ -51,17 +51,19 @@ pub(super) struct Parser<'a> {
     list: Vec<usize>,       // those nouns
     linked: bool,           // "and" or a comma right before
     anded: bool,            // "and" right before
-    fresh: bool,            // nothing but small words since the clause began or a comma
+    pub(super) fresh: bool, // nothing but small words since the clause began or a comma
     pub(super) pending: Option<Pending>,
     pub(super) pre: Pre,
     not_goes_on: bool,
     distance: Option<(f64, Span)>,
     pub(super) topic: Option<(Anchor, Span)>,
     reversed: Option<(RelationKind, Span, Vec<usize>, Option<Anchor>)>,
-    relative: bool,
-    ego_subject: bool, // "I am behind a bus"
-    ego_named: bool,   // "the host vehicle": "it" may mean it
-    pair: Vec<usize>,  // the two of "between a van and a lorry"
+    pub(super) relative: bool,
+    ego_subject: bool,                     // "I am behind a bus"
+    ego_named: bool,                       // "the host vehicle": "it" may mean it
+    last_lane: Option<Anchor>,             // named last
+    pub(super) last_place: Option<Anchor>, // the same of any place but the road
+    pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
     denied: bool,                   // what follows says where something is not
@@ -115,6 +117,8 @@ impl<'a> Parser<'a> {
             relative: false,
             ego_subject: false,
             ego_named: false,
+            last_lane: None,
+            last_place: None,
             pair: Vec::new(),
             with: false,
             edits,
@@ -194,7 +198,8 @@ impl<'a> Parser<'a> {
                 if item.words == ":" {
                     self.introduce();
                 }
-                let not_list = self.pre.not && !self.pre.says_something();
+                let just_not = self.sense(self.at.wrapping_sub(1)) == Some(Sense::Not); // "you may not, since ..."
+                let not_list = self.pre.not && !self.pre.says_something() && !just_not;
                 self.pre = Pre {
                     not: not_list,
                     ..Pre::default()
@@ -278,7 +283,7 @@ impl<'a> Parser<'a> {
 
     // --- clauses ---
 
-    fn new_clause(&mut self) {
+    pub(super) fn new_clause(&mut self) {
         self.denied = false;
         if !self.head.is_empty() {
             self.before = std::mem::take(&mut self.head);

@@ -46,6 +46,9 @@ impl Parser<'_> {
         }
         self.not_goes_on = false;
         self.denied = false;
+        if !self.edits && self.pending.is_none() && self.tells(noun) {
+            return;
+        }
         if self.holds_others(noun, &pre)
             || self.rides(noun, word, &pre)
             || self.says_which(noun, word, plural, &pre)
@@ -167,6 +170,12 @@ impl Parser<'_> {
                     };
                     apply(&mut self.mentions[index].spec, &frag);
                     self.reversed = Some((kind, rspan, subjects, topic)); // "by cones and barriers"
+                }
+                // "the view to the left is blocked by a lorry"
+                None if !self.fronted.is_empty() => {
+                    for frag in self.fronted.clone() {
+                        apply(&mut self.mentions[index].spec, &frag);
+                    }
                 }
                 None => self.unread(rspan, Some("of what?".into())),
             }

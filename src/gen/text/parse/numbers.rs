@@ -36,7 +36,48 @@ impl Parser<'_> {
             self.pre = Pre::default();
             return;
         }
+        if self.items[self.at].words == "both" && self.both_of_them() {
+            return;
+        }
         let next_is_part = !self.noun_ahead(self.at + 1);
+        if next_is_part
+            && !self.edits
+            && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true)))
+            && let Some(&i) = self.last.last().filter(|i| self.mentions[**i].uncounted)
+        {
+            // "barricades four nos. are kept on the left"
+            self.mentions[i].spec.count = count;
+            self.mentions[i].uncounted = false;
+            return;
+        }
+        let more = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Pick(super::super::words::edits::Pick::More))
+        );
+        let placed = matches!(
+            self.sense(self.at + 2),
+            Some(
+                Sense::In
+                    | Sense::At
+                    | Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::FarSide
+                    | Sense::State(..)
+                    | Sense::Possessed(_)
+            )
+        );
+        if next_is_part
+            && !self.edits
+            && more
+            && placed
+            && self.pending.is_none()
+            && !self.mentions.is_empty()
+        {
+            // "six people on the left, two more on the right"
+            self.at += 1;
+            self.again(count, span);
+            return;
+        }
         if next_is_part && !self.edits && self.bare_number(self.at) && !self.fronted.is_empty() {
             // "on the left are three cars, and on the right two."
             self.again(count, span);

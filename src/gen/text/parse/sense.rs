@@ -51,6 +51,16 @@ impl<'a> Parser<'a> {
                             self.last = std::mem::take(&mut self.pair);
                         }
                     }
+                    // "the site ahead consists of a digger and two cones"
+                    "consists of" | "consist of" | "consists out of" | "is made up of" | "comprises"
+                    | "comprise" | "includes" | "include"
+                        if !self.edits =>
+                    {
+                        self.introduce();
+                        self.end_list();
+                    }
+                    // "... obstructs the crossing; four people wait there"
+                    "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
                         self.head = self.before.clone();
@@ -135,6 +145,11 @@ impl<'a> Parser<'a> {
                 self.not_goes_on = false;
                 return true;
             }
+            // "bicycles and motorbikes are there not any"
+            Sense::Not
+                if matches!(item.words.as_str(), "not any" | "none" | "absent")
+                    && self.ends(self.at + 1)
+                    && self.none_of_these(span) => {}
             // "pedestrians: none"
             Sense::Not if item.words == "none" && self.none_of_it(2, span) => {}
             Sense::Not => {

@@ -34,6 +34,17 @@ impl Parser<'_> {
             self.begin(Prep::Rels(vec![RelationKind::LeftOf]), span);
             return;
         }
+        let possessed = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "its" | "their" | "his" | "her" | "my" | "our"));
+        if possessed && finite {
+            return; // "waits for its turn"
+        }
+        if prenominal && !finite {
+            self.pre.state = Some(state);
+            self.pre.cover(span);
+            return;
+        }
         let state = if std::mem::take(&mut self.pre.not) {
             if state == ObjectState::Moving {
                 ObjectState::Waiting

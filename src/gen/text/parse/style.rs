@@ -23,6 +23,30 @@ impl Parser<'_> {
             self.pending = None; // its own lane is the oncoming one
             return;
         }
+        if self.ego_subject && self.head.is_empty() && self.last.is_empty() && self.pending.is_some() {
+            self.pending = None; // "we stand by the traffic light" sets the stage
+        }
+        // "in that same lane"
+        let same = matches!(item.words.as_str(), "same lane" | "lane")
+            && self
+                .item(self.at.wrapping_sub(1))
+                .is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
+        let anchor = match self
+            .last_lane
+            .filter(|_| same && anchor == Anchor::Lane(LaneRole::Ego))
+        {
+            Some(lane) => lane,
+            None => anchor,
+        };
+        if matches!(
+            anchor,
+            Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+        ) {
+            self.last_lane = Some(anchor);
+        }
+        if anchor != Anchor::Lane(LaneRole::Road) {
+            self.last_place = Some(anchor);
+        }
         let not = std::mem::take(&mut self.pre.not);
         let definite = self.pre.article == Some(true);
         self.pre = Pre::default();

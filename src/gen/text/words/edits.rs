@@ -31,7 +31,7 @@ pub const VERBS: &[(Verb, &str)] = &[
     ),
     (
         Verb::Add,
-        "drop in|slot in|squeeze in|send in|dispatch|deploy|create|generate|show|include|append|attach|lay|lay out|build|raise up|conjure|conjure up|materialise|materialize|grow|supply|provide|furnish|complement|supplement|augment with|top up with|slip in|sprinkle|scatter|distribute|arrange|line up|let in|let enter|squeeze|fit in|fit|wedge|slide in|bring along|call up|construct|assemble|mount|establish|station|stand|seat|sit|leave a|leave two|put up|put down|put out|set down|set out|lay down|hang|post|park one|park three|feature|enrich with|bring into play|toss in|chuck in|plonk|plop|plunk|plonk down|shove in|inject|incorporate|bring back|spawn in|roll in|fetch|mark out|erect|have another|throw in some|add|insert|put|add in|add on|make room for|erect|pop|bring up|bring on|call in|place|spawn|drop|introduce|bring in|populate|throw in|put in|plant|install|position|stick|set up|park a|park two|give us|duplicate|let there be",
+        "give me|get me|bring me|fetch me|find me|drop in|slot in|squeeze in|send in|dispatch|deploy|create|generate|show|include|append|attach|lay|lay out|build|raise up|conjure|conjure up|materialise|materialize|grow|supply|provide|furnish|complement|supplement|augment with|top up with|slip in|sprinkle|scatter|distribute|arrange|line up|let in|let enter|squeeze|fit in|fit|wedge|slide in|bring along|call up|construct|assemble|mount|establish|station|stand|seat|sit|leave a|leave two|put up|put down|put out|set down|set out|lay down|hang|post|feature|enrich with|bring into play|toss in|chuck in|plonk|plop|plunk|plonk down|shove in|inject|incorporate|bring back|spawn in|roll in|fetch|mark out|erect|have another|throw in some|add|insert|put|add in|add on|make room for|erect|pop|bring up|bring on|call in|place|spawn|drop|introduce|bring in|populate|throw in|put in|plant|install|position|stick|set up|park a|park two|give us|duplicate|let there be",
     ),
     (
         Verb::Move,
@@ -98,21 +98,30 @@ pub const PICKS: &[(Pick, &str)] = &[
     ),
     (
         Pick::Nearest,
-        "nearest|closest|nearest to me|closest to me|nearest to us|closest to us|nearest to the ego|closest by|nearest one|closest one",
+        "nearer of the two|nearer of the|closer of the two|closer of the|nearer one of the|nearer one|closer one|nearest of the|closest of the|nearest|closest|nearest to me|closest to me|nearest to us|closest to us|nearest to the ego|closest by|nearest one|closest one",
     ),
     (
         Pick::Farthest,
-        "farthest|furthest|remotest|furthest from me|farthest from me|furthest off|most remote|furthest out|farthest out|furthest from us|most distant|farthest away|furthest away",
+        "farther of the two|farther of the|further of the two|further of the|more distant of the two|more distant|farther one|further one|farthest of the|furthest of the|farthest|furthest|remotest|furthest from me|farthest from me|furthest off|most remote|furthest out|farthest out|furthest from us|most distant|farthest away|furthest away",
     ),
-    (Pick::Leftmost, "leftmost|left most|furthest left|farthest left"),
+    (
+        Pick::Leftmost,
+        "left one of the|left hand one of the|left of the two|leftmost of the|left one|leftmost|left most|furthest left|farthest left",
+    ),
     (
         Pick::Rightmost,
-        "rightmost|right most|furthest right|farthest right",
+        "right one of the|right hand one of the|right of the two|rightmost of the|right one|rightmost|right most|furthest right|farthest right",
     ),
     (Pick::Frontmost, "frontmost|foremost|front most|front one"),
     (Pick::Rearmost, "rearmost|hindmost|backmost|rear most"),
-    (Pick::Largest, "biggest|largest|longest|tallest"),
-    (Pick::Smallest, "smallest|shortest|tiniest"),
+    (
+        Pick::Largest,
+        "bigger of the two|larger of the two|bigger of the|larger of the|biggest of the|largest of the|biggest|largest|longest|tallest",
+    ),
+    (
+        Pick::Smallest,
+        "smaller of the two|smaller of the|smallest of the|smallest|shortest|tiniest",
+    ),
     (
         Pick::Any,
         "any|any one|some random|a random|random|any of the|one of the|any one of the|whichever",

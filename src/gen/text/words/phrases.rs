@@ -78,6 +78,7 @@ pub fn sides() -> Vec<(&'static [R], String)> {
     }
     for (place, relation) in [
         ("drivers side", LEFT),
+        ("driver side", LEFT),
         ("drivers hand", LEFT),
         ("passenger side", RIGHT),
         ("passengers side", RIGHT),
@@ -130,6 +131,11 @@ pub fn possessed() -> Vec<(R, String)> {
     out
 }
 
+/// The hours in words.
+pub const HOURS: [&str; 12] = [
+    "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+];
+
 /// Which way an hour of the clock lies, from 1 to 12.
 pub fn hour(n: u32) -> &'static [R] {
     match n {
@@ -146,11 +152,8 @@ pub fn hour(n: u32) -> &'static [R] {
 
 /// "at my three oclock", "in the nine oclock position".
 pub fn clock() -> Vec<(&'static [R], String)> {
-    let names = [
-        "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
-    ];
     let mut out = Vec::new();
-    for (n, name) in (1..).zip(names) {
+    for (n, name) in (1..).zip(HOURS) {
         for lead in ["at my", "at our", "on my", "my", "our", "to my"] {
             out.push((hour(n), format!("{lead} {name} oclock")));
         }

@@ -139,6 +139,21 @@ pub const RELATING: &[(R, &str)] = &[
 /// Something drawn by what comes before: "a tractor tows a trailer", and "a trailer towed by a tractor".
 pub const TOWING: &str = "tow|pull|haul|drag|tug|draw/drew/drawn|lug|trail along|pull along|tow away";
 
+/// What witnesses and reports do: they are not in the scene.
+pub const SAYING: &str = "say/said|state|report|claim|count|observe|see/saw/seen|notice|recall|remember|describe|mention|testify|note|speak of/spoke of/spoken of|tell/told|tell of/told of|complain|complain about|complain of|grumble|grumble about|moan about|talk of|talk about|record|confirm|declare|insist|explain|write/wrote/written|list|show/showed/shown|spot|reckon|believe|think/thought|guess|swear/swore/sworn|indicate|suggest|announce|counted on|have seen/had seen";
+
+/// The sky's verbs: weather as in [`super::style::WEATHERS`].
+pub const SKY: &[(super::super::description::Weather, &str)] = &[
+    (
+        super::super::description::Weather::Rain,
+        "rain|pour|pour down|pour with rain|bucket|bucket down|drizzle|pelt down|lash down|teem down|tip down|chuck down|hammer down|belt down|sheet down|spit with rain|rain down|hail|thunder and lightning|piss down",
+    ),
+    (
+        super::super::description::Weather::Snow,
+        "snow|snow down|snow heavily|sleet",
+    ),
+];
+
 /// Joined to the back of what follows.
 pub const JOINED: &str = "hitched to|attached to|coupled to|hooked up to|hooked to|hooked onto|hitched up to|hitched onto|tied to|fastened to|connected to|in tow of|hanging off|on the hook of|hitched behind|coupled behind|attached behind|hooked behind";
 
