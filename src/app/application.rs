@@ -12,6 +12,7 @@ use crate::editor::Document;
 use crate::generation::job::{
     GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Named, Pipeline, UpdateGate,
 };
+use crate::generation::redraw::RedrawMask;
 use crate::generation::worker::GenWorker;
 use crate::scene::{Scene, SceneRev};
 
@@ -542,6 +543,7 @@ impl SceneloomApp {
                 self.path = opening.path;
                 self.state.choose(&[], super::tools::Choose::Only);
                 self.state.correcting = false;
+                self.state.tools.region = RedrawMask::default();
                 self.state.named = Named::default();
                 self.note_opened(&opening.what, true);
                 ctx.request_repaint();

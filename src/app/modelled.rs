@@ -1,5 +1,5 @@
 //! Draws over the bird's-eye view what was computed for the last edit: tokens of the network, columns that were redrawn,
-//! bricks that changed. All else was left as it was, and cost nothing.
+//! bricks that changed, pieces of LiDAR rays that were sampled. All else was left as it was, and cost nothing.
 
 use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};
 use glam::dvec2;
@@ -7,6 +7,7 @@ use glam::dvec2;
 use super::canvas::ScreenMap;
 use super::compare::tag;
 use super::tuning::LastEdit;
+use crate::generation::sensors::learned_caster::Sampled;
 use crate::scene::GridSpec;
 use crate::scene::grid::{BRICK, BRICKS};
 
@@ -14,7 +15,7 @@ use crate::scene::grid::{BRICK, BRICKS};
 const TOKENS: usize = 25;
 
 /// Draws it, and a line that says how much it was.
-pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
+pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled: Option<&Sampled>) {
     let painter: Painter = ui.painter_at(area);
     let squares = |x: usize, y: usize, columns: usize| {
         let corner = |x: usize, y: usize| {
@@ -51,7 +52,11 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
             StrokeKind::Inside,
         );
     }
-    let text = format!(
+    let orange = Stroke::new(1.0, Color32::from_rgb(255, 130, 40).gamma_multiply(0.7));
+    for segment in sampled.iter().flat_map(|s| &s.segments) {
+        painter.line_segment(segment.map(|p| map.to_screen(p.truncate())), orange);
+    }
+    let mut text = format!(
         "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",
         last.tokens.len(),
         TOKENS * TOKENS,
@@ -59,5 +64,13 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit) {
         last.bricks.len(),
         BRICKS * BRICKS,
     );
+    if let Some(s) = sampled {
+        text += &format!(
+            "  ·  {} of {} LiDAR rays shot again, sampled on {:.0} % of their way (orange)",
+            s.rays,
+            s.of,
+            100.0 * s.share
+        );
+    }
     tag(ui, pos2(area.left() + 8.0, area.top() + 8.0), &text, false);
 }

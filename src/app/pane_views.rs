@@ -152,7 +152,7 @@ impl SceneloomApp {
         if let (true, Some(last), Some(map)) =
             (self.tuning.show_modelled, &self.tuning.last, &self.canvas.map)
         {
-            super::modelled::draw(ui, rect, map, last);
+            super::modelled::draw(ui, rect, map, last, self.sensing.sampled());
         }
         let (Some(before), Some(map)) = (self.compare.before.clone(), self.canvas.map) else {
             return;

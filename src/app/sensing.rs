@@ -13,10 +13,13 @@ use super::state::{CameraMode, LidarModel};
 use crate::generation::model::lidar::LidarNet;
 use crate::generation::sensors::caster::Caster;
 use crate::generation::sensors::learned::Drops;
-use crate::generation::sensors::learned_caster::LearnedCaster;
+use crate::generation::sensors::learned_caster::{LearnedCaster, Sampled};
 use crate::generation::sensors::lidar::EgoBox;
 use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
+
+/// Rays whose samples are shown at most: more would cover the map.
+const SHOWN_RAYS: usize = 400;
 
 /// A scene to sense.
 struct Request {
@@ -27,7 +30,7 @@ struct Request {
 
 /// News from the thread.
 enum News {
-    Lidar(SceneRev, LidarSweep),
+    Lidar(SceneRev, LidarSweep, Option<Sampled>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
 }
 
@@ -38,6 +41,7 @@ pub struct Sensing {
     thread: Option<JoinHandle<()>>,
     asked: Option<(SceneRev, Wanted, bool)>,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
+    sampled: Option<Sampled>,
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     version: u64,
 }
@@ -57,6 +61,7 @@ impl Sensing {
             thread: Some(thread),
             asked: None,
             lidar: None,
+            sampled: None,
             cameras: None,
             version: 0,
         })
@@ -87,7 +92,10 @@ impl Sensing {
         for news in self.news.try_iter() {
             self.version += 1;
             match news {
-                News::Lidar(rev, sweep) => self.lidar = Some((rev, Arc::new(sweep))),
+                News::Lidar(rev, sweep, sampled) => {
+                    self.lidar = Some((rev, Arc::new(sweep)));
+                    self.sampled = sampled;
+                }
                 News::Cameras(rev, wanted, views) => self.cameras = Some((rev, wanted, Arc::new(views))),
             }
         }
@@ -96,6 +104,11 @@ impl Sensing {
     /// The newest sweep.
     pub fn lidar(&self) -> Option<&Arc<LidarSweep>> {
         self.lidar.as_ref().map(|(_, sweep)| sweep)
+    }
+
+    /// Where rays of the newest sweep were sampled after the last change; none if the network did not look.
+    pub fn sampled(&self) -> Option<&Sampled> {
+        self.sampled.as_ref()
     }
 
     /// The newest pictures of the cameras that are rendered, in the rig's order.
@@ -208,7 +221,13 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
     let rig = &scene.rig;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     if kept.swept != Some(swept) {
-        tell(News::Lidar(scene.rev, kept.sweep(scene, wanted)));
+        let sweep = kept.sweep(scene, wanted);
+        let learned = kept
+            .learned
+            .as_ref()
+            .filter(|_| wanted.lidar == LidarModel::Learned);
+        let sampled = learned.map(|(_, caster)| caster.sampled(SHOWN_RAYS));
+        tell(News::Lidar(scene.rev, sweep, sampled));
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());

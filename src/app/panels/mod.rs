@@ -4,6 +4,7 @@ pub mod box_views;
 pub mod camera_header;
 pub mod cameras;
 pub mod checks;
+mod chip;
 pub mod dialogs;
 pub mod export;
 pub mod fields;

@@ -276,6 +276,7 @@ impl PromptPane {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             for phrase in &reading.phrases {
+                super::chip::make_room(ui, &phrase.text);
                 match phrase.became {
                     Became::Object(i) => plan.object_menu(ui, i, &phrase.text, scene, read, commands),
                     Became::Time => {
@@ -356,20 +357,16 @@ fn style_menu(
     names: impl Iterator<Item = &'static str>,
     other: &mut Option<(Phrase, &'static str)>,
 ) {
-    let menu = ui.menu_button(
-        egui::RichText::new(&phrase.text).color(theme::text_strong()),
-        |ui| {
-            for name in names {
-                if ui.button(name).clicked() {
-                    *other = Some((phrase.clone(), name));
-                    ui.close();
-                }
+    let response = super::chip::menu(ui, &phrase.text, |ui| {
+        for name in names {
+            if ui.button(name).clicked() {
+                *other = Some((phrase.clone(), name));
+                ui.close();
             }
-        },
-    );
+        }
+    });
     let label = format!("Change {}", phrase.text);
-    menu.response
-        .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
 }
 
 /// Words of the lexicon's plain kinds that begin so.
@@ -385,16 +382,10 @@ fn completions(begun: &str) -> Vec<String> {
 
 fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
     let has_menu = matches!(phrase.became, Became::Object(_) | Became::Time | Became::Weather);
-    let text = if has_menu {
-        "×".to_string()
-    } else {
-        format!("{}  ×", phrase.text)
+    let response = match has_menu {
+        true => super::chip::end(ui),
+        false => super::chip::plain(ui, &phrase.text),
     };
-    let text = egui::RichText::new(text).color(theme::text_strong());
-    let button = egui::Button::new(text)
-        .corner_radius(10)
-        .fill(theme::field_active());
-    let response = ui.add(button);
     let label = format!("Take out {}", phrase.text);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     response

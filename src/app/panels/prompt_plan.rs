@@ -223,8 +223,7 @@ impl Plan {
             shown = format!("{shown} (locked)");
         }
         let here = self.made.as_ref().is_some_and(|(of, _)| *of == prompt);
-        let shown = egui::RichText::new(shown).color(theme::text_strong());
-        let menu = ui.menu_button(shown, |ui| {
+        let response = super::chip::menu(ui, &shown, |ui| {
             ui.horizontal(|ui| {
                 ui.label("Number");
                 let mut n = count;
@@ -267,8 +266,7 @@ impl Plan {
             }
         });
         let label = format!("Change {text}");
-        menu.response
-            .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     }
 
     /// Other places for some objects of the open scene, as one undo step.

@@ -29,7 +29,20 @@ pub struct LearnedCaster {
     columns: u32,
     field: Field,
     answers: Vec<LearnedRay>,
-    shot: usize,
+    shot: Vec<u32>, // rays of the last update, rising
+}
+
+/// What of some rays the network looked at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sampled {
+    /// Rays shot by the last update.
+    pub rays: usize,
+    /// All rays.
+    pub of: usize,
+    /// Pieces of some of those rays in which samples were taken: both ends, ego frame, m.
+    pub segments: Vec<[DVec3; 2]>,
+    /// Share of the way of those rays, up to what they met, that these pieces make up; 0 without any.
+    pub share: f64,
 }
 
 impl LearnedCaster {
@@ -48,7 +61,7 @@ impl LearnedCaster {
         Ok(Self {
             exclude,
             columns: pattern.columns_in_sector(),
-            shot: rays.len(),
+            shot: (0..rays.len() as u32).collect(),
             net,
             rays,
             field,
@@ -70,16 +83,16 @@ impl LearnedCaster {
         self.shot = match self.net.update(&mut self.field, &seen)? {
             Changed::Everywhere => {
                 self.answers = self.net.shoot(&self.field, &self.rays, Sampling::Prior);
-                self.rays.len()
+                (0..self.rays.len() as u32).collect()
             }
             Changed::In(regions) => self.shoot_again(&regions),
         };
         Ok(())
     }
 
-    fn shoot_again(&mut self, regions: &[Region]) -> usize {
+    fn shoot_again(&mut self, regions: &[Region]) -> Vec<u32> {
         if regions.is_empty() {
-            return 0;
+            return Vec::new();
         }
         let boxes: Vec<[DVec3; 2]> = regions.iter().map(reached).collect();
         let rays = self.rays.par_iter().zip(&self.answers).with_min_len(CHUNK);
@@ -93,7 +106,7 @@ impl LearnedCaster {
         for (i, answer) in again.iter().zip(answers) {
             self.answers[*i] = answer;
         }
-        again.len()
+        again.into_iter().map(|i| i as u32).collect()
     }
 
     /// The points, beam-major.
@@ -103,7 +116,47 @@ impl LearnedCaster {
 
     /// Rays that the last update shot.
     pub fn shot_last(&self) -> usize {
-        self.shot
+        self.shot.len()
+    }
+
+    /// Where those rays were sampled, of `most` of them, spread evenly.
+    pub fn sampled(&self, most: usize) -> Sampled {
+        let step = self.shot.len().div_ceil(most.max(1)).max(1);
+        let (mut segments, mut sampled_m, mut way_m) = (Vec::new(), 0.0, 0.0);
+        for &i in self.shot.iter().step_by(step) {
+            let (ray, reach_m) = (
+                &self.rays[i as usize],
+                f64::from(self.answers[i as usize].met.reach_m),
+            );
+            // NaN for a ray of which nothing is known.
+            if reach_m.is_nan() || reach_m <= ray.range_m[0] {
+                continue;
+            }
+            way_m += reach_m - ray.range_m[0];
+            let at = |t_m: f64| ray.origin + ray.direction * t_m;
+            let mut run: Option<[f64; 2]> = None;
+            let walk = self
+                .field
+                .cells
+                .walk(ray.origin, ray.direction, [ray.range_m[0], reach_m]);
+            for piece in walk {
+                run = match run {
+                    Some([from_m, _]) if !piece.begins_run => Some([from_m, piece.to_m]),
+                    before => {
+                        segments.extend(before.map(|run| run.map(at)));
+                        Some([piece.from_m, piece.to_m])
+                    }
+                };
+                sampled_m += piece.to_m - piece.from_m;
+            }
+            segments.extend(run.map(|run| run.map(at)));
+        }
+        Sampled {
+            rays: self.shot.len(),
+            of: self.rays.len(),
+            segments,
+            share: if way_m > 0.0 { sampled_m / way_m } else { 0.0 },
+        }
     }
 }
 
@@ -163,6 +216,14 @@ mod tests {
             }
             kept.update(&grid).expect("finite");
             least = least.min(kept.shot_last());
+            // Samples lie on the rays, up to what those met, and most of the way there is nothing to look at.
+            let sampled = kept.sampled(200);
+            assert_eq!((sampled.rays, sampled.of), (kept.shot_last(), rays));
+            if sampled.rays > 0 {
+                assert!(!sampled.segments.is_empty() && sampled.share > 0.0 && sampled.share < 0.9);
+                let far_m = |p: &DVec3| p.distance(kept.rays[0].origin);
+                assert!(sampled.segments.iter().flatten().all(|p| far_m(p) < 80.0));
+            }
             let fresh = LearnedCaster::of_rig(net.clone(), &grid, &rig)
                 .expect("finite")
                 .expect("a LiDAR");
