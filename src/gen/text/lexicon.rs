@@ -126,7 +126,9 @@ fn build() -> Table {
     let mut t = Table::new();
     // What comes first stays: more telling senses before small words.
     let mut put = |word: &str, sense: Sense| {
-        t.entry(word.to_string()).or_insert(sense);
+        if word.split(' ').count() <= LONGEST {
+            t.entry(word.to_string()).or_insert(sense);
+        }
     };
     for (word, sense) in [
         ("and", Sense::And),
