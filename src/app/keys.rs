@@ -77,6 +77,9 @@ fn drop_focus(ctx: &Context) {
     });
 }
 
+/// Longest time between two events of a key that is held, s; X waits 0.66 s before the first.
+const HELD_S: f64 = 0.8;
+
 /// A key that went down.
 struct Pressed {
     key: Key,
@@ -112,7 +115,18 @@ fn pressed(ctx: &Context) -> Vec<Pressed> {
         egui::Event::Paste(_) => Some(ctrl(Key::V)),
         _ => None,
     };
-    ctx.input(|i| i.events.iter().filter_map(event).collect())
+    let (mut keys, now_s): (Vec<Pressed>, f64) =
+        ctx.input(|i| (i.events.iter().filter_map(event).collect(), i.time));
+    // Shift released before its key: the key comes up under another name, and its next press looks like a repetition.
+    let id = egui::Id::unique("last presses");
+    ctx.data_mut(|data| {
+        let last: &mut std::collections::HashMap<Key, f64> = data.get_temp_mut_or_default(id);
+        for pressed in &mut keys {
+            let before_s = last.insert(pressed.key, now_s);
+            pressed.repeat &= before_s.is_some_and(|s| now_s - s < HELD_S);
+        }
+    });
+    keys
 }
 
 fn is_flight(key: Key) -> bool {

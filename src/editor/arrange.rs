@@ -276,18 +276,23 @@ fn replace(old: &SceneBox, new: &SceneBox) -> Vec<Edit> {
     if old.velocity_mps == new.velocity_mps {
         return vec![place(old, new.center_m, Some(new.yaw_rad.to_degrees()))];
     }
-    vec![Edit::RemoveBox { id: old.id }, add_edit(new, old.id)]
+    vec![Edit::RemoveBox { id: old.id }, add_edit(new, Some(old.id))]
 }
 
-fn add_edit(b: &SceneBox, id: BoxId) -> Edit {
+fn add_edit(b: &SceneBox, id: Option<BoxId>) -> Edit {
     Edit::AddBox {
         class: b.class,
         center_m: b.center_m,
         size_m: b.size_m,
         yaw_deg: b.yaw_rad.to_degrees(),
         velocity_mps: (b.velocity_mps != DVec2::ZERO).then_some(b.velocity_mps),
-        id: Some(id),
+        id,
     }
+}
+
+/// The edit that adds a box like this one under the next name that is free.
+pub fn adding(b: &SceneBox) -> Edit {
+    add_edit(b, None)
 }
 
 /// Adds boxes under names that are free; those for which none is left are left out.
@@ -297,7 +302,7 @@ pub fn add(frame: &Frame, boxes: Vec<SceneBox>) -> Added {
     let gaps = (1..highest).map(BoxId).filter(|id| !frame.boxes.contains_key(id));
     let mut added = Added::default();
     for (b, id) in boxes.iter().zip(above.chain(gaps)) {
-        added.edits.push(add_edit(b, id));
+        added.edits.push(add_edit(b, Some(id)));
         added.ids.push(id);
     }
     added

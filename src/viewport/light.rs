@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use super::meshing::Solidity;
+use super::pool;
 use crate::scene::GridSpec;
 
 /// Toward the sun, ego frame, unit length: from behind, left and above.
@@ -98,10 +99,10 @@ impl LightRays {
                 sky: free_counts(solid.padded(), &self.sky, at),
             }
         };
-        // Around an edit in this thread: the others may be busy generating.
+        // Around an edit in this thread: others would take longer to wake.
         let traced: Vec<Column> = match w * h {
             0..=FEW => (0..w * h).map(column).collect(),
-            _ => (0..w * h).into_par_iter().with_min_len(64).map(column).collect(),
+            _ => pool::run(|| (0..w * h).into_par_iter().with_min_len(64).map(column).collect()),
         };
         let mut cells = vec![[0; 2]; size[0] * size[1] * GridSpec::NZ];
         for y in 0..size[1] {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::pool;
 use crate::scene::grid::{BRICK, BRICKS, Brick};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
@@ -133,8 +134,7 @@ pub const NORMALS: [[i32; 3]; 6] = [
 
 const NONE: u8 = u8::MAX;
 
-/// Bricks up to which meshing goes on in this thread: the others may be busy generating, and an edit must not wait for
-/// them.
+/// Bricks up to which meshing goes on in this thread: others would take longer to wake.
 const FEW: usize = 16;
 
 /// Meshes of several bricks, in parallel if they are many; the result does not depend on the number of threads.
@@ -142,7 +142,7 @@ pub fn mesh_bricks(grid: &VoxelGrid, solid: &Solidity, bricks: &[usize]) -> Vec<
     let mesh = |&b: &usize| mesh_brick(&grid.bricks()[b], b, solid);
     match bricks.len() {
         0..=FEW => bricks.iter().map(mesh).collect(),
-        _ => bricks.par_iter().map(mesh).collect(),
+        _ => pool::run(|| bricks.par_iter().map(mesh).collect()),
     }
 }
 

@@ -21,6 +21,7 @@ mod marks;
 pub mod meshing;
 pub mod panels;
 mod points;
+mod pool;
 pub mod shaders;
 mod shared;
 pub mod splats;

@@ -1,7 +1,7 @@
 //! Chips: a phrase with what takes it out, in one rounded shape that no line break parts; some open a menu.
 
-use egui::containers::menu::MenuButton;
-use egui::{Button, CornerRadius, Response, RichText, TextStyle, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, CornerRadius, PopupCloseBehavior, Response, RichText, TextStyle, Ui};
 
 use crate::app::theme;
 
@@ -46,7 +46,10 @@ pub fn plain(ui: &mut Ui, text: &str) -> Response {
 /// The text of a chip, with a menu; [`end`] follows.
 pub fn menu(ui: &mut Ui, text: &str, add: impl FnOnce(&mut Ui)) -> Response {
     let gap = std::mem::replace(&mut ui.spacing_mut().item_spacing.x, SEAM);
-    let (response, _) = MenuButton::from_button(button(text, true, false)).ui(ui, |ui| {
+    // What is in it is typed into and dragged; what chooses closes it.
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let menu = MenuButton::from_button(button(text, true, false)).config(config);
+    let (response, _) = menu.ui(ui, |ui| {
         ui.spacing_mut().item_spacing.x = gap;
         add(ui);
     });

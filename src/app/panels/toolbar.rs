@@ -1,7 +1,7 @@
 //! The bar at the top: menus, tools, history, generation.
 
 use egui::accesskit::Role;
-use egui::{Align2, Sense, Ui, WidgetInfo, vec2};
+use egui::{Sense, Ui, WidgetInfo, vec2};
 
 use crate::app::bookmarks::SLOTS;
 use crate::app::command::Command;
@@ -367,7 +367,12 @@ fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let middle = egui::pos2((left + right) / 2.0, ui.max_rect().center().y);
     let painter = ui.painter();
-    let drawn = painter.text(middle, Align2::CENTER_CENTER, input.name, font, theme::text());
+    let mut job = egui::text::LayoutJob::simple_singleline(input.name.to_owned(), font, theme::text());
+    // Room for the mark of unsaved changes on both sides.
+    job.wrap = egui::text::TextWrapping::truncate_at_width(right - left - 40.0);
+    let galley = painter.layout_job(job);
+    let drawn = egui::Rect::from_center_size(middle, galley.size());
+    painter.galley(drawn.min, galley, theme::text());
     if input.dirty {
         painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::warn());
     }

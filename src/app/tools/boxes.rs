@@ -15,7 +15,7 @@ use super::{Choose, PaintShape, ToolCommand};
 
 impl SceneloomApp {
     /// Carries out one command of the tools.
-    pub(in crate::app) fn tool_command(&mut self, command: ToolCommand, _ctx: &Context) {
+    pub(in crate::app) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
         match command {
@@ -44,9 +44,9 @@ impl SceneloomApp {
                 let label = of(&ids, "Duplicate box", "Duplicate boxes");
                 self.add_boxes(label, arrange::duplicate(&frame, &ids));
             }
-            ToolCommand::Copy => self.copy(&frame),
+            ToolCommand::Copy => self.copy(&frame, ctx),
             ToolCommand::Cut => {
-                self.copy(&frame);
+                self.copy(&frame, ctx);
                 let label = of(&ids, "Cut box", "Cut boxes");
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
@@ -178,9 +178,13 @@ impl SceneloomApp {
         }
     }
 
-    fn copy(&mut self, frame: &Frame) {
+    /// Keeps the chosen boxes, and gives the window system the edits that add them: without a text on its clipboard it
+    /// would not tell of the chord that pastes.
+    fn copy(&mut self, frame: &Frame, ctx: &egui::Context) {
         let boxes = arrange::boxes_of(frame, &self.state.chosen());
         if !boxes.is_empty() {
+            let edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
+            ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
             self.state.tools.clipboard = Clipboard { boxes };
         }
     }

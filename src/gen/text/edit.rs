@@ -10,6 +10,7 @@ use super::description::{Became, Description, Phrase, Reading, TimeOfDay, Unread
 use super::edit_grammar::{Command, Destination, commands};
 use super::holds::{ego, in_role};
 use super::lanes::LaneMap;
+use super::mention::Mention;
 use super::place::place_with;
 use super::rephrase::Change;
 use super::select::{Candidate, Chosen, choose, where_is};
@@ -59,12 +60,23 @@ pub enum TextEdit {
     },
 }
 
+/// The words that name a target: an answer replaces them by a number, and leaves the rest of the command as it is.
+fn words_of(mention: &Mention, c: &Command) -> String {
+    let span = mention.spec.span;
+    let from = span.start.checked_sub(c.span.start);
+    let words = from.and_then(|from| c.text.get(from..span.end.saturating_sub(c.span.start)));
+    words
+        .filter(|w| !w.trim().is_empty())
+        .unwrap_or(&c.text)
+        .to_owned()
+}
+
 /// A target that fits several boxes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Question {
     /// `3 parked cars: which?`
     pub text: String,
-    /// The words that named it.
+    /// The words that named it, as they stand in the text.
     pub phrase: String,
     /// The boxes that fit.
     pub candidates: Vec<Candidate>,
@@ -340,7 +352,7 @@ impl Editor<'_> {
                 Chosen::Several { what, candidates } => {
                     self.out.questions.push(Question {
                         text: format!("{} {what}: which?", candidates.len()),
-                        phrase: c.text.clone(),
+                        phrase: words_of(mention, c),
                         candidates,
                     });
                 }

@@ -266,7 +266,9 @@ fn area(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, off: f64, ce
         R::WaitingAt => {
             let before = from.heading().dot(center - p) > 0.0;
             let on_road = map.has(ROAD, p);
-            standing && off > 0.2 && off - from.size_m.x / 2.0 <= 7.0 && (before || !on_road)
+            // A vehicle stops with its front before the stripes.
+            let front_m = if on_road { from.size_m.x / 2.0 } else { 0.0 };
+            standing && off > 0.2 + front_m && off - from.size_m.x / 2.0 <= 7.0 && (before || !on_road)
         }
         R::Blocking => standing && off <= 0.0,
         R::LeftOf => off > 0.0 && off < 11.0 && (p - center).y > 0.5,
