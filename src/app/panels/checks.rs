@@ -30,7 +30,7 @@ pub fn checks_window(ui: &Ui, input: &ChecksInput<'_>, open: &mut bool, commands
         .id(egui::Id::unique("checks"))
         .open(open)
         .default_pos(pos2(360.0, 160.0))
-        .default_size(vec2(460.0, 300.0))
+        .default_size(vec2(640.0, 320.0))
         .show(ui.ctx(), |ui| checks_ui(ui, input, commands));
 }
 

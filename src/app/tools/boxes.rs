@@ -9,7 +9,7 @@ use crate::app::state::{Pane, Tool};
 use crate::editor::arrange::{self, Added, Clipboard};
 use crate::editor::{Edit, Shape, voxel_ops};
 use crate::generation::redraw::RedrawMask;
-use crate::scene::Frame;
+use crate::scene::{Frame, GridSpec};
 
 use super::{Choose, PaintShape, ToolCommand};
 
@@ -175,6 +175,12 @@ impl SceneloomApp {
         if !added.ids.is_empty() {
             self.apply(label, &added.edits);
             self.state.choose(&added.ids, Choose::Only);
+            let outside = added.edits.iter().filter(|e| lies_outside(e)).count();
+            if outside > 0 {
+                let text = format!("{outside} of {} lie outside the map", added.ids.len());
+                let now_s = self.now_s();
+                self.toasts.push(Level::Info, text, now_s);
+            }
         }
     }
 
@@ -225,4 +231,12 @@ impl SceneloomApp {
 /// The name of a step for one box or for several.
 pub(in crate::app) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
     if ids.len() > 1 { several } else { one }
+}
+
+/// True if an edit adds a box whose middle is beside the grid.
+fn lies_outside(edit: &Edit) -> bool {
+    match edit {
+        Edit::AddBox { center_m, .. } => GridSpec::column_at(center_m.x, center_m.y).is_none(),
+        _ => false,
+    }
 }

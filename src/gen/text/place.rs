@@ -260,6 +260,8 @@ impl Placer<'_> {
             .collect();
         let candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
         let siblings: Vec<DVec2> = self.siblings(id, o, edges);
+        let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
+        let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
         // A rough cost first; the costly tests only for those that could win.
         let mut ranked: Vec<(f64, usize)> = Vec::with_capacity(candidates.len());
         for (i, s) in candidates.iter().enumerate() {
@@ -270,6 +272,11 @@ impl Placer<'_> {
                     Class::TrafficCone | Class::Barrier => 0.5 * near,
                     _ => 0.02 * near,
                 };
+            }
+            // Small things that block a lane stand side by side across it.
+            if blocks && small {
+                let along = |q: &DVec2| (s.p - *q).dot(DVec2::from_angle(s.yaw_rad)).abs();
+                cost += 3.0 * siblings.iter().map(along).min_by(f64::total_cmp).unwrap_or(0.0);
             }
             // "Left" at its plainest is beside.
             let beside = stated.iter().any(|(e, t)| {
