@@ -115,9 +115,9 @@ pub(super) fn touched(
                 return Err(Whole);
             }
             let at = [(c.x / c.w + 1.0) * 0.5 * w, (1.0 - c.y / c.w) * 0.5 * h];
-            for axis in 0..2 {
-                seen.0[axis] = seen.0[axis].min(at[axis] - around_px);
-                seen.1[axis] = seen.1[axis].max(at[axis] + around_px);
+            for (axis, px) in at.into_iter().enumerate() {
+                seen.0[axis] = seen.0[axis].min(px - around_px);
+                seen.1[axis] = seen.1[axis].max(px + around_px);
             }
         }
         // What is beside the picture must not make the rectangle wider.

@@ -721,9 +721,7 @@ impl Editor<'_> {
     fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         let wanted = match &c.by {
-            Some(by) if !by.uncounted && !all || by.spec.count.n > 1 && !by.uncounted => {
-                by.spec.count.n as usize
-            }
+            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1) => by.spec.count.n as usize,
             _ => ids.len(),
         };
         for id in ids.iter().skip(wanted.max(1)) {

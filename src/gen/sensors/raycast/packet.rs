@@ -119,8 +119,8 @@ impl Lanes {
         let inside = (0..3).all(|axis| origin[axis] >= 0.0 && origin[axis] < n[axis]) && max_t >= 0.0;
         // Loops and not closures: they are sure to become code for wide registers.
         let (mut direction, mut inverse) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-        for lane in 0..LANES {
-            let [x, y, z] = packet.directions[lane].to_array();
+        for (lane, given) in packet.directions.iter().enumerate() {
+            let [x, y, z] = given.to_array();
             direction[0][lane] = if main == 0 { x } else { y };
             direction[1][lane] = if main == 0 { y } else { x };
             direction[2][lane] = z;
@@ -326,8 +326,8 @@ impl Lanes {
         let step = self.across_step[lane];
         let at = self.across[lane] + slab * step;
         let (low, high) = (
-            at.min(at + step) - MARGIN >> FRACTION,
-            at.max(at + step) + MARGIN >> FRACTION,
+            (at.min(at + step) - MARGIN) >> FRACTION,
+            (at.max(at + step) + MARGIN) >> FRACTION,
         );
         let rise = self.height_step[lane];
         let height = self.height[lane] + slab * rise;

@@ -294,17 +294,17 @@ fn row_45_packets_equal_single_rays() {
         let ray = |i: u64| {
             let at = |k: u64| scatter(9_000_000 + i * 16 + k);
             let mut origin = DVec3::new(at(0) * 200.0, at(1) * 200.0, at(2) * 16.0);
-            if i % 5 == 0 {
+            if i.is_multiple_of(5) {
                 origin = origin.floor();
             }
-            if i % 31 == 0 {
+            if i.is_multiple_of(31) {
                 origin.z += 10.0;
             }
             let tilt = glam::DQuat::from_rotation_x((at(3) - 0.5) * [0.0, 0.04, 0.5][i as usize % 3]);
             let (azimuth, lowest, step) = (at(4) * std::f64::consts::TAU, (at(5) - 0.5) * 1.2, at(6) * 0.1);
             let directions = std::array::from_fn(|lane| {
                 let elevation = lowest + step * lane as f64;
-                if i % 4 == 0 {
+                if i.is_multiple_of(4) {
                     let flat = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0).round();
                     return flat + DVec3::Z * (elevation * 8.0).round() / 8.0;
                 }

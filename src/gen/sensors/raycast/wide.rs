@@ -28,7 +28,7 @@ pub(super) trait Work {
 /// Bits of the heights from `low` to `high`; bit 0 is below the grid, bit 17 above it.
 #[inline(always)]
 pub(super) fn heights(low: i32, high: i32) -> u32 {
-    let bit = |height: i32| ((height >> FRACTION).max(-1).min(16) + 1) as u32;
+    let bit = |height: i32| ((height >> FRACTION).clamp(-1, 16) + 1) as u32;
     (2u32 << bit(high)) - (1u32 << bit(low))
 }
 

@@ -84,7 +84,7 @@ impl Parser<'_> {
             }
         }
         if self.pending.is_some() {
-            let fronts = self.head.is_empty() && !(self.ego_subject && !self.last.is_empty());
+            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty());
             let next_noun = self.noun_ahead(self.at + 1)
                 || matches!(
                     self.item(self.at + 1).map(|i| i.tag),
