@@ -269,7 +269,7 @@ fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> Til
 /// Tools on the left and objects on the right of what stands in the middle.
 fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     let tools = tiles.insert_pane(Pane::Tools);
-    let column = [(Pane::Objects, 2.2), (Pane::Prompt, 1.7), (Pane::Versions, 0.6)];
+    let column = [(Pane::Objects, 2.0), (Pane::Prompt, 1.6), (Pane::Versions, 0.95)];
     let column = row(tiles, LinearDir::Vertical, &column);
     let parts = [(tools, 232.0), (center, 1100.0), (column, 268.0)];
     join(tiles, LinearDir::Horizontal, &parts)

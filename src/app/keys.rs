@@ -8,12 +8,15 @@ use super::command::Command;
 use super::keymap::{Chord, Keymap};
 use super::state::{Pane, Tool, UiState};
 
+/// Actions that do not wait for the end of a drag.
+const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
+
 /// What the pointer is doing: some keys wait for its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hands {
     /// Flies in the 3D view, where letters steer.
     pub flying: bool,
-    /// Drags something with the button down: only what may be repeated (the size of the brush) and Escape count.
+    /// Drags something with the button down: only the keys of [`DURING_A_DRAG`] count.
     pub dragging: bool,
 }
 
@@ -56,7 +59,7 @@ pub fn commands(
         let Some(action) = keymap.action(chord, applies).or_else(on_key) else {
             continue;
         };
-        if hands.dragging && !action.repeats && key != Key::Escape {
+        if hands.dragging && !DURING_A_DRAG.contains(&action.id) {
             continue;
         }
         if key == Key::Tab {

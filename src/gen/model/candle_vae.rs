@@ -111,7 +111,7 @@ impl CandleVae {
         latent.flatten_all()?.to_vec1()
     }
 
-    /// The likeliest class of each voxel, [x][y][z], for a normalised latent.
+    /// The likeliest class of each voxel, z fastest, then y, for a normalised latent.
     pub fn decode(&self, latent: &[f32]) -> Result<Vec<u32>> {
         let side = self.config.side();
         let x = Tensor::from_slice(latent, (side, side, self.config.latent), &Device::Cpu)?;
