@@ -56,7 +56,7 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
     for segment in sampled.iter().flat_map(|s| &s.segments) {
         painter.line_segment(segment.map(|p| map.to_screen(p.truncate())), orange);
     }
-    let mut text = format!(
+    let text = format!(
         "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",
         last.tokens.len(),
         TOKENS * TOKENS,
@@ -65,12 +65,13 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
         BRICKS * BRICKS,
     );
     if let Some(s) = sampled {
-        text += &format!(
-            "  ·  {} of {} LiDAR rays shot again, sampled on {:.0} % of their way (orange)",
+        let text = format!(
+            "{} of {} LiDAR rays shot, sampled on {:.0} % of their way (orange)",
             s.rays,
             s.of,
             100.0 * s.share
         );
+        tag(ui, pos2(area.left() + 8.0, area.top() + 32.0), &text, false);
     }
     tag(ui, pos2(area.left() + 8.0, area.top() + 8.0), &text, false);
 }
