@@ -156,6 +156,14 @@ mod tests {
     use glam::DVec3;
 
     fn of(key: Key, modifiers: Modifiers, state: &mut UiState, flying: bool) -> Vec<Command> {
+        let hands = Hands {
+            flying,
+            ..Hands::default()
+        };
+        with(key, modifiers, state, hands)
+    }
+
+    fn with(key: Key, modifiers: Modifiers, state: &mut UiState, hands: Hands) -> Vec<Command> {
         let ctx = Context::default();
         let event = egui::Event::Key {
             key,
@@ -169,10 +177,6 @@ mod tests {
             ..Default::default()
         };
         let (mut out, keymap) = (Vec::new(), Keymap::default());
-        let hands = Hands {
-            flying,
-            ..Hands::default()
-        };
         let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, hands, &mut out));
         out
     }
@@ -208,23 +212,7 @@ mod tests {
             dragging: true,
             ..Hands::default()
         };
-        let pressed = |key, state: &mut UiState| {
-            let ctx = Context::default();
-            let event = egui::Event::Key {
-                key,
-                physical_key: None,
-                pressed: true,
-                repeat: false,
-                modifiers: Modifiers::NONE,
-            };
-            let input = egui::RawInput {
-                events: vec![event],
-                ..Default::default()
-            };
-            let (mut out, keymap) = (Vec::new(), Keymap::default());
-            let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, hands, &mut out));
-            out
-        };
+        let pressed = |key, state: &mut UiState| with(key, Modifiers::NONE, state, hands);
         for key in [Key::X, Key::Z, Key::ArrowUp, Key::Delete] {
             assert_eq!(pressed(key, &mut state), [], "{key:?}");
         }
