@@ -10,6 +10,7 @@ from models.occ_vae import CLASSES, FEATURES, FREE
 _COUNTS = [2.1e6, 3.0e6, 2.3e5, 5.4e6, 3.41e7, 2.0e6, 3.3e5, 3.3e6, 5.4e5, 5.8e6, 1.35e7, 1.98e8, 4.9e6, 5.65e7, 6.65e7,
            2.28e8, 2.52e8]
 RARITY = torch.tensor([1 + 3 * math.log(max(_COUNTS) / c) / math.log(max(_COUNTS) / min(_COUNTS)) for c in _COUNTS])
+ANCHOR_WEIGHT = 1.0  # a tenth of the latents' spread away costs as much as a hundredth of cross-entropy
 FREE_NEAR, FREE_ANYWHERE = 3.5, 8.0  # weights of the two kinds of free voxels: few are drawn out of many
 
 
@@ -64,8 +65,9 @@ def kl_to_normal(mean, logvar):
     return 0.5 * (mean**2 + torch.expm1(logvar) - logvar).mean()
 
 
-def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.01):
-    """Cross-entropy and Lovasz on sampled voxels, and the KL term. Returns the loss and its parts."""
+def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.01, anchor=None):
+    """Cross-entropy and Lovasz on sampled voxels, the KL term and, given an `anchor` (another VAE), the squared distance of the
+    latents from its own, in their spread. Returns the loss and its parts."""
     mean, logvar = model.moments(labels)
     latent = mean
     if model.training:
@@ -80,7 +82,13 @@ def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_
     pick = torch.randint(len(label), (min(lovasz_voxels, len(label)),), device=label.device)
     lovasz = lovasz_softmax(logits[pick].softmax(-1), label[pick])
     kl = kl_to_normal(mean, logvar)
-    return ce + 0.5 * lovasz + kl_weight * kl, {"ce": ce.item(), "lovasz": lovasz.item(), "kl": kl.item()}
+    total, parts = ce + 0.5 * lovasz + kl_weight * kl, {"ce": ce.item(), "lovasz": lovasz.item(), "kl": kl.item()}
+    if anchor is not None:
+        with torch.no_grad():
+            there = anchor.moments(labels)[0]
+        away = (((mean - there) / anchor.latent_std.view(1, -1, 1, 1)) ** 2).mean()
+        total, parts = total + ANCHOR_WEIGHT * away, parts | {"away": away.sqrt().item()}
+    return total, parts
 
 
 class Confusion:

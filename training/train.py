@@ -85,9 +85,13 @@ def vae_figures(vae, frames, device, count):
 
 def train_vae(args, device, dtype):
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
-    model = OccVae(VaeConfig.fine() if args.fine else VaeConfig()).to(device, memory_format=torch.channels_last)
+    config = VaeConfig.fine() if args.fine else VaeConfig()
+    if args.kernels:
+        config.encoder_kernels, config.decoder_kernels = json.loads(args.kernels)
+    model = OccVae(config).to(device, memory_format=torch.channels_last)
     if args.init:
         begin_with(model, args.init)
+    anchor = load_vae(args.anchor, device) if args.anchor else None
     if args.decoder_of:
         model.load_state_dict(load_vae(args.decoder_of, device).state_dict())
         for part in (model.embed, model.encoder, model.encoder_norm, model.encoder_head):
@@ -117,7 +121,7 @@ def train_vae(args, device, dtype):
     for grid in prefetch(make):
         model.train()
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, parts = losses.vae_loss(model, grid.to(device), latent_noise=args.latent_noise)
+            loss, parts = losses.vae_loss(model, grid.to(device), latent_noise=args.latent_noise, anchor=anchor)
         run.update(loss, len(grid))
         mean = {k: mean.get(k, v) * 0.95 + v * 0.05 for k, v in parts.items()}
         if run.step % 50 == 0:
@@ -259,6 +263,8 @@ def main():
     p.add_argument("--init", help="weights of a network of the same kind to begin with; it may lack blocks and inputs")
     p.add_argument("--fine", action="store_true", help="latents of 100x100x16 instead of 50x50x8 (vae only)")
     p.add_argument("--latent-noise", type=float, default=0.01, help="noise on latents in training, in their spread (vae only)")
+    p.add_argument("--kernels", help="JSON: kernels of the encoder's and the decoder's blocks, level by level, as in VaeConfig (vae only)")
+    p.add_argument("--anchor", help="weights of a VAE near whose latents these stay, so that its DiT needs little training on them (vae only)")
     p.add_argument("--decoder-of", help="weights of a VAE whose decoder alone is trained on: its latents stay (vae only)")
     p.add_argument("--mix", type=float, nargs=3, default=(0.6, 0.25, 0.15), help="shares of complete worlds, labels, drafts (vae only)")
     p.add_argument("--resume", action="store_true")
