@@ -14,15 +14,16 @@ from muon import Muon
 
 
 def pick_device(threads):
-    """(device, autocast dtype or None). bf16 pays on CUDA and on CPUs with AMX; elsewhere it is several times slower."""
+    """(device, autocast dtype or None). bf16 pays on CUDA and on CPUs that multiply it (AMX, AVX512_BF16); elsewhere it is
+    several times slower."""
     torch.set_num_threads(threads)
     # Losses that are nearly nil give denormal gradients, which make a CPU's convolutions ten times slower. Threads
     # inherit this setting, so it comes before the first of them.
     torch.set_flush_denormal(True)
     if torch.cuda.is_available():
         return torch.device("cuda"), torch.bfloat16
-    amx = getattr(torch.cpu, "_is_amx_tile_supported", lambda: False)()
-    return torch.device("cpu"), torch.bfloat16 if amx else None
+    multiplies = any(getattr(torch.cpu, f"_is_{what}_supported", lambda: False)() for what in ("amx_tile", "avx512_bf16"))
+    return torch.device("cpu"), torch.bfloat16 if multiplies else None
 
 
 def optimizers(model, kind, lr, betas, weight_decay):

@@ -103,7 +103,6 @@ impl Pipeline for AnyPipeline {
 pub(super) enum Next {
     New,
     NewFrom(&'static str),
-    FromPrompt(Box<super::prompting::Ask>),
     AskOpen,
     Open(PathBuf),
     Quit,
@@ -115,6 +114,8 @@ pub(super) struct Opening {
     pub what: String,
     /// From a file that is no scene: its occupancy is a draft.
     pub is_import: bool,
+    /// It becomes an undo step of this name, not a document of its own.
+    pub step: Option<&'static str>,
     pub scene: Receiver<anyhow::Result<Scene>>,
 }
 
@@ -532,14 +533,24 @@ impl SceneloomApp {
                 } else {
                     self.toasts.log(format!("Opened {}", scene.name), now_s);
                 }
-                self.document = Document::new(scene);
-                self.versions.clear();
+                let version = match opening.step {
+                    Some(label) => {
+                        self.document.restore(label, &scene);
+                        label
+                    }
+                    None => {
+                        self.document = Document::new(scene);
+                        self.versions.clear();
+                        "As opened"
+                    }
+                };
                 let opened = self.document.settled_scene().clone();
-                self.versions.push("As opened".into(), String::new(), opened);
+                self.versions.push(version.into(), String::new(), opened);
                 self.compare.chosen = None;
                 if let Some(path) = &opening.path {
                     self.settings.remember(path);
                 }
+                // Saving must not replace the file of another scene without asking.
                 self.path = opening.path;
                 self.state.choose(&[], super::tools::Choose::Only);
                 self.state.correcting = false;

@@ -15,6 +15,8 @@ use super::state::{Pane, Tool, VoxelVerb};
 pub enum Command {
     /// Applies edits as one undo step of this name.
     Apply(&'static str, Vec<Edit>),
+    /// Applies what a sentence asked for as one undo step, chooses what came or changed, and shows what became of the weather.
+    ApplyWords(String, Vec<Edit>),
     /// Shows edits on top of the state in which the drag began.
     Preview(Vec<Edit>),
     /// Ends the drag as one undo step.

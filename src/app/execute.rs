@@ -6,6 +6,7 @@ use crossbeam_channel::bounded;
 use egui::Context;
 
 use crate::editor::Edit;
+use crate::editor::document::Label;
 use crate::scene::SceneBox;
 
 use super::application::{Next, Opening, SceneloomApp, one_line};
@@ -24,6 +25,7 @@ impl SceneloomApp {
     pub fn execute(&mut self, command: Command, ctx: &Context) {
         match command {
             Command::Apply(label, edits) => self.apply(label, &edits),
+            Command::ApplyWords(words, edits) => self.apply_words(&words, &edits),
             Command::Preview(edits) => {
                 let edits = self.state.as_meant(edits);
                 if let Err(error) = self.document.preview_all(&edits) {
@@ -35,8 +37,12 @@ impl SceneloomApp {
                 self.note_correction();
             }
             Command::CancelDrag => self.document.cancel_drag(),
-            Command::Undo => drop(self.document.undo()),
-            Command::Redo => drop(self.document.redo()),
+            Command::Undo => {
+                self.document.undo();
+            }
+            Command::Redo => {
+                self.document.redo();
+            }
             Command::JumpTo(index) => drop(self.document.jump_to(index)),
             Command::Tools(command) => self.tool_command(command, ctx),
             Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
@@ -173,7 +179,7 @@ impl SceneloomApp {
             Command::TogglePalette => self.palette.toggle(),
             Command::ToggleSettings => self.state.settings_open = !self.state.settings_open,
             Command::ToggleStart => self.state.start_open = !self.state.start_open,
-            Command::NewFromPrompt(ask) => self.guarded(Next::FromPrompt(ask), ctx),
+            Command::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
             Command::FocusPrompt => {
                 self.dock.open(Pane::Prompt);
                 self.prompt.focus();
@@ -212,7 +218,7 @@ impl SceneloomApp {
         self.toasts.push(Level::Error, text, now_s);
     }
 
-    pub(super) fn apply(&mut self, label: &'static str, edits: &[Edit]) {
+    pub(super) fn apply(&mut self, label: impl Into<Label>, edits: &[Edit]) {
         if let Some(layer) = self.state.locked_layer(edits) {
             return self.fail(format!("Layer {:?} is locked", layer.label()));
         }
@@ -343,22 +349,6 @@ impl SceneloomApp {
                 let make = self.io.2.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());
             }
-            Next::FromPrompt(ask) => {
-                let told = self.prompt.told();
-                let make = move || {
-                    let mut made = super::text::made(ask.lay_out(), ask.seed);
-                    told.tell(&made.laid);
-                    made.scene.name = ask
-                        .description
-                        .summary
-                        .chars()
-                        .take(48)
-                        .collect::<String>()
-                        .into();
-                    Ok(made.scene)
-                };
-                self.load("Scene from words".into(), None, false, ctx, make);
-            }
             Next::NewFrom(name) => {
                 let seed = std::time::SystemTime::now()
                     .duration_since(std::time::UNIX_EPOCH)
@@ -401,6 +391,7 @@ impl SceneloomApp {
                     path,
                     what,
                     is_import,
+                    step: None,
                     scene,
                 })
             }

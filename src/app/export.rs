@@ -1,6 +1,7 @@
 //! Takes a scene to files of other programs: what the command line and the window share.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow, bail};
 use serde_json::json;
@@ -18,7 +19,7 @@ use crate::generation::sensors::learned::{self, Drops};
 use crate::generation::sensors::splat::{self, GaussianCloud, SplatOptions};
 use crate::generation::sensors::{color, lidar};
 use crate::scene::sensor_data::{RENDER_IDS, RenderId};
-use crate::scene::{CameraMaps, Class, LidarSweep, Scene};
+use crate::scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
 use crate::viewport::{ViewCamera, ViewPreset};
 
 /// What can be exported.
@@ -125,6 +126,61 @@ impl Default for ExportOptions {
     }
 }
 
+/// How far an export has come, and whether it is still wanted. Shared between the one who writes and the one who waits.
+#[derive(Debug, Default)]
+pub struct ExportProgress {
+    done: AtomicUsize,
+    of: AtomicUsize,
+    cancelled: AtomicBool,
+}
+
+impl ExportProgress {
+    /// Asks the export to stop; it does before its next picture, and writes nothing.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// True once it was asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Pictures that are ready, of how many; none while there is nothing to count.
+    pub fn pictures(&self) -> Option<(usize, usize)> {
+        let of = self.of.load(Ordering::Relaxed);
+        (of > 0).then(|| (self.done.load(Ordering::Relaxed), of))
+    }
+
+    fn go_on(&self) -> anyhow::Result<()> {
+        match self.is_cancelled() {
+            true => bail!("cancelled; nothing was written"),
+            false => Ok(()),
+        }
+    }
+
+    /// Makes something for each camera of a rig, in their order; asks before each whether to go on.
+    fn each_camera<T>(
+        &self,
+        rig: &SensorRig,
+        mut make: impl FnMut(&SensorRig) -> anyhow::Result<Vec<T>>,
+    ) -> anyhow::Result<Vec<T>> {
+        if rig.cameras.is_empty() {
+            bail!("the rig {:?} has no camera", rig.name);
+        }
+        self.of.store(rig.cameras.len(), Ordering::Relaxed);
+        let mut all = Vec::new();
+        for (done, camera) in rig.cameras.iter().enumerate() {
+            self.done.store(done, Ordering::Relaxed);
+            self.go_on()?;
+            all.extend(make(&SensorRig {
+                cameras: vec![camera.clone()],
+                ..rig.clone()
+            })?);
+        }
+        Ok(all)
+    }
+}
+
 /// A viewpoint by name: `perspective`, `top`, `front`, `side`, `ego`, or a camera of the scene's rig.
 pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
     let of_rig = || {
@@ -148,17 +204,19 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
 }
 
 /// Writes the current frame. `path` is the file, or a folder for the format's usual name; formats that fill a folder
-/// make it. Returns the files and their sizes in bytes. Errors in one line; each file is written whole or not at all.
+/// make it. Returns the files and their sizes in bytes. Errors in one line; each file is written whole or not at all, and
+/// none before all are ready: an export that is cancelled leaves nothing behind.
 pub fn export(
     scene: &Scene,
     format: Format,
     options: &ExportOptions,
     path: &Path,
+    progress: &ExportProgress,
 ) -> anyhow::Result<Vec<(PathBuf, u64)>> {
     let mut out = Files {
         scene,
         path,
-        written: Vec::new(),
+        ready: Vec::new(),
     };
     let frame = scene.frame();
     match format {
@@ -169,97 +227,95 @@ pub fn export(
                     Class::FREE
                 );
             }
-            out.file(format, &occ3d::to_bytes(&frame.occupancy))?;
+            out.file(format, occ3d::to_bytes(&frame.occupancy));
         }
         Format::Boxes => {
             let seen = checking::seen(scene);
             let (lidar, camera) = (seen.lidar_returns.as_ref(), seen.camera_pixels.as_ref());
             let bytes = box_list::to_bytes(&scene.name, frame, lidar, camera).map_err(|e| anyhow!(e))?;
-            out.file(format, &bytes)?;
+            out.file(format, bytes);
         }
         Format::NuscenesLidar => {
             let sweep = sweep(scene, options.lidar)?;
             // The sweep is of the first one, and there is one.
             let pattern = scene.rig.lidars.first().context("the rig has no LiDAR")?;
-            out.file(format, &point_cloud::nuscenes(&sweep, pattern))?;
+            out.file(format, point_cloud::nuscenes(&sweep, pattern));
         }
-        Format::Ply => out.file(format, &point_cloud::ply(&sweep(scene, options.lidar)?))?,
+        Format::Ply => out.file(format, point_cloud::ply(&sweep(scene, options.lidar)?)),
         Format::Semantic => {
-            for m in camera_maps(scene, options)? {
+            for m in camera_maps(scene, options, progress)? {
                 let labels = labels(&m);
                 out.picture(
                     &format!("{}_semantic.png", m.camera),
                     png::indexed(m.width, m.height, &labels, &palette())?,
-                )?;
+                );
             }
             let classes: Vec<_> = (0..=RENDER_IDS as u8)
                 .map(|id| json!({ "index": id, "name": label_name(id), "rgb": palette()[usize::from(id)] }))
                 .collect();
             let text = serde_json::to_string_pretty(&json!({ "classes": classes }))?;
-            out.beside("classes.json", text.as_bytes())?;
+            out.beside("classes.json", text.into_bytes());
         }
         Format::Depth => {
-            for m in camera_maps(scene, options)? {
+            for m in camera_maps(scene, options, progress)? {
                 let mm = color::depth_mm(&m.depth_m);
                 out.picture(
                     &format!("{}_depth_mm.png", m.camera),
                     png::grey16(m.width, m.height, &mm)?,
-                )?;
+                );
             }
         }
         Format::Pictures => {
-            some_camera(scene)?;
-            let images = RayMarched.synthesize(&SynthesisInput {
-                frame,
-                rig: &scene.rig,
-                size: options.camera_size,
-                prompt: &scene.prompt,
-                conditions: Conditions {
-                    seed: scene.seed,
-                    ..Conditions::from_prompt(&scene.prompt)
-                },
-                quality: Quality::Full,
+            let images = progress.each_camera(&scene.rig, |rig| {
+                Ok(RayMarched.synthesize(&SynthesisInput {
+                    frame,
+                    rig,
+                    size: options.camera_size,
+                    prompt: &scene.prompt,
+                    conditions: Conditions {
+                        seed: scene.seed,
+                        ..Conditions::from_prompt(&scene.prompt)
+                    },
+                    quality: Quality::Full,
+                })?)
             })?;
             for image in images {
                 out.picture(
                     &format!("{}.png", image.camera),
                     png::rgba(image.width, image.height, &image.rgba)?,
-                )?;
+                );
             }
         }
         Format::View => {
             let shot = View3d::new()?.shot(scene, &options.shot)?;
             let mut bytes = png::rgba(shot.width, shot.height, &shot.rgba)?;
             tell(scene, &mut bytes);
-            out.file(format, &bytes)?;
+            out.file(format, bytes);
         }
     }
-    Ok(out.written)
+    progress.go_on()?;
+    out.write()
 }
 
 struct Files<'a> {
     scene: &'a Scene,
     path: &'a Path,
-    written: Vec<(PathBuf, u64)>,
+    ready: Vec<(PathBuf, Vec<u8>)>,
 }
 
 impl Files<'_> {
     /// The one file of a format.
-    fn file(&mut self, format: Format, bytes: &[u8]) -> anyhow::Result<()> {
+    fn file(&mut self, format: Format, bytes: Vec<u8>) {
         let is_folder = self.path.is_dir() || self.path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
         let path = match format.file_name().filter(|_| is_folder) {
-            Some(name) => {
-                make_folder(self.path)?;
-                self.path.join(name)
-            }
+            Some(name) => self.path.join(name),
             None => self.path.to_path_buf(),
         };
-        self.write(path, bytes)
+        self.ready.push((path, bytes));
     }
 
     /// One of several in the folder.
-    fn beside(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        make_folder(self.path)?;
+    fn beside(&mut self, name: &str, bytes: Vec<u8>) {
         // Cameras are named by users.
         let tidy: String = name
             .chars()
@@ -271,23 +327,27 @@ impl Files<'_> {
                 }
             })
             .collect();
-        self.write(self.path.join(tidy), bytes)
+        self.ready.push((self.path.join(tidy), bytes));
     }
 
-    fn picture(&mut self, name: &str, mut bytes: Vec<u8>) -> anyhow::Result<()> {
+    fn picture(&mut self, name: &str, mut bytes: Vec<u8>) {
         tell(self.scene, &mut bytes);
-        self.beside(name, &bytes)
+        self.beside(name, bytes);
     }
 
-    fn write(&mut self, path: PathBuf, bytes: &[u8]) -> anyhow::Result<()> {
-        atomic::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
-        self.written.push((path, bytes.len() as u64));
-        Ok(())
+    /// Writes what is ready; makes the folder where it is missing, but no folder above the one that was named.
+    fn write(self) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+        let mut written = Vec::new();
+        for (path, bytes) in self.ready {
+            if path != self.path {
+                std::fs::create_dir_all(self.path)
+                    .with_context(|| format!("create {}", self.path.display()))?;
+            }
+            atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
+            written.push((path, bytes.len() as u64));
+        }
+        Ok(written)
     }
-}
-
-fn make_folder(path: &Path) -> anyhow::Result<()> {
-    std::fs::create_dir_all(path).with_context(|| format!("create {}", path.display()))
 }
 
 /// What a picture shows goes into the picture.
@@ -311,24 +371,26 @@ fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
     }
 }
 
-fn some_camera(scene: &Scene) -> anyhow::Result<()> {
-    match scene.rig.cameras.is_empty() {
-        true => bail!("the rig {:?} has no camera", scene.rig.name),
-        false => Ok(()),
-    }
-}
-
-fn camera_maps(scene: &Scene, options: &ExportOptions) -> anyhow::Result<Vec<CameraMaps>> {
-    some_camera(scene)?;
+fn camera_maps(
+    scene: &Scene,
+    options: &ExportOptions,
+    progress: &ExportProgress,
+) -> anyhow::Result<Vec<CameraMaps>> {
     let [width, height] = options.camera_size;
     let frame = scene.frame();
-    Ok(match options.source {
+    match options.source {
         CameraSource::Splats => {
             let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
-            splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default())
+            let splats = SplatOptions::default();
+            progress.each_camera(&scene.rig, |rig| {
+                Ok(splat::render_rig(&cloud, rig, width, height, &splats))
+            })
         }
-        source => march(scene, source == CameraSource::Shapes).render_rig(&scene.rig, width, height),
-    })
+        source => {
+            let world = march(scene, source == CameraSource::Shapes);
+            progress.each_camera(&scene.rig, |rig| Ok(world.render_rig(rig, width, height)))
+        }
+    }
 }
 
 /// Label of the class "others", which shares render id 0 with nothing at all.

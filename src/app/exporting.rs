@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use super::application::{SceneloomApp, one_line};
-use super::export::{ExportOptions, Format, export};
+use super::export::{ExportOptions, ExportProgress, Format, export};
 use super::panels::export::{ExportInput, ExportPanel, export_window};
 use super::panels::toasts::Level;
 use crate::editor::checks::{Severity, waive};
@@ -18,7 +18,13 @@ type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 pub struct Exporting {
     /// What the dialog shows; `None` while it is closed.
     pub panel: Option<ExportPanel>,
-    running: Option<(Format, Receiver<Written>)>,
+    running: Option<Running>,
+}
+
+struct Running {
+    format: Format,
+    progress: Arc<ExportProgress>,
+    written: Receiver<Written>,
 }
 
 impl SceneloomApp {
@@ -37,7 +43,7 @@ impl SceneloomApp {
         };
         let findings = self.checking.findings();
         let input = ExportInput {
-            busy: self.exporting.running.is_some(),
+            busy: self.exporting.running.as_ref().map(|r| &*r.progress),
             errors: findings.map_or(0, |f| {
                 let open = waive::open(self.document.settled_scene().frame(), f);
                 open.filter(|f| f.severity == Severity::Error).count()
@@ -56,13 +62,21 @@ impl SceneloomApp {
     fn start_export(&mut self, format: Format, options: ExportOptions, path: PathBuf, ctx: &egui::Context) {
         let (send, written) = bounded(1);
         let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
+        let progress = Arc::<ExportProgress>::default();
+        let told = progress.clone();
         let thread = std::thread::Builder::new().name("export".into()).spawn(move || {
             // Nobody listens if the window has closed.
-            let _ = send.send(export(&scene, format, &options, &path));
+            let _ = send.send(export(&scene, format, &options, &path, &told));
             wake.request_repaint();
         });
         match thread {
-            Ok(_) => self.exporting.running = Some((format, written)),
+            Ok(_) => {
+                self.exporting.running = Some(Running {
+                    format,
+                    progress,
+                    written,
+                });
+            }
             Err(error) => {
                 let now_s = self.now_s();
                 self.toasts
@@ -73,15 +87,16 @@ impl SceneloomApp {
 
     /// Tells how an export ended.
     pub(super) fn update_export(&mut self) {
-        let Some((format, written)) = &self.exporting.running else {
+        let Some(running) = &self.exporting.running else {
             return;
         };
-        let answer = match written.try_recv() {
+        let answer = match running.written.try_recv() {
             Err(TryRecvError::Empty) => return,
             Ok(answer) => answer,
             Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("writing it ended unexpectedly")),
         };
-        let (name, now_s) = (format.name(), self.now_s());
+        let (name, now_s) = (running.format.name(), self.now_s());
+        let cancelled = running.progress.is_cancelled();
         self.exporting.running = None;
         match answer {
             Ok(files) => {
@@ -94,6 +109,10 @@ impl SceneloomApp {
                     n => format!("{n} files, {first} and others"),
                 };
                 let text = format!("Exported {name}: {what} ({:.1} MB)", bytes as f64 / 1e6);
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(_) if cancelled => {
+                let text = "Export cancelled; nothing was written".to_owned();
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(error) => {

@@ -4,6 +4,7 @@ pub mod actions;
 pub mod application;
 mod bev_image;
 pub mod bookmarks;
+mod by_words;
 pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;

@@ -19,10 +19,13 @@ pub struct Document {
 
 #[derive(Debug)]
 struct Step {
-    label: &'static str, // of the edit that led here
+    label: Label, // of the edit that led here
     scene: Arc<Scene>,
     bytes: usize, // beside the step before; 0 for the first
 }
+
+/// What an undo step is called.
+pub type Label = std::borrow::Cow<'static, str>;
 
 /// A result came too late: the document shows another state by now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -41,7 +44,7 @@ impl Document {
     pub fn new(scene: Scene) -> Self {
         let saved = scene.rev;
         let first = Step {
-            label: "Open",
+            label: "Open".into(),
             scene: Arc::new(scene),
             bytes: 0,
         };
@@ -66,15 +69,15 @@ impl Document {
 
     /// Applies one edit as one undo step. A drag in progress is cancelled first. An edit that
     /// changes nothing makes no step. On error nothing has changed.
-    pub fn apply(&mut self, label: &'static str, edit: &Edit) -> Result<(), EditError> {
+    pub fn apply(&mut self, label: impl Into<Label>, edit: &Edit) -> Result<(), EditError> {
         self.apply_all(label, std::slice::from_ref(edit))
     }
 
     /// Applies several edits as one undo step: all of them, or on error none.
-    pub fn apply_all(&mut self, label: &'static str, edits: &[Edit]) -> Result<(), EditError> {
+    pub fn apply_all(&mut self, label: impl Into<Label>, edits: &[Edit]) -> Result<(), EditError> {
         let next = self.edited(edits)?;
         self.drag = None;
-        self.push(label, next);
+        self.push(label.into(), next);
         Ok(())
     }
 
@@ -97,9 +100,9 @@ impl Document {
     }
 
     /// Makes the last preview one undo step. Without a drag, or without a change, nothing happens.
-    pub fn commit_drag(&mut self, label: &'static str) {
+    pub fn commit_drag(&mut self, label: impl Into<Label>) {
         if let Some(dragged) = self.drag.take() {
-            self.push(label, Arc::unwrap_or_clone(dragged));
+            self.push(label.into(), Arc::unwrap_or_clone(dragged));
         }
     }
 
@@ -109,22 +112,22 @@ impl Document {
     }
 
     /// One step back; the label of what was undone. During a drag only the drag is cancelled (`None`).
-    pub fn undo(&mut self) -> Option<&'static str> {
+    pub fn undo(&mut self) -> Option<&str> {
         if self.drag.take().is_some() || self.at == 0 {
             return None;
         }
         self.at -= 1;
-        Some(self.steps[self.at + 1].label)
+        Some(&self.steps[self.at + 1].label)
     }
 
     /// One step forward again; the label of what was redone. During a drag only the drag is
     /// cancelled (`None`).
-    pub fn redo(&mut self) -> Option<&'static str> {
+    pub fn redo(&mut self) -> Option<&str> {
         if self.drag.take().is_some() || self.at + 1 == self.steps.len() {
             return None;
         }
         self.at += 1;
-        Some(self.steps[self.at].label)
+        Some(&self.steps[self.at].label)
     }
 
     /// True if [`Self::undo`] has a step to go back.
@@ -138,18 +141,18 @@ impl Document {
     }
 
     /// Label of the step that [`Self::undo`] would take back.
-    pub fn undo_label(&self) -> Option<&'static str> {
-        self.can_undo().then(|| self.steps[self.at].label)
+    pub fn undo_label(&self) -> Option<&str> {
+        self.can_undo().then(|| &*self.steps[self.at].label)
     }
 
     /// Label of the step that [`Self::redo`] would bring back.
-    pub fn redo_label(&self) -> Option<&'static str> {
-        self.can_redo().then(|| self.steps[self.at + 1].label)
+    pub fn redo_label(&self) -> Option<&str> {
+        self.can_redo().then(|| &*self.steps[self.at + 1].label)
     }
 
     /// Labels of all states kept, oldest first; the first is the oldest state itself.
-    pub fn history(&self) -> impl ExactSizeIterator<Item = &'static str> + '_ {
-        self.steps.iter().map(|s| s.label)
+    pub fn history(&self) -> impl ExactSizeIterator<Item = &str> + '_ {
+        self.steps.iter().map(|s| &*s.label)
     }
 
     /// Memory that the history takes beside its oldest state: what each step does not share with the one before.
@@ -219,7 +222,7 @@ impl Document {
     /// The same as an undo step of its own: for what the user asked to be drawn anew.
     pub fn adopt_as_step(
         &mut self,
-        label: &'static str,
+        label: impl Into<Label>,
         rev: SceneRev,
         occupancy: VoxelGrid,
     ) -> Result<SceneRev, Stale> {
@@ -228,14 +231,14 @@ impl Document {
         }
         let mut scene = Scene::clone(self.settled_scene());
         edit::adopt(scene.frame_mut(), occupancy);
-        self.push(label, scene);
+        self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }
 
     /// Shows a state that was kept elsewhere (a version), as an undo step; nothing if it is the one shown.
-    pub fn restore(&mut self, label: &'static str, scene: &Scene) {
+    pub fn restore(&mut self, label: impl Into<Label>, scene: &Scene) {
         self.drag = None;
-        self.push(label, scene.clone());
+        self.push(label.into(), scene.clone());
     }
 
     /// Shows another frame of the clip; not an undo step. False if there is none. Cancels a drag.
@@ -265,7 +268,7 @@ impl Document {
         Ok(scene)
     }
 
-    fn push(&mut self, label: &'static str, scene: Scene) {
+    fn push(&mut self, label: Label, scene: Scene) {
         if scene.rev == self.settled_scene().rev {
             return;
         }

@@ -245,8 +245,8 @@ impl Bench {
         }
     }
 
-    pub fn history(&mut self) -> Vec<&'static str> {
-        self.app().document.history().collect()
+    pub fn history(&mut self) -> Vec<String> {
+        self.app().document.history().map(str::to_owned).collect()
     }
 
     pub fn off(&mut self) {

@@ -80,7 +80,10 @@ fn findings_lead_to_their_place_and_are_fixed() {
     assert_eq!(bench.app().state.selected, Some(BoxId(7)));
     bench.click("Drop to the ground: car 7 hovers 1.2 m above the ground");
     assert!((bench.frame().boxes[&BoxId(7)].center_m.z - 0.85).abs() < 1e-9);
-    assert_eq!(bench.history().last(), Some(&"Drop to the ground"));
+    assert_eq!(
+        bench.history().last().map(String::as_str),
+        Some("Drop to the ground")
+    );
     // Several things at once, one step to undo.
     let floats = sceneloom::editor::Edit::PaintVoxels {
         cells: vec![[30, 30, 9], [90, 30, 9]],
@@ -92,5 +95,8 @@ fn findings_lead_to_their_place_and_are_fixed() {
     bench.click("Fix all (2)");
     assert_eq!(bench.frame().occupancy.get(30, 30, 9), Class::Free.id());
     assert_eq!(bench.frame().occupancy.get(90, 30, 9), Class::Free.id());
-    assert_eq!(bench.history().last(), Some(&"Fix all findings"));
+    assert_eq!(
+        bench.history().last().map(String::as_str),
+        Some("Fix all findings")
+    );
 }

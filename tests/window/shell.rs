@@ -49,7 +49,7 @@ fn workspaces_and_panes_are_arranged() {
     let grown = after.size_m.x - before.size_m.x;
     assert!((grown - 0.5).abs() < 0.12, "grew by {grown}");
     assert!((after.center_m.x - before.center_m.x - grown / 2.0).abs() < 1e-9);
-    assert_eq!(bench.history().last(), Some(&"Resize box"));
+    assert_eq!(bench.history().last().map(String::as_str), Some("Resize box"));
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn versions_are_compared_and_gone_back_to() {
     }
     bench.key(Modifiers::CTRL, Key::OpenBracket);
     assert!(bench.frame().occupancy == opened);
-    assert_eq!(bench.history().last(), Some(&"Go to version"));
+    assert_eq!(bench.history().last().map(String::as_str), Some("Go to version"));
     bench.key(Modifiers::CTRL, Key::CloseBracket);
     assert!(bench.frame().occupancy == generated);
     bench.key(Modifiers::CTRL, Key::Z);

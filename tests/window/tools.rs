@@ -35,7 +35,7 @@ impl Bench {
         };
         let ctx = self.harness.ctx.clone();
         let edits = (0..3).map(add).collect();
-        self.app().execute(Command::Apply("Add cars", edits), &ctx);
+        self.app().execute(Command::Apply("Add cars".into(), edits), &ctx);
         self.off();
         self.steps(2);
     }
@@ -206,7 +206,7 @@ fn keys_steer_a_drag() {
     bench.drag(&way, Modifiers::NONE);
     let b = bench.car(8);
     assert!((b.size_m.x - 9.2).abs() < 0.3 && b.size_m.y == 1.95, "{b:?}");
-    assert_eq!(bench.history().last(), Some(&"Resize box"));
+    assert_eq!(bench.history().last().map(String::as_str), Some("Resize box"));
 }
 
 #[test]

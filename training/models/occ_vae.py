@@ -128,12 +128,15 @@ class OccVae(nn.Module):
         x = self.encoder[0](x)
         for down, level in zip(self.down, self.encoder[1:]):
             x = level(down(fold(x)))
-        mean, logvar = self.encoder_head(self.encoder_norm(x)).float().chunk(2, 1)
+        with torch.autocast(x.device.type, enabled=False):  # bf16 would round off what latents are to carry
+            mean, logvar = self.encoder_head(self.encoder_norm(x.float())).chunk(2, 1)
         return mean, logvar.clamp(-30.0, 20.0)
 
     def features(self, latent):
         """Latent [B,C,x,y], not normalised -> voxel features [B,f x,f y,16,8]."""
-        x = self.decoder[0](self.decoder_stem(latent.contiguous(memory_format=torch.channels_last)))
+        with torch.autocast(latent.device.type, enabled=False):
+            x = self.decoder_stem(latent.contiguous(memory_format=torch.channels_last))
+        x = self.decoder[0](x)
         for up, level in zip(self.up, self.decoder[1:]):
             x = level(unfold(up(x)))
         x = self.decoder_head(self.decoder_norm(x)).permute(0, 2, 3, 1)
@@ -141,7 +144,8 @@ class OccVae(nn.Module):
 
     def logits(self, features):
         """Voxel features [..., 8] -> class logits [..., 18]: a dot product with the class table."""
-        return features.float() @ self.class_table.t() + self.class_bias
+        with torch.autocast(features.device.type, enabled=False):
+            return features.float() @ self.class_table.t() + self.class_bias
 
     def encode(self, labels):
         """u8 [B,200,200,16] -> normalised mean latent [B,50,50,8]."""

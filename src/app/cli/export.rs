@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
-use crate::app::export::{ExportOptions, Format, export, view_camera};
+use crate::app::export::{ExportOptions, ExportProgress, Format, export, view_camera};
 use crate::app::open;
 use crate::app::picture::ShotOptions;
 use crate::app::state::{CameraSource, LidarModel};
@@ -98,7 +98,13 @@ impl Export {
         let start = Instant::now();
         let mut files = Vec::new();
         for format in formats {
-            files.extend(export(&scene, format, &options, &path)?);
+            files.extend(export(
+                &scene,
+                format,
+                &options,
+                &path,
+                &ExportProgress::default(),
+            )?);
         }
         let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
         let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();

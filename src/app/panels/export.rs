@@ -4,14 +4,14 @@ use std::path::Path;
 
 use egui::{DragValue, Ui};
 
-use crate::app::export::{ExportOptions, Format};
+use crate::app::export::{ExportOptions, ExportProgress, Format};
 use crate::app::state::{CameraSource, LidarModel};
 use crate::app::theme;
 
 /// What the dialog shows of the application.
-pub struct ExportInput {
-    /// An export is under way.
-    pub busy: bool,
+pub struct ExportInput<'a> {
+    /// The export that is under way.
+    pub busy: Option<&'a ExportProgress>,
     /// Findings of severity error.
     pub errors: usize,
 }
@@ -61,7 +61,7 @@ impl ExportPanel {
 /// Draws the dialog; the format once the user wants it written.
 pub fn export_window(
     ui: &Ui,
-    input: &ExportInput,
+    input: &ExportInput<'_>,
     panel: &mut ExportPanel,
     open: &mut bool,
 ) -> Option<Format> {
@@ -101,18 +101,46 @@ pub fn export_window(
             }
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let enabled = !input.busy && !panel.path.trim().is_empty();
+                let enabled = input.busy.is_none() && !panel.path.trim().is_empty();
                 let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     wanted = Some(panel.format);
                 }
-                if input.busy {
-                    ui.spinner();
-                    ui.weak("Exporting…");
+                if let Some(progress) = input.busy {
+                    busy(ui, progress);
                 }
             });
         });
     wanted
+}
+
+/// How far the export is, and the button that ends it.
+fn busy(ui: &mut Ui, progress: &ExportProgress) {
+    let stop = !progress.is_cancelled();
+    if ui
+        .add_enabled(stop, egui::Button::new("Cancel export"))
+        .on_hover_text("Stops before the next picture; nothing is written")
+        .clicked()
+    {
+        progress.cancel();
+    }
+    match (stop, progress.pictures()) {
+        (true, Some((done, of))) => {
+            let bar = egui::ProgressBar::new(done as f32 / of as f32).desired_width(150.0);
+            ui.add(bar.text(format!("Picture {} of {of}", done + 1)))
+                .accessible_name("Export progress");
+            // Nobody else wakes the window while a picture is made.
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_millis(250));
+        }
+        (true, None) => {
+            ui.spinner();
+            ui.weak("Exporting…");
+        }
+        (false, _) => {
+            ui.weak("Stopping…");
+        }
+    }
 }
 
 fn formats(ui: &mut Ui, panel: &mut ExportPanel) {

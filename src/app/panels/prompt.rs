@@ -1,8 +1,12 @@
 //! The prompt: words that become a scene or change the one at hand, each phrase as a chip that says what it became.
 
 use egui::accesskit::Role;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Key, Modifiers, Ui, WidgetInfo, vec2};
 
+use super::completion::Completion;
+use super::phrases;
 use super::prompt_plan::{Plan, Told};
 use crate::app::command::Command;
 use crate::app::icons::section;
@@ -34,7 +38,12 @@ pub struct PromptPane {
     questions: Vec<Question>,
     notes: Vec<String>,
     wants_focus: bool,
+    offered: Option<Completion>,
     plan: Plan,
+}
+
+fn field_id() -> egui::Id {
+    egui::Id::unique("prompt field")
 }
 
 impl PromptPane {
@@ -57,7 +66,6 @@ impl PromptPane {
                 self.field(ui, scene, commands);
                 self.chips(ui, scene, commands);
                 self.answers(ui, scene, commands);
-                self.completions(ui);
                 self.beyond_words(ui, scene, commands);
                 if self.prompt.is_empty() {
                     self.recent(ui);
@@ -67,12 +75,26 @@ impl PromptPane {
     }
 
     fn field(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let has_focus = ui.memory(|m| m.has_focus(field_id()));
+        if let (true, Some(first)) = (has_focus, self.offered.as_ref().map(|o| o.ends[0]))
+            && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab))
+        {
+            self.complete(ui.ctx(), first);
+        }
         let field = egui::TextEdit::multiline(&mut self.prompt)
+            .id(field_id())
+            .lock_focus(self.offered.is_some())
             .hint_text("Describe a scene, or say what should change in this one")
             .desired_rows(2)
             .desired_width(f32::INFINITY)
             .return_key(None);
-        let field = ui.add(field);
+        let output = field.show(ui);
+        let field = output.response.response;
+        // A click on what is offered takes the focus first.
+        if field.has_focus() {
+            let caret = output.cursor_range.map(|range| range.primary.index);
+            self.offered = caret.and_then(|caret| Completion::at(&self.prompt, caret.0));
+        }
         field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Prompt"));
         if std::mem::take(&mut self.wants_focus) {
             field.request_focus();
@@ -99,6 +121,7 @@ impl PromptPane {
                 )
             });
         }
+        self.completions(ui);
         ui.horizontal(|ui| {
             let some = !self.prompt.trim().is_empty();
             let button = egui::Button::new("Change this scene").fill(theme::accent_fill());
@@ -128,6 +151,7 @@ impl PromptPane {
         if change || make {
             // What comes next is worked on with the keys of the tools.
             field.surrender_focus();
+            self.offered = None;
         }
         if change {
             self.change(scene, commands);
@@ -171,32 +195,42 @@ impl PromptPane {
         }
     }
 
-    /// Ends of the word that is being typed.
+    /// Offers ends of the word at the caret; Tab takes the first.
     fn completions(&mut self, ui: &mut Ui) {
-        let Some(begun) = self.prompt.rsplit(' ').next().filter(|w| w.chars().count() > 2) else {
-            return;
-        };
-        let begun = begun.to_lowercase();
-        let mut found = completions(&begun);
-        found.truncate(4);
-        if found.is_empty() {
-            return;
-        }
+        let Some(offered) = &self.offered else { return };
+        let mut taken = None;
         ui.horizontal_wrapped(|ui| {
-            for word in found {
-                let text = egui::RichText::new(&word).small().color(theme::text_weak());
+            for (i, end) in offered.ends.iter().enumerate() {
+                let color = if i == 0 { theme::text() } else { theme::text_weak() };
+                let shown = if i == 0 {
+                    format!("{end}  Tab")
+                } else {
+                    (*end).to_owned()
+                };
+                let text = egui::RichText::new(shown).small().color(color);
                 let button = ui.add(egui::Button::new(text).fill(theme::field()));
-                let label = format!("Complete with {word}");
+                let label = format!("Complete with {end}");
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
                 if button.clicked() {
-                    let keep = self.prompt.len() - self.prompt.rsplit(' ').next().map_or(0, str::len);
-                    self.prompt.truncate(keep);
-                    self.prompt.push_str(&word);
-                    self.prompt.push(' ');
-                    self.wants_focus = true;
+                    taken = Some(*end);
                 }
             }
         });
+        if let Some(end) = taken {
+            self.complete(ui.ctx(), end);
+            self.wants_focus = true;
+        }
+    }
+
+    fn complete(&mut self, ctx: &egui::Context, end: &str) {
+        let Some(offered) = self.offered.take() else {
+            return;
+        };
+        let caret = offered.take(&mut self.prompt, end);
+        let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
+        let at = CCursor::new(egui::text::CharIndex(caret));
+        state.cursor.set_char_range(Some(CCursorRange::one(at)));
+        state.store(ctx, field_id());
     }
 
     fn recent(&mut self, ui: &mut Ui) {
@@ -232,7 +266,7 @@ impl PromptPane {
             self.notes.push("The words name no change of this scene.".into());
         }
         if !edits.is_empty() && self.questions.is_empty() {
-            commands.push(Command::Apply("Edit by text", edits));
+            commands.push(Command::ApplyWords(self.prompt.clone(), edits));
         }
     }
 
@@ -268,9 +302,9 @@ impl PromptPane {
         let Some((_, Ok(reading))) = &self.read else {
             return;
         };
-        let (mut gone, mut other) = (None, None);
+        let (mut gone, mut other, mut number) = (None, None, None);
         let read = &reading.description;
-        self.plan.description(&self.prompt, read);
+        self.plan.follow(&self.prompt);
         let plan = &mut self.plan;
         ui.add_space(4.0);
         ui.horizontal_wrapped(|ui| {
@@ -278,7 +312,11 @@ impl PromptPane {
             for phrase in &reading.phrases {
                 super::chip::make_room(ui, &phrase.text);
                 match phrase.became {
-                    Became::Object(i) => plan.object_menu(ui, i, &phrase.text, scene, read, commands),
+                    Became::Object(i) => {
+                        if let Some(n) = plan.object_menu(ui, i, &phrase.text, scene, read, commands) {
+                            number = phrases::with_number(&self.prompt, phrase, &read.foreground[i].noun, n);
+                        }
+                    }
                     Became::Time => {
                         style_menu(ui, phrase, TimeOfDay::ALL.iter().map(|t| t.name()), &mut other)
                     }
@@ -298,11 +336,14 @@ impl PromptPane {
         for note in &reading.notes {
             ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
         }
+        if let Some(prompt) = number {
+            self.prompt = prompt;
+        }
         if let Some((phrase, word)) = other {
             self.prompt = self.prompt.replacen(&phrase.text, word, 1);
         }
         if let Some(phrase) = gone {
-            self.prompt = without(&self.prompt, &phrase);
+            self.prompt = phrases::without(&self.prompt, &phrase);
         }
     }
 
@@ -369,17 +410,6 @@ fn style_menu(
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
 }
 
-/// Words of the lexicon's plain kinds that begin so.
-fn completions(begun: &str) -> Vec<String> {
-    const WORDS: &str = "ahead|approaching|barriers|behind me|bicycle|blocking my lane|bus|buses|busy|cars|clear|cones|        construction vehicle|crossing the road|crossroads|cyclist|dawn|delivery van|dusk|excavator|facing me|foggy|following me|        heavy rain|highway|in front of me|in my lane|in the oncoming lane|intersection|motorcycle|moving|nearest|next to|night|        oncoming|on the left|on the right|on the sidewalk|parked|parked cars|parking lot|pedestrians|people|rain|remove|replace|        residential street|roadworks|roundabout|snow|straight road|suburban street|taxi|t-junction|traffic cones|trailer|truck|        turn|vans|waiting at the crossing|without";
-    WORDS
-        .split('|')
-        .map(str::trim)
-        .filter(|w| w.starts_with(begun) && *w != begun)
-        .map(str::to_owned)
-        .collect()
-}
-
 fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
     let has_menu = matches!(phrase.became, Became::Object(_) | Became::Time | Became::Weather);
     let response = match has_menu {
@@ -401,52 +431,5 @@ fn unread(part: &Unread) -> String {
     match &part.why {
         Some(why) => format!("Not understood: “{}” ({why})", part.text),
         None => format!("Not understood: “{}”", part.text),
-    }
-}
-
-/// The prompt without a phrase, and without the comma that stood beside it.
-fn without(prompt: &str, phrase: &Phrase) -> String {
-    let Some(at) = prompt.find(&phrase.text) else {
-        return prompt.to_owned();
-    };
-    let (before, after) = (&prompt[..at], &prompt[at + phrase.text.len()..]);
-    let (before, after) = (before.trim_end(), after.trim_start());
-    let after = if before.is_empty() || before.ends_with(',') {
-        after.trim_start_matches(',').trim_start()
-    } else {
-        after
-    };
-    let joint = if before.is_empty() || after.is_empty() || after.starts_with(',') {
-        ""
-    } else {
-        " "
-    };
-    format!("{before}{joint}{after}").trim_end_matches(',').to_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_phrase_leaves_with_its_comma() {
-        let prompt = "two cars, at night, in the rain";
-        let reading = text::read(prompt).expect("a scene");
-        for (take, left) in [
-            ("night", "two cars, in the rain"),
-            ("rain", "two cars, at night"),
-            ("two cars", "at night, in the rain"),
-        ] {
-            let phrase = reading
-                .phrases
-                .iter()
-                .find(|p| p.text.contains(take))
-                .expect(take);
-            let rest = without(prompt, phrase);
-            let reading = text::read(&rest).expect("still a scene");
-            assert!(!reading.phrases.iter().any(|p| p.text.contains(take)), "{rest}");
-            let same = text::read(left).expect("a scene").description;
-            assert_eq!(reading.description, same, "{rest} for {left}");
-        }
     }
 }

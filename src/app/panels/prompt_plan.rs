@@ -8,15 +8,15 @@ use std::sync::{Arc, Mutex};
 use egui::accesskit::Role;
 use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use super::prompt_graph;
 use crate::app::command::Command;
-use crate::app::icons::section;
 use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
 use crate::app::theme;
 use crate::editor::Edit;
-use crate::generation::text::description::{Count, Description};
+use crate::generation::text::description::Description;
 use crate::generation::text::to_graph::{Graphed, to_graph};
-use crate::scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
-use crate::scene::{BoxId, Class, PolylineKind, Scene, SceneBox};
+
+use crate::scene::{BoxId, PolylineKind, Scene, SceneBox};
 
 /// Variants that are shown side by side.
 const VARIANTS: u64 = 4;
@@ -90,10 +90,9 @@ pub struct Plan {
     memory: bool,
     stays: Stays,
     prompt: String,
-    description: Option<Description>, // changed by hand
-    graphed: Option<Graphed>,         // edited by hand
-    locked: BTreeSet<usize>,          // objects of the description
-    made: Option<(String, u64)>,      // the words and the seed that the open scene was made of
+    graphed: Option<Graphed>,    // edited by hand
+    locked: BTreeSet<usize>,     // objects of the description
+    made: Option<(String, u64)>, // the words and the seed that the open scene was made of
     rolls: u64,
     variants: Option<Variants>,
     told: Told,
@@ -105,16 +104,14 @@ impl Plan {
         self.told.clone()
     }
 
-    /// The description, as changed by hand for these words.
-    pub fn description(&mut self, prompt: &str, read: &Description) -> Description {
+    /// Forgets what was meant for other words.
+    pub fn follow(&mut self, prompt: &str) {
         if self.prompt != prompt {
             self.prompt = prompt.to_string();
-            self.description = None;
             self.graphed = None;
             self.locked.clear();
             self.variants = None;
         }
-        self.description.clone().unwrap_or_else(|| read.clone())
     }
 
     fn how(&self, scene: &Scene) -> How {
@@ -133,7 +130,8 @@ impl Plan {
 
     /// What to make of these words. Locked objects keep their places and the road where the open scene was made of them.
     pub fn ask(&mut self, prompt: &str, read: &Description, seed: u64, scene: &Scene) -> Ask {
-        let description = self.description(prompt, read);
+        self.follow(prompt);
+        let description = read.clone();
         let mut how = self.how(scene);
         if let Some((of, made_seed)) = &self.made
             && *of == prompt
@@ -198,7 +196,8 @@ impl Plan {
         });
     }
 
-    /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene.
+    /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene. The number that
+    /// was wanted instead.
     pub fn object_menu(
         &mut self,
         ui: &mut Ui,
@@ -207,18 +206,12 @@ impl Plan {
         scene: &Scene,
         read: &Description,
         commands: &mut Vec<Command>,
-    ) {
+    ) -> Option<u32> {
         let prompt = self.prompt.clone();
-        let mut description = self.description(&prompt, read);
-        let Some(count) = description.foreground.get(index).map(|o| o.count.n) else {
-            return;
-        };
+        let count = read.foreground.get(index)?.count.n;
+        let mut wanted = None;
         let locked = self.locked.contains(&index);
-        let changed = read.foreground.get(index).is_some_and(|o| o.count.n != count);
         let mut shown = text.to_string();
-        if changed {
-            shown = format!("{shown}: {count}");
-        }
         if locked {
             shown = format!("{shown} (locked)");
         }
@@ -230,11 +223,7 @@ impl Plan {
                 let drag = ui.add(egui::DragValue::new(&mut n).range(0..=60));
                 drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, format!("Number of {text}")));
                 if n != count {
-                    description.foreground[index].count = Count::exactly(n);
-                    description.summarise();
-                    self.description = Some(description.clone());
-                    self.graphed = None;
-                    self.variants = None;
+                    wanted = Some(n);
                 }
             });
             let mut lock = locked;
@@ -267,12 +256,14 @@ impl Plan {
         });
         let label = format!("Change {text}");
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+        wanted
     }
 
     /// Other places for some objects of the open scene, as one undo step.
     fn roll(&mut self, objects: &[usize], scene: &Scene, read: &Description) -> Option<Command> {
         let (prompt, made_seed) = self.made.clone()?;
-        let description = self.description(&prompt, read);
+        self.follow(&prompt);
+        let description = read.clone();
         let graphed = self
             .graphed
             .clone()
@@ -439,9 +430,9 @@ impl Plan {
                     .clone()
                     .unwrap_or_else(|| to_graph(description, seed));
                 let mut graphed = before.clone();
-                picture(ui, &graphed.graph);
-                let rolled = nodes(ui, &mut graphed, self.made.is_some());
-                edges(ui, &mut graphed.graph);
+                prompt_graph::picture(ui, &graphed.graph);
+                let rolled = prompt_graph::nodes(ui, &mut graphed, self.made.is_some());
+                prompt_graph::edges(ui, &mut graphed.graph);
                 if graphed != before {
                     self.graphed = Some(graphed.clone());
                     self.variants = None;
@@ -470,200 +461,6 @@ impl Plan {
             });
         place
     }
-}
-
-fn name_of(graph: &SceneGraph, id: u32) -> String {
-    match graph.node(id).map(|n| &n.kind) {
-        Some(NodeKind::Ego) => "ego".into(),
-        Some(NodeKind::Object(o)) => format!("{} {id}", o.class.label()),
-        Some(NodeKind::Lane { role, .. }) => role_name(*role),
-        Some(NodeKind::Crossing { .. }) => "crossing".into(),
-        Some(NodeKind::Junction) => "junction".into(),
-        None => "nothing".into(),
-    }
-}
-
-fn role_name(role: LaneRole) -> String {
-    let word = format!("{role:?}");
-    let mut out = String::new();
-    for c in word.chars() {
-        if c.is_uppercase() && !out.is_empty() {
-            out.push(' ');
-        }
-        out.extend(c.to_lowercase());
-    }
-    match role {
-        LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming => format!("{out} lane"),
-        _ => out,
-    }
-}
-
-fn relation_name(r: RelationKind) -> String {
-    r.name().replace('_', " ")
-}
-
-/// Nodes on a ring, relations between them.
-fn picture(ui: &mut Ui, graph: &SceneGraph) {
-    let width = ui.available_width().clamp(120.0, 420.0);
-    let (rect, response) = ui.allocate_exact_size(vec2(width, 150.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Scene graph"));
-    ui.painter().rect_filled(rect, theme::RADIUS, theme::well());
-    let n = graph.nodes.len().max(1);
-    let at = |k: usize| -> Pos2 {
-        if k == 0 {
-            return rect.center();
-        }
-        let turn = (k as f32) / ((n - 1).max(1) as f32) * std::f32::consts::TAU;
-        rect.center() + vec2(turn.cos() * rect.width() * 0.4, turn.sin() * rect.height() * 0.38)
-    };
-    let place = |id: u32| graph.nodes.iter().position(|n| n.id == id).map(at);
-    for e in &graph.edges {
-        if let (Some(a), Some(b)) = (place(e.from), place(e.to)) {
-            ui.painter()
-                .line_segment([a, b], Stroke::new(1.0, theme::text_weak()));
-            if graph.edges.len() < 9 {
-                ui.painter().text(
-                    a + (b - a) * 0.5,
-                    egui::Align2::CENTER_CENTER,
-                    relation_name(e.relation),
-                    egui::FontId::proportional(9.5),
-                    theme::text(),
-                );
-            }
-        }
-    }
-    for (k, node) in graph.nodes.iter().enumerate() {
-        let color = match &node.kind {
-            NodeKind::Ego => theme::accent(),
-            NodeKind::Object(o) => theme::class_color(o.class),
-            _ => theme::text_weak(),
-        };
-        ui.painter().circle_filled(at(k), 5.0, color);
-        if n < 24 {
-            ui.painter().text(
-                at(k) + vec2(0.0, 7.0),
-                egui::Align2::CENTER_TOP,
-                name_of(graph, node.id),
-                egui::FontId::proportional(9.5),
-                theme::text(),
-            );
-        }
-    }
-}
-
-/// Objects with their class; which of them is to be placed anew.
-fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
-    let mut rolled = None;
-    let mut gone = None;
-    section(ui, "Objects");
-    let ids: Vec<u32> = graphed.graph.objects().map(|o| o.0).take(60).collect();
-    for id in ids {
-        ui.horizontal(|ui| {
-            let Some(node) = graphed.graph.nodes.iter_mut().find(|n| n.id == id) else {
-                return;
-            };
-            if let NodeKind::Object(o) = &mut node.kind {
-                let combo = egui::ComboBox::from_id_salt(("class of node", id))
-                    .selected_text(format!("{} {id}", o.class.label()))
-                    .show_ui(ui, |ui| {
-                        for class in Class::OBJECTS {
-                            ui.selectable_value(&mut o.class, class, class.label());
-                        }
-                    });
-                combo
-                    .response
-                    .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Class of node {id}")));
-            }
-            let again = ui.add_enabled(made, egui::Button::new("Re-roll").small());
-            again.widget_info(|| WidgetInfo::labeled(Role::Button, made, format!("Re-roll node {id}")));
-            if again.clicked() {
-                rolled = Some(id);
-            }
-            let out = ui.add(egui::Button::new("×").small());
-            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out node {id}")));
-            if out.clicked() {
-                gone = Some(id);
-            }
-        });
-    }
-    if let Some(id) = gone {
-        graphed.graph.nodes.retain(|n| n.id != id);
-        graphed
-            .graph
-            .edges
-            .retain(|e| e.from != id && e.to != id && e.and != Some(id));
-        graphed
-            .nodes
-            .iter_mut()
-            .for_each(|list| list.retain(|n| *n != id));
-    }
-    if ui.button("Add object").clicked() {
-        let node = crate::generation::text::edit::node_of(Class::Car);
-        graphed.graph.add(node);
-    }
-    rolled
-}
-
-/// Relations, each with its kind and what it is to.
-fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
-    section(ui, "Relations");
-    let all: Vec<(u32, String)> = graph.nodes.iter().map(|n| (n.id, name_of(graph, n.id))).collect();
-    let mut gone = None;
-    for (k, e) in graph.edges.iter_mut().enumerate().take(80) {
-        ui.horizontal_wrapped(|ui| {
-            ends(ui, ("from", k), &mut e.from, &all, "From");
-            let combo = egui::ComboBox::from_id_salt(("relation", k))
-                .selected_text(relation_name(e.relation))
-                .show_ui(ui, |ui| {
-                    for r in RelationKind::ALL {
-                        if r != RelationKind::Between || e.and.is_some() {
-                            ui.selectable_value(&mut e.relation, r, relation_name(r));
-                        }
-                    }
-                });
-            combo
-                .response
-                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Relation {}", k + 1)));
-            ends(ui, ("to", k), &mut e.to, &all, "To");
-            let out = ui.add(egui::Button::new("×").small());
-            out.widget_info(|| {
-                WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1))
-            });
-            if out.clicked() {
-                gone = Some(k);
-            }
-        });
-    }
-    if let Some(k) = gone {
-        graph.edges.remove(k);
-    }
-    let first = graph.objects().map(|o| o.0).next();
-    let add = ui.add_enabled(first.is_some(), egui::Button::new("Add relation"));
-    if add.clicked()
-        && let Some(from) = first
-    {
-        graph
-            .edges
-            .push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
-    }
-}
-
-fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], what: &str) {
-    let shown = all
-        .iter()
-        .find(|n| n.0 == *id)
-        .map_or("nothing", |n| n.1.as_str());
-    let combo = egui::ComboBox::from_id_salt(salt)
-        .selected_text(shown)
-        .show_ui(ui, |ui| {
-            for (other, name) in all {
-                ui.selectable_value(id, *other, name);
-            }
-        });
-    let label = format!("{what} of relation {}", salt.1 + 1);
-    combo
-        .response
-        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &label));
 }
 
 /// Lanes and boxes as seen from above, the ego vehicle's course to the right.

@@ -18,9 +18,9 @@ pub struct ToolbarInput<'a> {
     /// There are changes that are in no file.
     pub dirty: bool,
     /// What undo would take back.
-    pub undo: Option<&'static str>,
+    pub undo: Option<&'a str>,
     /// What redo would bring back.
-    pub redo: Option<&'static str>,
+    pub redo: Option<&'a str>,
     /// Generation after each edit is on.
     pub live: bool,
     /// A job is on its way.
