@@ -26,23 +26,44 @@ pub(super) fn column_of(pixel: usize) -> (usize, usize) {
     (GridSpec::NX - 1 - row, GridSpec::NY - 1 - col)
 }
 
-/// The uppermost shown map layer of each column, `behind` where there is none.
-pub fn layers(layout: &BevLayout, shown: u32, opacity: f32, behind: Color32) -> ColorImage {
-    let alpha = (opacity.clamp(0.0, 1.0) * 255.0) as u8;
+/// Which map layers are drawn, and how much each hides of what lies below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerLook {
+    /// Bits of the layers that are shown.
+    pub shown: u32,
+    /// 0 to 255 for each layer of [`DRAW_ORDER`].
+    pub opacity: [u8; DRAW_ORDER.len()],
+    /// 0 to 255, of all together.
+    pub veil: u8,
+}
+
+/// The map layers of each column, drawn over one another; `behind` where there is none.
+pub fn layers(layout: &BevLayout, look: &LayerLook, behind: Color32) -> ColorImage {
+    let solid = look.opacity == [255; DRAW_ORDER.len()];
+    let colors = DRAW_ORDER.map(|layer| {
+        let mut color = layer.color();
+        if is_divider(layer) {
+            // Half of the road shows through: a divider is a line, its cells are four times as wide.
+            let under = BevLayer::DrivableArea.color();
+            color = std::array::from_fn(|i| ((u16::from(color[i]) + u16::from(under[i])) / 2) as u8);
+        }
+        color
+    });
+    let of = |k: usize, alpha: u8| {
+        let [r, g, b] = colors[k];
+        Color32::from_rgba_unmultiplied(r, g, b, alpha)
+    };
     let pixel = |i: usize| {
         let (x, y) = column_of(i);
-        let cell = layout.cell(x, y) & shown;
-        let top = DRAW_ORDER.iter().rev().find(|l| cell & l.bit() != 0);
-        top.map_or(behind, |layer| {
-            let mut color = layer.color();
-            if is_divider(*layer) {
-                // Half of the road shows through: a divider is a line, its cells are four times as wide.
-                let under = BevLayer::DrivableArea.color();
-                color = std::array::from_fn(|i| ((u16::from(color[i]) + u16::from(under[i])) / 2) as u8);
+        let cell = layout.cell(x, y) & look.shown;
+        let mut here = (0..DRAW_ORDER.len()).filter(|k| cell & DRAW_ORDER[*k].bit() != 0);
+        match solid {
+            true => here.next_back().map_or(behind, |k| of(k, look.veil)),
+            false => {
+                let veiled = |k: usize| (u16::from(look.opacity[k]) * u16::from(look.veil) / 255) as u8;
+                here.fold(behind, |below, k| below.blend(of(k, veiled(k))))
             }
-            let [r, g, b] = color;
-            Color32::from_rgba_unmultiplied(r, g, b, alpha)
-        })
+        }
     };
     ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
 }
@@ -141,18 +162,36 @@ mod tests {
         );
     }
 
+    fn solid(shown: u32) -> LayerLook {
+        LayerLook {
+            shown,
+            opacity: [255; DRAW_ORDER.len()],
+            veil: 255,
+        }
+    }
+
     #[test]
     fn forward_is_up_and_left_is_left() {
         let mut layout = BevLayout::default();
         layout.set(BevLayer::DrivableArea, 199, 199, true); // far ahead, far left
         layout.set(BevLayer::Walkway, 199, 199, true);
-        let image = layers(&layout, 0xff, 1.0, Color32::TRANSPARENT);
+        let image = layers(&layout, &solid(0xff), Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::Walkway.color();
         assert_eq!(image.pixels[0], Color32::from_rgb(r, g, b));
         assert_eq!(image.pixels[1], Color32::TRANSPARENT);
-        let without = layers(&layout, !BevLayer::Walkway.bit(), 1.0, Color32::TRANSPARENT);
+        let look = solid(!BevLayer::Walkway.bit());
+        let without = layers(&layout, &look, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
+        // Half a walkway over the road is between both.
+        let mut look = solid(0xff);
+        look.opacity[2] = 128;
+        let half = layers(&layout, &look, Color32::TRANSPARENT).pixels[0];
+        let between = |i: usize| {
+            let (a, b) = (BevLayer::Walkway.color()[i], BevLayer::DrivableArea.color()[i]);
+            (i32::from(half.to_array()[i]) - (i32::from(a) + i32::from(b)) / 2).abs() < 4
+        };
+        assert!((0..3).all(between) && half.is_opaque(), "{half:?}");
         let mut grid = VoxelGrid::new();
         grid.set(0, 0, 15, Class::Car.id()); // behind, right
         let image = occupancy(&grid, Color32::BLACK);

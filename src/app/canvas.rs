@@ -13,7 +13,7 @@ use glam::DVec2;
 use crate::editor::pick;
 use crate::scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev};
 
-use super::bev_image;
+use super::bev_image::{self, LayerLook};
 use super::canvas_draw::{
     BoxLook, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
     draw_unsettled,
@@ -69,7 +69,7 @@ pub struct Canvas {
     unobserved: Option<Shown<SceneRev>>,
 }
 
-type LayersKey = (SceneRev, u32, u8);
+type LayersKey = (SceneRev, LayerLook, Color32);
 
 /// A picture on the device: what it was made from, and what it holds.
 struct Shown<K> {
@@ -302,16 +302,19 @@ impl Canvas {
     }
 
     fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
-        let both = state.underlay == Underlay::Both;
-        let veil = if both { state.tools.layers_opacity } else { 1.0 };
-        let key = (scene.rev, state.layers_shown, (veil * 255.0) as u8);
         // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
-        let (opacity, behind) = if both {
-            (veil, Color32::TRANSPARENT)
-        } else {
-            (1.0, GROUND)
+        let (veil, behind) = match state.underlay == Underlay::Both {
+            true => (state.tools.layers_opacity, Color32::TRANSPARENT),
+            false => (1.0, GROUND),
         };
-        let make = || bev_image::layers(&scene.frame().layout, state.layers_shown, opacity, behind);
+        let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let look = LayerLook {
+            shown: state.layers_shown,
+            opacity: state.tools.layer_opacity.map(byte),
+            veil: byte(veil),
+        };
+        let key = (scene.rev, look, behind);
+        let make = || bev_image::layers(&scene.frame().layout, &look, behind);
         texture(ui, &mut self.layers, key, "layers", make)
     }
 

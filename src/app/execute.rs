@@ -23,6 +23,9 @@ use super::tools::{Choose, ToolCommand};
 impl SceneloomApp {
     /// Carries out one command.
     pub fn execute(&mut self, command: Command, ctx: &Context) {
+        let before = self.document.settled_scene().rev;
+        let travels = matches!(command, Command::Undo | Command::Redo | Command::JumpTo(_));
+        self.state.remember_selection(before);
         match command {
             Command::Apply(label, edits) => self.apply(label, &edits),
             Command::ApplyWords(words, edits) => self.apply_words(&words, &edits),
@@ -203,6 +206,11 @@ impl SceneloomApp {
         self.state.correcting &= self.document.scene().frame().inferred.any();
         // A box that an edit or undo took away is not selected any more.
         self.state.tidy_selection(&self.document.scene().frame().boxes);
+        let after = self.document.settled_scene().rev;
+        if travels && after != before {
+            self.state
+                .recall_selection(after, &self.document.scene().frame().boxes);
+        }
     }
 
     /// A version becomes the present state; its result is there already.

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, Frame, SceneBox};
+use crate::scene::{BoxId, Frame, GridSpec, SceneBox};
 
 use super::Edit;
 use super::lanes::{along, nearest_lane};
@@ -172,9 +172,14 @@ pub fn paste(frame: &Frame, clipboard: &Clipboard, at_m: Option<DVec2>) -> Added
 /// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
 /// lane's middle and turns with it.
 pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
+    add(frame, row_boxes(frame, ids, row))
+}
+
+/// The copies of a row, not yet named; those beside the map are left out.
+pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &Row) -> Vec<SceneBox> {
     let mut copies = Vec::new();
     if !row.spacing_m.is_finite() {
-        return Added::default();
+        return copies;
     }
     for b in boxes_of(frame, ids) {
         let lane = (row.along == RowAlong::Lane)
@@ -201,9 +206,8 @@ pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
             });
         }
     }
-    // Beyond what a box may have there is no room for more.
-    copies.retain(|b| b.problem().is_none());
-    add(frame, copies)
+    copies.retain(|b| b.problem().is_none() && GridSpec::column_at(b.center_m.x, b.center_m.y).is_some());
+    copies
 }
 
 /// Mirrors boxes about the ego x axis. With `keep_direction` one that changes sides is turned by 180 degrees,

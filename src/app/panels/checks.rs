@@ -21,8 +21,9 @@ pub struct ChecksInput<'a> {
     pub frame: &'a Frame,
 }
 
-/// What waived findings and their title take at the bottom, points.
-const WAIVED_HEIGHT: f32 = 130.0;
+/// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
+const WAIVED_TITLE: f32 = 30.0;
+const WAIVED_LIST: f32 = 94.0;
 
 /// Draws the panel in a window of its own.
 pub fn checks_window(ui: &Ui, input: &ChecksInput<'_>, open: &mut bool, commands: &mut Vec<Command>) {
@@ -79,7 +80,12 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
     ui.separator();
     reason_ui(ui, &open, commands);
     let row_height = theme::ROW;
-    let below = if waived.is_empty() { 0.0 } else { WAIVED_HEIGHT };
+    let unfolded = ui.data(|d| d.get_temp::<bool>(waived_unfolded()).unwrap_or_default());
+    let below = match (waived.is_empty(), unfolded) {
+        (true, _) => 0.0,
+        (false, false) => WAIVED_TITLE,
+        (false, true) => WAIVED_TITLE + WAIVED_LIST,
+    };
     let height = (ui.available_height() - below).max(3.0 * row_height);
     egui::ScrollArea::vertical()
         .auto_shrink([false, false])
@@ -222,13 +228,13 @@ fn waived_ui(ui: &mut Ui, waived: &[&Finding], input: &ChecksInput<'_>, commands
     }
     ui.add_space(4.0);
     let title = format!("{} waived", waived.len());
-    egui::CollapsingHeader::new(title)
+    let list = egui::CollapsingHeader::new(title)
         .id_salt("waived findings")
-        .default_open(true)
+        .default_open(false)
         .show(ui, |ui| {
             egui::ScrollArea::vertical()
                 .id_salt("waived")
-                .max_height(WAIVED_HEIGHT - 36.0)
+                .max_height(WAIVED_LIST)
                 .show(ui, |ui| {
                     for finding in waived {
                         let Some(waiver) = waive::of(input.frame, finding) else {
@@ -263,6 +269,11 @@ fn waived_ui(ui: &mut Ui, waived: &[&Finding], input: &ChecksInput<'_>, commands
                     }
                 });
         });
+    ui.data_mut(|d| d.insert_temp(waived_unfolded(), list.fully_open()));
+}
+
+fn waived_unfolded() -> egui::Id {
+    egui::Id::unique("waived findings are unfolded")
 }
 
 /// A disc with a bar through it for errors, a triangle for warnings: told apart by shape, not only by colour.

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
+use crate::app::bev_image::DRAW_ORDER;
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
@@ -33,9 +34,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         for layer in BevLayer::MAP {
             layer_row(ui, &frame.layout, layer, state, commands);
         }
-        if state.underlay == Underlay::Both {
-            opacity_row(ui, state);
-        }
+        opacity_rows(ui, state);
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
         toggle_row(ui, "Boxes", &mut state.show_boxes);
@@ -214,14 +213,28 @@ fn solo(state: &mut UiState, layer: BevLayer) {
     }
 }
 
-/// How much of the voxels the layers hide.
-fn opacity_row(ui: &mut Ui, state: &mut UiState) {
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Opacity").color(theme::text_weak()));
-        ui.spacing_mut().slider_width = 90.0;
-        let slider = egui::Slider::new(&mut state.tools.layers_opacity, 0.0..=1.0).fixed_decimals(2);
-        ui.add(slider).accessible_name("Opacity of the layers");
-    });
+/// How much the chosen layer hides of those below it, and all of them of the voxels.
+fn opacity_rows(ui: &mut Ui, state: &mut UiState) {
+    let slider = |ui: &mut Ui, caption: &str, value: &mut f32, name: &str| {
+        ui.horizontal(|ui| {
+            ui.label(egui::RichText::new(caption).color(theme::text_weak()));
+            ui.spacing_mut().slider_width = 74.0;
+            let slider = egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+            ui.add(slider).on_hover_text(name).accessible_name(name);
+        });
+    };
+    if let Some(k) = DRAW_ORDER.iter().position(|layer| *layer == state.layer) {
+        let name = format!("Opacity of {}", state.layer.label());
+        slider(ui, "Opacity", &mut state.tools.layer_opacity[k], &name);
+    }
+    if state.underlay == Underlay::Both {
+        slider(
+            ui,
+            "All, on voxels",
+            &mut state.tools.layers_opacity,
+            "Opacity of the layers over voxels",
+        );
+    }
 }
 
 fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {

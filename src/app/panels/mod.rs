@@ -26,6 +26,7 @@ pub mod settings;
 pub mod shortcuts;
 pub mod start;
 pub mod status;
+mod thumbnail;
 pub mod toasts;
 pub mod toolbar;
 pub mod trade;

@@ -6,9 +6,9 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
 
 use egui::accesskit::Role;
-use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Sense, Ui, WidgetInfo, vec2};
 
-use super::prompt_graph;
+use super::{prompt_graph, thumbnail};
 use crate::app::command::Command;
 use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
 use crate::app::theme;
@@ -16,7 +16,7 @@ use crate::editor::Edit;
 use crate::generation::text::description::Description;
 use crate::generation::text::to_graph::{Graphed, to_graph};
 
-use crate::scene::{BoxId, PolylineKind, Scene, SceneBox};
+use crate::scene::{BoxId, Scene, SceneBox};
 
 /// Variants that are shown side by side.
 const VARIANTS: u64 = 4;
@@ -378,7 +378,7 @@ impl Plan {
                     };
                     ui.painter().rect_filled(rect, theme::RADIUS, fill);
                     match variants.found.get(&seed) {
-                        Some(laid) => small_map(ui, rect, laid),
+                        Some(laid) => thumbnail::scene(ui, rect, &laid.road.layout, &laid.placement.boxes),
                         None => {
                             ui.painter().text(
                                 rect.center(),
@@ -460,43 +460,5 @@ impl Plan {
                 }
             });
         place
-    }
-}
-
-/// Lanes and boxes as seen from above, the ego vehicle's course to the right.
-fn small_map(ui: &Ui, rect: Rect, laid: &Laid) {
-    let painter = ui.painter().with_clip_rect(rect);
-    let scale = rect.width() / 84.0;
-    let at = |p: glam::DVec2| -> Pos2 {
-        pos2(
-            rect.center().x + p.x as f32 * scale,
-            rect.center().y - p.y as f32 * scale,
-        )
-    };
-    let road = theme::text_weak().gamma_multiply(0.35);
-    for line in laid.road.layout.polylines.iter() {
-        let points: Vec<Pos2> = line.points_m.iter().map(|p| at(*p)).collect();
-        match line.kind {
-            PolylineKind::LaneCenter => {
-                painter.add(Shape::line(points, Stroke::new(3.6 * scale, road)));
-            }
-            PolylineKind::PedCrossing => {
-                painter.add(Shape::closed_line(points, Stroke::new(1.0, theme::text())));
-            }
-            _ => {}
-        }
-    }
-    let quad = |b: &SceneBox, color: Color32| {
-        let points: Vec<Pos2> = b.footprint().iter().map(|p| at(*p)).collect();
-        painter.add(Shape::convex_polygon(
-            points,
-            color,
-            Stroke::new(0.8, theme::text_strong()),
-        ));
-    };
-    quad(&crate::generation::text::holds::ego(), theme::accent());
-    for b in &laid.placement.boxes {
-        quad(b, theme::class_color(b.class));
-        painter.circle_filled(at(b.center_m.truncate()), 1.2, theme::class_color(b.class));
     }
 }

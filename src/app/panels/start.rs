@@ -1,14 +1,17 @@
 //! The start screen: recent files, ready-made roads, import.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use egui::accesskit::Role;
-use egui::{Id, Modal, Ui, WidgetInfo, vec2};
+use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
+use super::thumbnail;
 use crate::app::command::Command;
 use crate::app::settings::Settings;
 use crate::app::theme;
-use crate::generation::world::template::TEMPLATES;
+use crate::generation::world::template::{TEMPLATES, layout};
+use crate::scene::BevLayout;
 
 /// Draws the start screen while it is open.
 pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mut Vec<Command>) {
@@ -50,16 +53,21 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 }
             }
             crate::app::icons::section(right, "Roads to begin with");
-            for name in TEMPLATES {
-                if wide(right, &theme::sentence(&name.replace('_', " ")), "").clicked() {
-                    choose(open, Command::NewFrom(name));
-                }
+            for pair in TEMPLATES.chunks(2) {
+                right.columns(2, |cells| {
+                    for (ui, name) in cells.iter_mut().zip(pair) {
+                        if road(ui, name).clicked() {
+                            choose(open, Command::NewFrom(name));
+                        }
+                    }
+                });
+                right.add_space(4.0);
             }
         });
         ui.add_space(theme::GAP);
         ui.horizontal(|ui| {
             ui.checkbox(&mut settings.start_screen, "Show this at the start");
-            let text = "Ctrl+K finds any command, F1 shows the keys";
+            let text = "Ctrl+K finds any command, ? shows the keys";
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             });
@@ -76,6 +84,39 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
         .min_size(vec2(ui.available_width(), 26.0));
     let response = ui.add(button);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    response
+}
+
+/// A template as it looks from above, with its name below.
+fn road(ui: &mut Ui, name: &'static str) -> egui::Response {
+    const HEIGHT: f32 = 78.0;
+    let label = theme::sentence(&name.replace('_', " "));
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - 18.0);
+    ui.painter().rect_filled(rect, theme::RADIUS, theme::field());
+    // The same picture each time: made once.
+    let id = Id::unique(("road to begin with", name));
+    let layout: Option<Arc<BevLayout>> = ui.data_mut(|d| {
+        d.get_temp_mut_or_insert_with(id, || layout(name, 1).map(Arc::new))
+            .clone()
+    });
+    if let Some(layout) = layout {
+        thumbnail::road(ui, above.shrink(3.0), &layout);
+    }
+    let color = match response.hovered() {
+        true => theme::text_strong(),
+        false => theme::text(),
+    };
+    if response.hovered() {
+        let edge = egui::Stroke::new(1.0, theme::accent());
+        ui.painter()
+            .rect_stroke(rect, theme::RADIUS, edge, egui::StrokeKind::Inside);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    ui.painter()
+        .text(below.center(), egui::Align2::CENTER_CENTER, label, font, color);
+    crate::app::icons::focus_ring(ui, &response, rect);
     response
 }
 

@@ -183,15 +183,15 @@ fn select(
     let chosen = state.chosen();
     let reach_m = HANDLE_REACH / map.scale;
     let hit = pick::box_at(frame, at_m);
+    // The arrows light up under the pointer whatever chooses, so they can be pulled too.
+    if let Some(axis) = gizmo::bev_axis_at(map, frame, state, at_m) {
+        let mut transform = transform(frame, state, &chosen, state.tools.gizmo);
+        transform.axis = Some(axis);
+        return Some(held(transform, at_m));
+    }
     if !state.tools.lasso {
         let first = state.selected.and_then(|id| frame.boxes.get(&id));
-        let axis = gizmo::bev_axis_at(map, frame, state, at_m);
         let handle = first.and_then(|b| pick::handle_at(b, at_m, reach_m));
-        if let Some(axis) = axis {
-            let mut transform = transform(frame, state, &chosen, state.tools.gizmo);
-            transform.axis = Some(axis);
-            return Some(held(transform, at_m));
-        }
         match handle {
             Some(Handle::Rotate) => return Some(held(transform(frame, state, &chosen, Kind::Turn), at_m)),
             // A corner resizes one box: the canvas does that.

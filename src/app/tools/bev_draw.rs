@@ -4,6 +4,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Stroke
 use glam::{DVec2, DVec3};
 
 use crate::app::canvas::ScreenMap;
+use crate::app::canvas_draw::{BoxLook, draw_box};
 use crate::app::canvas_tools::Gesture;
 use crate::app::state::{Tool, UiState};
 use crate::app::theme;
@@ -70,6 +71,11 @@ pub(in crate::app) fn draw(
             }
         }
         _ => {}
+    }
+    if state.tools.row_open {
+        for b in super::dialogs::coming(frame, state) {
+            draw_box(ui, map, &b, BoxLook::Ghost);
+        }
     }
     if state.tool == Tool::Brush {
         outline(painter, map, state, pointer);

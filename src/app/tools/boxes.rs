@@ -214,9 +214,17 @@ impl SceneloomApp {
 
     /// Paints the outline or lays the street that was drawn.
     fn close_points(&mut self) {
+        let street = self.state.tools.shape == PaintShape::Street;
+        if street {
+            let edits = self.state.tools.street.edits(&self.state.tools.points_m);
+            // What was drawn stays until the layer is unlocked.
+            if self.state.locked_layer(&edits).is_some() {
+                return self.apply("Lay street", &edits);
+            }
+        }
         let points_m = std::mem::take(&mut self.state.tools.points_m);
         let value = !self.state.erase;
-        if self.state.tools.shape == PaintShape::Street {
+        if street {
             let edits = self.state.tools.street.edits(&points_m);
             self.apply_some("Lay street", edits);
         } else if points_m.len() >= 3 {

@@ -1,4 +1,4 @@
-//! The window of rows of copies: numbers, then one undo step.
+//! The window of rows of copies: numbers, with what would come shown over the map, then one undo step.
 
 use egui::{DragValue, Ui};
 
@@ -7,17 +7,28 @@ use crate::app::icons;
 use crate::app::panels::fields::{caption, number};
 use crate::app::state::UiState;
 use crate::app::theme;
-use crate::editor::arrange::{MAX_COPIES, RowAlong};
+use crate::editor::arrange::{self, MAX_COPIES, RowAlong};
+use crate::scene::{Frame, SceneBox};
 
 use super::ToolCommand;
 
+/// The copies that the row of the dialog would add.
+pub(in crate::app) fn coming(frame: &Frame, state: &UiState) -> Vec<SceneBox> {
+    arrange::row_boxes(frame, &state.chosen(), &state.tools.row)
+}
+
 /// Draws the windows of the tools that are open.
-pub fn show(ui: &Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     if !state.tools.row_open {
         return;
     }
     let mut done = None;
-    let modal = egui::Modal::new(egui::Id::unique("row of copies"))
+    // Below the views, undimmed: they show what would come.
+    let id = egui::Id::unique("row of copies");
+    let area = egui::Modal::default_area(id).anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -60.0));
+    let modal = egui::Modal::new(id)
+        .area(area)
+        .backdrop_color(egui::Color32::TRANSPARENT)
         .frame(theme::dialog_frame(ui.style()))
         .show(ui.ctx(), |ui| {
             ui.set_width(330.0);
@@ -50,6 +61,15 @@ pub fn show(ui: &Ui, state: &mut UiState, commands: &mut Vec<Command>) {
                     ],
                 );
             });
+            let (asked, come) = (
+                state.tools.row.copies * state.chosen().len(),
+                coming(frame, state).len(),
+            );
+            let text = match asked - come.min(asked) {
+                0 => format!("{come} boxes come"),
+                out => format!("{come} boxes come; {out} would lie outside the map and are left out"),
+            };
+            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let add = ui.add(egui::Button::new("Add copies").fill(theme::accent_fill()));
@@ -57,7 +77,7 @@ pub fn show(ui: &Ui, state: &mut UiState, commands: &mut Vec<Command>) {
                 if add.clicked() || enter {
                     done = Some(true);
                 }
-                if ui.button("Close row").clicked() {
+                if ui.button("Cancel row").clicked() {
                     done = Some(false);
                 }
             });

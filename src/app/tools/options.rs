@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
+use crate::app::bev_image::DRAW_ORDER;
 use crate::app::canvas_tools;
 use crate::app::state::UiState;
 use crate::editor::Edit;
@@ -15,9 +16,12 @@ use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
 use crate::generation::job::GenParams;
 use crate::generation::redraw::RedrawMask;
-use crate::scene::{BevLayer, BoxId, Class, Frame, SceneBox, variants};
+use crate::scene::{BevLayer, BoxId, Class, Frame, SceneBox, SceneRev, variants};
 
 use super::Choose;
+
+/// States of the scene whose selection is kept.
+const REMEMBERED_SELECTIONS: usize = 512;
 
 /// What a drag of the brush draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -135,10 +139,14 @@ pub struct ToolState {
     pub variants: BTreeMap<Class, usize>,
     /// Bit per map layer that is not painted.
     pub layers_locked: u32,
-    /// Opacity of the map layers over voxels, 0 to 1.
+    /// Opacity of each map layer over what lies below it, in draw order, 0 to 1.
+    pub layer_opacity: [f32; DRAW_ORDER.len()],
+    /// Opacity of all map layers together over voxels, 0 to 1.
     pub layers_opacity: f32,
     /// Layers shown before one was shown alone.
     pub before_solo: Option<u32>,
+    /// What was chosen in states of the scene, by their revision: undo brings it back.
+    pub selections: BTreeMap<SceneRev, Vec<BoxId>>,
     /// The dialog of rows, if it is open.
     pub row_open: bool,
     /// Its numbers.
@@ -175,8 +183,10 @@ impl Default for ToolState {
             region_draws: 0,
             variants: BTreeMap::new(),
             layers_locked: 0,
+            layer_opacity: [1.0; DRAW_ORDER.len()],
             layers_opacity: 0.5,
             before_solo: None,
+            selections: BTreeMap::new(),
             row_open: false,
             row: Row::default(),
             pointer_m: None,
@@ -280,6 +290,27 @@ impl UiState {
             .filter(|id| left.contains(id))
             .or(left.first().copied());
         self.selection = left.into_iter().collect();
+    }
+
+    /// Keeps what is chosen in a state of the scene, for when an undo comes back to it.
+    pub fn remember_selection(&mut self, rev: SceneRev) {
+        let kept = &mut self.tools.selections;
+        kept.insert(rev, Vec::new());
+        if kept.len() > REMEMBERED_SELECTIONS {
+            kept.pop_first();
+        }
+        let chosen = self.chosen();
+        self.tools.selections.insert(rev, chosen);
+    }
+
+    /// Chooses what was chosen last in a state of the scene; all stays if that was nothing.
+    pub fn recall_selection(&mut self, rev: SceneRev, boxes: &BTreeMap<BoxId, SceneBox>) {
+        let mut ids = self.tools.selections.get(&rev).cloned().unwrap_or_default();
+        ids.retain(|id| boxes.contains_key(id));
+        if let Some(first) = ids.first().copied() {
+            self.choose(&ids, Choose::Only);
+            self.selected = Some(first);
+        }
     }
 
     /// A box of the size chosen for the next one, on the ground; `None` for a class that is no object.
