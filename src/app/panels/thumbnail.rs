@@ -1,0 +1,55 @@
+//! Small maps: lanes, crossings and boxes as the bird's-eye view shows them, ahead of the ego vehicle upward.
+
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
+use glam::DVec2;
+
+use crate::app::theme;
+use crate::generation::text::holds::ego;
+use crate::scene::{BevLayout, PolylineKind, SceneBox};
+
+/// Metres that the shorter side of a map shows, a little more than the grid is wide.
+const SIDE_M: f32 = 84.0;
+/// Width of a lane, m.
+const LANE_M: f32 = 3.6;
+
+/// The road alone, and the ego vehicle.
+pub fn road(ui: &Ui, rect: Rect, layout: &BevLayout) {
+    scene(ui, rect, layout, &[]);
+}
+
+/// The road, what stands on it, and the ego vehicle.
+pub fn scene(ui: &Ui, rect: Rect, layout: &BevLayout, boxes: &[SceneBox]) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let scale = rect.width().min(rect.height()) / SIDE_M;
+    // Ego x is up, ego y to the left.
+    let at = |p: DVec2| -> Pos2 {
+        pos2(
+            rect.center().x - p.y as f32 * scale,
+            rect.center().y - p.x as f32 * scale,
+        )
+    };
+    let gray = theme::text_weak().gamma_multiply(0.4);
+    for line in layout.polylines.iter() {
+        let points: Vec<Pos2> = line.points_m.iter().map(|p| at(*p)).collect();
+        match line.kind {
+            PolylineKind::LaneCenter => {
+                painter.add(Shape::line(points, Stroke::new(LANE_M * scale, gray)));
+            }
+            PolylineKind::PedCrossing => {
+                painter.add(Shape::closed_line(points, Stroke::new(1.0, theme::text())));
+            }
+            _ => {}
+        }
+    }
+    let quad = |b: &SceneBox, color: Color32| {
+        let points: Vec<Pos2> = b.footprint().iter().map(|p| at(*p)).collect();
+        let edge = Stroke::new(0.8, theme::text_strong());
+        painter.add(Shape::convex_polygon(points, color, edge));
+    };
+    quad(&ego(), theme::accent());
+    for b in boxes {
+        quad(b, theme::class_color(b.class));
+        // Small ones would not be seen otherwise.
+        painter.circle_filled(at(b.center_m.truncate()), 1.2, theme::class_color(b.class));
+    }
+}
