@@ -27,7 +27,7 @@ use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
 use super::keys;
 use super::keys::Hands;
-use super::live::{Advice, Live, Purpose};
+use super::live::{Advice, Bounds, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
 use super::panels::checks::{ChecksInput, checks_window};
@@ -179,7 +179,7 @@ pub struct SceneloomApp {
     center: Rect,
     passes: u32,
     ctx: egui::Context,
-    pub(super) unsettled: Option<([usize; 2], [usize; 2])>, // columns that are to be generated
+    pub(super) unsettled: Arc<[Bounds]>, // columns that are to be generated
 }
 
 impl SceneloomApp {
@@ -272,7 +272,7 @@ impl SceneloomApp {
             center: Rect::NOTHING,
             passes: 0,
             ctx: ctx.clone(),
-            unsettled: None,
+            unsettled: Arc::default(),
         })
     }
 
@@ -381,6 +381,7 @@ impl SceneloomApp {
     fn schedule(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
         let scene = self.document.settled_scene().clone();
+        self.live.foretold_s = self.tuning.foretold_now_s(&self.live.params);
         match self.live.advise(&scene, self.document.is_dragging(), now_s) {
             Advice::Rest => {}
             Advice::Wait(seconds) => {
@@ -648,7 +649,7 @@ impl SceneloomApp {
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
         let touched = self.live.look(&settled, now_s);
-        self.unsettled = touched.bounds;
+        self.unsettled = self.live.parts();
         let unsettled = !touched.is_empty;
         let status = StatusInput {
             running: self.live.running.as_ref(),

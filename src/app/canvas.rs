@@ -20,6 +20,7 @@ use super::canvas_draw::{
 };
 use super::canvas_tools::Gesture;
 use super::command::Command;
+use super::live::Bounds;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
@@ -85,7 +86,7 @@ pub struct CanvasInput<'a> {
     /// The newest sweep.
     pub lidar: Option<&'a LidarSweep>,
     /// Lowest and highest column that is still to be generated, both included.
-    pub unsettled: Option<([usize; 2], [usize; 2])>,
+    pub unsettled: Arc<[Bounds]>,
     /// A job is on its way.
     pub generating: bool,
 }
@@ -157,7 +158,7 @@ impl Canvas {
         let input = CanvasInput {
             scene,
             lidar: None,
-            unsettled: None,
+            unsettled: Arc::default(),
             generating: false,
         };
         let state = UiState {

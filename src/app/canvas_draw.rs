@@ -208,9 +208,6 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
 
 /// A dashed frame around what is still to be generated.
 pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
-    let Some((low, high)) = input.unsettled else {
-        return;
-    };
     let color = if input.generating {
         theme::accent()
     } else {
@@ -218,17 +215,19 @@ pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) 
     };
     let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
-    let rect = map.rect_of(corner(low) - half, corner(high) + half).expand(2.0);
-    ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
-    let [a, b, c, d] = [
-        rect.left_top(),
-        rect.right_top(),
-        rect.right_bottom(),
-        rect.left_bottom(),
-    ];
-    let stroke = Stroke::new(1.3, color);
-    ui.painter()
-        .extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
+    for (low, high) in input.unsettled.iter() {
+        let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);
+        ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
+        let [a, b, c, d] = [
+            rect.left_top(),
+            rect.right_top(),
+            rect.right_bottom(),
+            rect.left_bottom(),
+        ];
+        let stroke = Stroke::new(1.3, color);
+        ui.painter()
+            .extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
+    }
 }
 
 pub(super) fn draw_scale_bar(ui: &Ui, map: &ScreenMap) {

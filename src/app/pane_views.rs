@@ -134,7 +134,7 @@ impl SceneloomApp {
         let input = CanvasInput {
             scene,
             lidar: self.sensing.lidar().map(|l| &**l),
-            unsettled: self.unsettled,
+            unsettled: self.unsettled.clone(),
             generating: self.live.running.is_some(),
         };
         if self.shows_before(scene)

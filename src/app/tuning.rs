@@ -40,6 +40,8 @@ pub struct LastEdit {
     pub report: GenReport,
     /// From the edit to the settled scene, s.
     pub settled_s: f64,
+    /// Tokens around it, whether or not the others were computed too: the size of the edit.
+    pub local_tokens: usize,
     /// Predicted wall time of the generation, s.
     pub predicted_s: Option<f64>,
     /// Predicted share of voxels that differ from the reference: the middle, and what nine of ten edits lie between.
@@ -225,7 +227,13 @@ impl Tuning {
     pub fn tokens_of_next(&self) -> f64 {
         self.last
             .as_ref()
-            .map_or(TYPICAL_TOKENS, |l| l.report.tokens as f64)
+            .map_or(TYPICAL_TOKENS, |l| l.local_tokens as f64)
+    }
+
+    /// What an edit like the last one is foretold to take with these parameters, s; 0 if they are of no stop.
+    pub fn foretold_now_s(&self, params: &GenParams) -> f64 {
+        let stop = self.current(params).map(|i| &self.stops.stops[i]);
+        stop.map_or(0.0, |stop| self.foretold_s(stop, self.tokens_of_next()))
     }
 
     /// Name of each stop, and what it is foretold to cost.
@@ -247,20 +255,23 @@ impl Tuning {
         self.stability.fallbacks += usize::from(!report.notes.is_empty());
         self.stability.untouched_changed += report.untouched_voxels_changed;
         // A measurement of the edit before says nothing about this one.
+        let beside = self.running.is_some();
         if self
             .measuring()
             .is_some_and(|(what, ..)| what == Measuring::Error)
         {
             self.running = None;
+            self.message = Some("The measurement stopped: another edit came".into());
         }
         let stop = self.current(&params).map(|i| self.stops.stops[i].clone());
         let stop = stop.as_ref();
         let region = redraw::region_of(edited.frame(), &params);
         let all = OccModels::TOKENS;
-        let tokens = if report.tokens >= all {
-            (0..all).collect()
-        } else {
-            tokens_of(&region.cells, params.halo_tokens as usize)
+        let local = tokens_of(&region.cells, params.halo_tokens as usize);
+        let local_tokens = local.len();
+        let tokens = match report.tokens >= all {
+            true => (0..all).collect(),
+            false => local,
         };
         let tokens_computed = report.tokens as f64;
         let predicted_s = stop.map(|s| {
@@ -273,6 +284,7 @@ impl Tuning {
         });
         if let Some(quiet_s) = stop.map(|s| s.cost.wall_s(tokens_computed))
             && report.inversion_calls == 0
+            && !beside // a measurement takes the same cores
             && quiet_s > 0.0
             && report.network_calls > 0
         {
@@ -282,6 +294,7 @@ impl Tuning {
             }
         }
         self.last = Some(LastEdit {
+            local_tokens,
             predicted_s,
             predicted_error: stop.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
             measured_error: None,

@@ -72,6 +72,11 @@ fn decades(low: f64, high: f64) -> Vec<GridMark> {
     marks
 }
 
+/// Width of the plot from which on names of stops carry their numbers, points.
+const ROOM_FOR_NUMBERS: f32 = 520.0;
+/// Height of such a name in decades of the error.
+const LABEL_DECADES: f64 = 0.14;
+
 /// Draws the plot; `current` is the stop in use, `last` what the last edit took and, if it was measured, its error.
 pub fn front_plot(
     ui: &mut Ui,
@@ -127,7 +132,7 @@ pub fn front_plot(
                 .allow_hover(false)
         };
         // Names of stops stand above and below the line by turns.
-        let mut nth = 0;
+        let mut nth = 0u32;
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
             let color = if mark.on_front {
                 accent
@@ -154,11 +159,11 @@ pub fn front_plot(
                         .radius(8.0);
                     plot.points(ring);
                 }
-                let text = RichText::new(format!(
-                    "{stop}\n{}, {}",
-                    seconds(mark.wall_s[0]),
-                    percent(mark.error[0])
-                ));
+                // The list of stops tells the numbers where there is no room for them.
+                let text = RichText::new(match size.x < ROOM_FOR_NUMBERS {
+                    true => stop.clone(),
+                    false => format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])),
+                });
                 let text = if here { text.small().strong() } else { text.small() };
                 // Where the name has room: to the left of the last ones.
                 let right = marks
@@ -166,11 +171,12 @@ pub fn front_plot(
                     .map(|m| log(m.wall_s[0]))
                     .fold(ANCHORS[0].0.log10(), f64::max);
                 let late = s > right - 0.35;
-                let below = nth % 2 == 1;
+                // Two that stand below lie beside each other: the second one a line lower.
+                let (below, lower) = (nth % 2 == 1, f64::from(nth / 2) * LABEL_DECADES);
                 nth += 1;
                 let (dx, dy, anchor) = match (late, below) {
                     (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
-                    (_, true) => (-0.03, -0.02, Align2::RIGHT_TOP),
+                    (_, true) => (-0.03, -0.02 - lower, Align2::RIGHT_TOP),
                     _ => (0.03, 0.02, Align2::LEFT_BOTTOM),
                 };
                 let at = PlotPoint::new(s + dx, e + dy);

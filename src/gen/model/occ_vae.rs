@@ -10,6 +10,7 @@ use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps, through};
 use super::layers::{Linear, Norm};
 use super::map::{Map, Window};
 use super::{ModelError, check_finite, check_length, kernels};
+use crate::generation::region::pieces;
 use crate::generation::rng::{self, Stream};
 use crate::generation::weights::{WeightFile, WeightsError};
 use crate::scene::{Class, GridSpec, VoxelGrid};
@@ -169,13 +170,16 @@ impl OccVae {
         let channels = self.config.latent;
         check_length("cell mask", cells.len(), self.cells())?;
         check_length("latent", latent.len(), self.cells() * channels)?;
-        let Some(window) = Window::around(cells, self.encoder_reach()) else {
-            return Ok(());
-        };
-        let (found, _) = self.encode_window(grid, window)?;
-        for (cell, values) in window.cells().zip(found.chunks_exact(channels)) {
-            if cells[cell] {
-                latent[cell * channels..][..channels].copy_from_slice(values);
+        let reach = self.encoder_reach();
+        for cells in pieces(cells, reach) {
+            let Some(window) = Window::around(&cells, reach) else {
+                continue;
+            };
+            let (found, _) = self.encode_window(grid, window)?;
+            for (cell, values) in window.cells().zip(found.chunks_exact(channels)) {
+                if cells[cell] {
+                    latent[cell * channels..][..channels].copy_from_slice(values);
+                }
             }
         }
         Ok(())
@@ -210,11 +214,25 @@ impl OccVae {
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
         check_length("cell mask", cells.len(), self.cells())?;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
-        let (side, per_cell) = (self.config.side(), self.columns());
         let mut grid = VoxelGrid::new();
-        let Some(window) = Window::around(cells, self.decoder_reach()) else {
-            return Ok(grid);
-        };
+        let reach = self.decoder_reach();
+        for cells in pieces(cells, reach) {
+            if let Some(window) = Window::around(&cells, reach) {
+                self.decode_window(latent, &cells, window, &mut grid)?;
+            }
+        }
+        Ok(grid)
+    }
+
+    /// Puts the labels of the wanted cells of a window into a grid.
+    fn decode_window(
+        &self,
+        latent: &[f32],
+        cells: &[bool],
+        window: Window,
+        grid: &mut VoxelGrid,
+    ) -> Result<(), ModelError> {
+        let (side, per_cell) = (self.config.side(), self.columns());
         let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
         let labels: Vec<Vec<u8>> = wanted
@@ -239,7 +257,7 @@ impl OccVae {
                 }
             }
         }
-        Ok(grid)
+        Ok(())
     }
 
     /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
