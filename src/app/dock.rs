@@ -54,6 +54,8 @@ pub struct Dock {
     pub(super) tree: Tree<Pane>,
     /// Alone on screen, if any.
     pub(super) maximized: Option<TileId>,
+    /// Width that the side columns were fitted to, points.
+    fitted: f32,
 }
 
 impl Default for Dock {
@@ -99,7 +101,7 @@ impl Dock {
                     .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (Pane::Camera(c), 1.0))))
                     .to_vec();
                 let sweep = t.insert_pane(Pane::Lidar);
-                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let views = row(&mut t, Vertical, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
                 let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.55)]);
                 join(&mut t, Horizontal, &[(cameras, 1.5), (views, 1.0)])
             }
@@ -129,6 +131,7 @@ impl Dock {
         Self {
             tree: Tree::new(egui::Id::unique("dock"), root, t),
             maximized: None,
+            fitted: 0.0,
         }
     }
 
@@ -141,10 +144,73 @@ impl Dock {
         let dock = Self {
             tree,
             maximized: None,
+            fitted: 0.0,
         };
         let panes: Vec<Pane> = dock.all().map(|(_, pane)| pane).collect();
         let distinct: HashSet<Pane> = panes.iter().copied().collect();
         (!panes.is_empty() && distinct.len() == panes.len() && dock.tree.root.is_some()).then_some(dock)
+    }
+
+    /// Gives columns of panels beside the views the width that their texts need, once for each width of the window: what the
+    /// user drags afterwards stays. In a very narrow window they get a share of it as before.
+    pub fn fit(&mut self, width: f32) {
+        if width == self.fitted || width <= 0.0 {
+            return;
+        }
+        self.fitted = width;
+        let Some(Tile::Container(Container::Linear(root))) =
+            self.tree.root.and_then(|r| self.tree.tiles.get(r))
+        else {
+            return;
+        };
+        if root.dir != LinearDir::Horizontal {
+            return;
+        }
+        let children = root.children.clone();
+        let shares: Vec<f32> = children.iter().map(|c| root.shares[*c]).collect();
+        let needed: Vec<f32> = children.iter().map(|c| self.width_needed(*c)).collect();
+        let (all, sides): (f32, f32) = (shares.iter().sum(), needed.iter().sum());
+        let short = |i: usize| shares[i] / all * width < needed[i];
+        if all <= 0.0 || sides > 0.6 * width || !(0..children.len()).any(short) {
+            return;
+        }
+        // Those that are too narrow get what they need; the others share the rest as they did.
+        let taken: f32 = (0..children.len()).filter(|i| short(*i)).map(|i| needed[i]).sum();
+        let others: f32 = (0..children.len())
+            .filter(|i| !short(*i))
+            .map(|i| shares[i])
+            .sum();
+        let new: Vec<f32> = (0..children.len())
+            .map(|i| match short(i) {
+                true => needed[i],
+                false => shares[i] / others.max(1e-6) * (width - taken),
+            })
+            .collect();
+        let root = self.tree.root.and_then(|r| self.tree.tiles.get_mut(r));
+        if let Some(Tile::Container(Container::Linear(root))) = root {
+            for (child, share) in children.iter().zip(new) {
+                root.shares.set_share(*child, share);
+            }
+        }
+    }
+
+    /// Width that a column needs if it holds panels only, points; 0 for views, which take any.
+    fn width_needed(&self, tile: TileId) -> f32 {
+        let mut open = vec![tile];
+        let mut needed: f32 = 0.0;
+        while let Some(id) = open.pop() {
+            match self.tree.tiles.get(id) {
+                Some(Tile::Pane(pane)) => match pane {
+                    Pane::Tools => needed = needed.max(230.0),
+                    Pane::Objects | Pane::Prompt | Pane::Versions => needed = needed.max(266.0),
+                    Pane::Trade => needed = needed.max(400.0),
+                    _ => return 0.0,
+                },
+                Some(Tile::Container(c)) => open.extend(c.children()),
+                None => {}
+            }
+        }
+        needed
     }
 
     /// The tree, to be kept.
@@ -312,6 +378,35 @@ mod tests {
         let tile = twice.find(Pane::Bev).expect("there");
         twice.tree.tiles.insert(tile, Tile::Pane(Pane::View3d));
         assert!(Dock::from_kept(twice.tree).is_none());
+    }
+
+    #[test]
+    fn panels_get_the_width_that_they_need() {
+        let widths = |dock: &Dock, width: f32| -> Vec<f32> {
+            let root = dock.tree.root.and_then(|r| dock.tree.tiles.get(r));
+            let Some(Tile::Container(Container::Linear(root))) = root else {
+                panic!("a row")
+            };
+            let all: f32 = root.children.iter().map(|c| root.shares[*c]).sum();
+            root.children
+                .iter()
+                .map(|c| root.shares[*c] / all * width)
+                .collect()
+        };
+        let mut dock = Dock::default();
+        dock.fit(1280.0);
+        let found = widths(&dock, 1280.0);
+        assert!(
+            (found[0] - 230.0).abs() < 1.0 && (found[2] - 266.0).abs() < 1.0,
+            "{found:?}"
+        );
+        let mut wide = Dock::default();
+        wide.fit(2560.0);
+        assert_eq!(
+            widths(&wide, 2560.0),
+            widths(&Dock::default(), 2560.0),
+            "they had room"
+        );
     }
 
     #[test]

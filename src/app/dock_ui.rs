@@ -155,6 +155,7 @@ impl SceneloomApp {
     /// Draws all panes and does what was asked of the dock.
     pub(super) fn dock_ui(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
         let mut dock = std::mem::take(&mut self.dock);
+        dock.fit(ui.available_width());
         let maximized = dock.maximized;
         let mut panes = Panes {
             app: self,

@@ -414,6 +414,11 @@ impl SceneloomApp {
             Purpose::Screenshot => self.screenshot(&path),
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
+            Purpose::ExportFile | Purpose::ExportFolder => {
+                if let Some(panel) = &mut self.exporting.panel {
+                    panel.path = path.display().to_string();
+                }
+            }
         }
     }
 

@@ -153,7 +153,7 @@ impl ExportProgress {
 
     fn go_on(&self) -> anyhow::Result<()> {
         match self.is_cancelled() {
-            true => bail!("cancelled; nothing was written"),
+            true => bail!("cancelled"),
             false => Ok(()),
         }
     }
@@ -201,6 +201,25 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
                 cameras.join(", ")
             )
         })
+}
+
+/// Writes the current frame in several formats: one to `path` as [`export`] does, more into the folder `path`, each as a
+/// whole.
+pub fn export_all(
+    scene: &Scene,
+    formats: &[Format],
+    options: &ExportOptions,
+    path: &Path,
+    progress: &ExportProgress,
+) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    if formats.len() > 1 {
+        std::fs::create_dir_all(path).with_context(|| format!("create {}", path.display()))?;
+    }
+    let mut files = Vec::new();
+    for format in formats {
+        files.extend(export(scene, *format, options, path, progress)?);
+    }
+    Ok(files)
 }
 
 /// Writes the current frame. `path` is the file, or a folder for the format's usual name; formats that fill a folder

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use super::application::{SceneloomApp, one_line};
-use super::export::{ExportOptions, ExportProgress, Format, export};
-use super::panels::export::{ExportInput, ExportPanel, export_window};
+use super::export::{ExportOptions, ExportProgress, Format, export_all};
+use super::file_dialogs::Purpose;
+use super::panels::export::{Asked, ExportInput, ExportPanel, export_window};
 use super::panels::toasts::Level;
 use crate::editor::checks::{Severity, waive};
 
@@ -22,7 +23,7 @@ pub struct Exporting {
 }
 
 struct Running {
-    format: Format,
+    name: &'static str,
     progress: Arc<ExportProgress>,
     written: Receiver<Written>,
 }
@@ -43,6 +44,7 @@ impl SceneloomApp {
         };
         let findings = self.checking.findings();
         let input = ExportInput {
+            browse: self.dialogs.is_native(),
             busy: self.exporting.running.as_ref().map(|r| &*r.progress),
             errors: findings.map_or(0, |f| {
                 let open = waive::open(self.document.settled_scene().frame(), f);
@@ -51,28 +53,51 @@ impl SceneloomApp {
         };
         let mut open = true;
         let wanted = export_window(ui, &input, &mut panel, &mut open);
-        if let Some(format) = wanted {
-            let mut options = panel.options.clone();
-            options.shot.camera = self.view3d.camera;
-            self.start_export(format, options, PathBuf::from(panel.path.trim()), ui.ctx());
+        let path = PathBuf::from(panel.path.trim());
+        match wanted {
+            Some(Asked::Write(formats)) => {
+                let mut options = panel.options.clone();
+                options.shot.camera = self.view3d.camera;
+                panel.written.clone_from(&panel.path);
+                self.start_export(formats, options, path, ui.ctx());
+            }
+            Some(Asked::Browse) => {
+                let purpose = match panel.fills_a_folder() {
+                    true => Purpose::ExportFolder,
+                    false => Purpose::ExportFile,
+                };
+                self.dialogs.ask(purpose, &path, ui.ctx());
+            }
+            Some(Asked::Checks) => self.state.checks_open = true,
+            None => {}
         }
         self.exporting.panel = open.then_some(panel);
     }
 
-    fn start_export(&mut self, format: Format, options: ExportOptions, path: PathBuf, ctx: &egui::Context) {
+    fn start_export(
+        &mut self,
+        formats: Vec<Format>,
+        options: ExportOptions,
+        path: PathBuf,
+        ctx: &egui::Context,
+    ) {
         let (send, written) = bounded(1);
+        let name = match formats.as_slice() {
+            [format] => format.name(),
+            _ => "everything",
+        };
         let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
         let progress = Arc::<ExportProgress>::default();
         let told = progress.clone();
         let thread = std::thread::Builder::new().name("export".into()).spawn(move || {
             // Nobody listens if the window has closed.
-            let _ = send.send(export(&scene, format, &options, &path, &told));
+            let _ = send.send(export_all(&scene, &formats, &options, &path, &told));
             wake.request_repaint();
         });
         match thread {
             Ok(_) => {
                 self.exporting.running = Some(Running {
-                    format,
+                    name,
                     progress,
                     written,
                 });
@@ -95,7 +120,7 @@ impl SceneloomApp {
             Ok(answer) => answer,
             Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("writing it ended unexpectedly")),
         };
-        let (name, now_s) = (running.format.name(), self.now_s());
+        let (name, now_s) = (running.name, self.now_s());
         let cancelled = running.progress.is_cancelled();
         self.exporting.running = None;
         match answer {
@@ -112,7 +137,7 @@ impl SceneloomApp {
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(_) if cancelled => {
-                let text = "Export cancelled; nothing was written".to_owned();
+                let text = "Export cancelled: what was not ready was not written".to_owned();
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(error) => {

@@ -22,6 +22,10 @@ pub enum Purpose {
     ImportRig,
     /// Where to save the sensors.
     ExportRig,
+    /// The file that an export is to write.
+    ExportFile,
+    /// The folder that an export is to fill.
+    ExportFolder,
 }
 
 impl Purpose {
@@ -32,6 +36,8 @@ impl Purpose {
             Purpose::Screenshot => "Export screenshot",
             Purpose::ImportRig => "Import sensors",
             Purpose::ExportRig => "Export sensors",
+            Purpose::ExportFile => "Export to file",
+            Purpose::ExportFolder => "Export into folder",
         }
     }
 
@@ -42,6 +48,7 @@ impl Purpose {
             Purpose::Screenshot => "Export picture",
             Purpose::ImportRig => "Import file",
             Purpose::ExportRig => "Export file",
+            Purpose::ExportFile | Purpose::ExportFolder => "Use path",
         }
     }
 
@@ -76,6 +83,11 @@ pub struct FileDialogs {
 }
 
 impl FileDialogs {
+    /// True if a dialog of the system is asked before a path field.
+    pub fn is_native(&self) -> bool {
+        self.native
+    }
+
     /// With `native` false only the path field is used.
     pub fn new(native: bool) -> Self {
         Self {
@@ -107,6 +119,7 @@ impl FileDialogs {
             Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
             Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
             Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
+            Purpose::ExportFile | Purpose::ExportFolder => dialog,
         };
         if let Some(folder) = suggestion.parent().filter(|p| p.is_dir()) {
             dialog = dialog.set_directory(folder);
@@ -118,11 +131,14 @@ impl FileDialogs {
         let wake = ctx.clone();
         // The dialog is made here, on the main thread, as macOS wants it; waiting is done elsewhere.
         type Chosen = Option<rfd::FileHandle>;
-        let chosen: std::pin::Pin<Box<dyn Future<Output = Chosen> + Send>> = if purpose.is_save() {
-            Box::pin(dialog.save_file())
-        } else {
-            Box::pin(dialog.pick_file())
-        };
+        let chosen: std::pin::Pin<Box<dyn Future<Output = Chosen> + Send>> =
+            if purpose == Purpose::ExportFolder {
+                Box::pin(dialog.pick_folder())
+            } else if purpose.is_save() {
+                Box::pin(dialog.save_file())
+            } else {
+                Box::pin(dialog.pick_file())
+            };
         let thread = std::thread::Builder::new()
             .name("file-dialog".into())
             .spawn(move || {
@@ -257,7 +273,7 @@ fn problem(path: &Path, field: &mut Field) -> Option<String> {
 /// A name without an extension gets the one that fits.
 fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
     let extension = match purpose {
-        Purpose::Open | Purpose::ImportRig => return path,
+        Purpose::Open | Purpose::ImportRig | Purpose::ExportFile | Purpose::ExportFolder => return path,
         Purpose::ExportRig => "json",
         Purpose::SaveAs => "loom",
         Purpose::Screenshot => "png",

@@ -181,10 +181,11 @@ impl Keymap {
         chord.map_or_else(String::new, Chord::to_string)
     }
 
-    /// Gives an action a chord, in place of those it had; others that had it in the same place lose it.
-    pub fn rebind(&mut self, id: &str, chord: Chord) {
+    /// Gives an action a chord, in place of those it had; others that had it in the same place lose it: their titles.
+    pub fn rebind(&mut self, id: &str, chord: Chord) -> Vec<&'static str> {
+        let mut losers = Vec::new();
         let Some(index) = ACTIONS.iter().position(|a| a.id == id) else {
-            return;
+            return losers;
         };
         for (i, action) in ACTIONS.iter().enumerate() {
             let clashes = i != index && action.when.meets(ACTIONS[index].when);
@@ -192,10 +193,24 @@ impl Keymap {
                 self.chords[i].retain(|c| *c != chord);
                 let left = self.chords[i].iter().map(Chord::to_string).collect();
                 self.own.insert(action.id.to_owned(), left);
+                losers.push(action.title);
             }
         }
         self.chords[index] = vec![chord];
         self.own.insert(id.to_owned(), vec![chord.to_string()]);
+        losers
+    }
+
+    /// True if the user changed the chords of an action.
+    pub fn is_changed(&self, id: &str) -> bool {
+        self.own.contains_key(id)
+    }
+
+    /// Gives an action the chords of the preset again.
+    pub fn reset_one(&mut self, id: &str) {
+        let mut own = self.own.clone();
+        own.remove(id);
+        *self = Self::new(&self.preset.clone(), own);
     }
 
     /// Forgets what the user changed.

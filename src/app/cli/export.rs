@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
-use crate::app::export::{ExportOptions, ExportProgress, Format, export, view_camera};
+use crate::app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
 use crate::app::open;
 use crate::app::picture::ShotOptions;
 use crate::app::state::{CameraSource, LidarModel};
@@ -92,20 +92,8 @@ impl Export {
                 ..ShotOptions::default()
             },
         };
-        if self.format == "all" {
-            std::fs::create_dir_all(&path).with_context(|| format!("create {}", path.display()))?;
-        }
         let start = Instant::now();
-        let mut files = Vec::new();
-        for format in formats {
-            files.extend(export(
-                &scene,
-                format,
-                &options,
-                &path,
-                &ExportProgress::default(),
-            )?);
-        }
+        let files = export_all(&scene, &formats, &options, &path, &ExportProgress::default())?;
         let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
         let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();
         let report = json!({ "files": paths, "bytes": bytes, "wall_s": start.elapsed().as_secs_f64() });

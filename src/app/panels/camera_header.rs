@@ -37,6 +37,9 @@ const SOURCES: [(CameraSource, &str, &str); 3] = [
     ),
 ];
 
+/// Width that the number of LiDAR returns takes, points.
+const LIDAR_TEXT: f32 = 130.0;
+
 /// Draws the row.
 pub fn header(
     ui: &mut Ui,
@@ -71,8 +74,11 @@ pub fn header(
             if ui.button("Sensors…").clicked() {
                 commands.push(Command::ToggleSensors);
             }
-            if let Some(n) = input.lidar_points {
-                let text = format!("LiDAR  {} returns", thousands(n));
+            let text = input
+                .lidar_points
+                .map(|n| format!("LiDAR  {} returns", thousands(n)));
+            // Only where it hides no button.
+            if let Some(text) = text.filter(|_| ui.available_width() > LIDAR_TEXT) {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             }
         });

@@ -12,19 +12,33 @@ use crate::app::theme;
 pub struct ExportInput<'a> {
     /// The export that is under way.
     pub busy: Option<&'a ExportProgress>,
+    /// A dialog of the system can be asked for the path.
+    pub browse: bool,
     /// Findings of severity error.
     pub errors: usize,
+}
+
+/// What the user asked the dialog for.
+pub enum Asked {
+    /// Write these.
+    Write(Vec<Format>),
+    /// Choose the path by a dialog of the system.
+    Browse,
+    /// Show what the checks found.
+    Checks,
 }
 
 /// What the user has chosen so far.
 #[derive(Clone, Debug)]
 pub struct ExportPanel {
-    /// What is exported.
-    pub format: Format,
+    /// What is exported; none: everything, into one folder.
+    pub format: Option<Format>,
     /// How.
     pub options: ExportOptions,
     /// Where to.
     pub path: String,
+    /// Where the last export went: that it is there is no surprise.
+    pub written: String,
     folder: std::path::PathBuf,
     stem: String,
 }
@@ -38,7 +52,8 @@ impl ExportPanel {
             .to_string_lossy()
             .into_owned();
         let mut panel = Self {
-            format: Format::Occ3d,
+            format: Some(Format::Occ3d),
+            written: String::new(),
             options: ExportOptions::default(),
             path: String::new(),
             folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
@@ -50,22 +65,28 @@ impl ExportPanel {
 
     /// A place for the chosen format: a file, or a folder for the formats that fill one.
     fn suggested(&self) -> String {
-        let name = match self.format.file_name() {
-            Some(file) => format!("{}_{file}", self.stem),
-            None => format!("{}_{}", self.stem, self.format.name()),
+        let name = match self.format.map(|f| (f.file_name(), f.name())) {
+            Some((Some(file), _)) => format!("{}_{file}", self.stem),
+            Some((None, name)) => format!("{}_{name}", self.stem),
+            None => format!("{}_export", self.stem),
         };
         self.folder.join(name).display().to_string()
     }
+
+    /// True if the path names a folder, which is filled.
+    pub fn fills_a_folder(&self) -> bool {
+        self.format.is_none_or(|f| f.file_name().is_none())
+    }
 }
 
-/// Draws the dialog; the format once the user wants it written.
+/// Draws the dialog; what the user asks for.
 pub fn export_window(
     ui: &Ui,
     input: &ExportInput<'_>,
     panel: &mut ExportPanel,
     open: &mut bool,
-) -> Option<Format> {
-    let mut wanted = None;
+) -> Option<Asked> {
+    let mut asked = None;
     egui::Window::new("Export")
         .id(egui::Id::unique("export"))
         .open(open)
@@ -77,16 +98,19 @@ pub fn export_window(
             formats(ui, panel);
             ui.separator();
             options(ui, panel);
-            let caption = match panel.format.file_name() {
-                Some(_) => "File",
-                None => "Folder",
-            };
+            let folder = panel.fills_a_folder();
             ui.horizontal(|ui| {
-                ui.label(caption);
-                let field = egui::TextEdit::singleline(&mut panel.path).desired_width(f32::INFINITY);
-                ui.add(field).accessible_name("Export path");
+                ui.label(if folder { "Folder" } else { "File" });
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if input.browse && ui.button("Browse…").clicked() {
+                        asked = Some(Asked::Browse);
+                    }
+                    let field = egui::TextEdit::singleline(&mut panel.path).desired_width(f32::INFINITY);
+                    ui.add(field).accessible_name("Export path");
+                });
             });
-            if panel.format.file_name().is_some() && Path::new(panel.path.trim()).is_file() {
+            let there = Path::new(panel.path.trim()).is_file() && panel.path != panel.written;
+            if !folder && there {
                 ui.colored_label(
                     ui.visuals().warn_fg_color,
                     "The file exists and will be replaced.",
@@ -97,21 +121,27 @@ pub fn export_window(
                     1 => "The checks found an error in this scene.".to_owned(),
                     n => format!("The checks found {n} errors in this scene."),
                 };
-                ui.colored_label(ui.visuals().warn_fg_color, text);
+                ui.horizontal(|ui| {
+                    ui.colored_label(ui.visuals().warn_fg_color, text);
+                    if ui.small_button("Show checks").clicked() {
+                        asked = Some(Asked::Checks);
+                    }
+                });
             }
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let enabled = input.busy.is_none() && !panel.path.trim().is_empty();
                 let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
-                    wanted = Some(panel.format);
+                    let all = || Format::ALL.to_vec();
+                    asked = Some(Asked::Write(panel.format.map_or_else(all, |f| vec![f])));
                 }
                 if let Some(progress) = input.busy {
                     busy(ui, progress);
                 }
             });
         });
-    wanted
+    asked
 }
 
 /// How far the export is, and the button that ends it.
@@ -119,7 +149,7 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     let stop = !progress.is_cancelled();
     if ui
         .add_enabled(stop, egui::Button::new("Cancel export"))
-        .on_hover_text("Stops before the next picture; nothing is written")
+        .on_hover_text("Stops before the next picture; files of what is not ready are not written")
         .clicked()
     {
         progress.cancel();
@@ -146,8 +176,9 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
 fn formats(ui: &mut Ui, panel: &mut ExportPanel) {
     let before = panel.format;
     for format in Format::ALL {
-        ui.radio_value(&mut panel.format, format, format.what());
+        ui.radio_value(&mut panel.format, Some(format), format.what());
     }
+    ui.radio_value(&mut panel.format, None, "Everything above, into one folder");
     if panel.format != before {
         panel.path = panel.suggested();
     }
@@ -163,6 +194,11 @@ fn options(ui: &mut Ui, panel: &mut ExportPanel) {
                     .accessible_name(name);
             }
         });
+    };
+    let Some(format) = format else {
+        size(ui, &mut options.camera_size);
+        ui.weak("Cameras of this size; everything else as it is set for its kind.");
+        return;
     };
     match format {
         Format::Semantic | Format::Depth => {

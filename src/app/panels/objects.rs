@@ -235,7 +235,7 @@ fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let mut area = egui::ScrollArea::vertical()
         .id_salt("history")
         .auto_shrink([false, false])
-        .stick_to_bottom(true);
+        .stick_to_bottom(at + 1 == labels.len());
     // Another state is shown: its line comes into sight.
     let shown = ui.scope_id().with("history position");
     if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {

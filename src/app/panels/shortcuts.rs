@@ -1,6 +1,7 @@
 //! The sheet of keys: searched, changed by a click and a press, with presets.
 
-use egui::{Id, Key, Modal, Ui, vec2};
+use egui::accesskit::Role;
+use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
 
 use crate::app::actions::{ACTIONS, ActionDef, Group, When};
 use crate::app::keymap::{Chord, Chords, Keymap, PRESETS};
@@ -24,6 +25,7 @@ const FIXED: [(&str, &str); 9] = [
 pub struct Shortcuts {
     query: String,
     awaiting: Option<&'static str>,
+    said: String, // what the last change took from others
 }
 
 impl Shortcuts {
@@ -84,14 +86,18 @@ impl Shortcuts {
                 }
             });
         });
-        let text = match self.awaiting {
-            Some(_) => "Press the new chord. Esc leaves it as it was.",
-            None => "Click a chord to change it.",
+        let (text, color) = match self.awaiting {
+            Some(_) => (
+                "Press the new chord. Esc leaves it as it was.",
+                theme::text_weak(),
+            ),
+            None if !self.said.is_empty() => (self.said.as_str(), theme::warn()),
+            None => ("Click a chord to change it.", theme::text_weak()),
         };
-        ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+        ui.label(egui::RichText::new(text).small().color(color));
     }
 
-    fn group(&mut self, ui: &mut Ui, group: Group, title: &str, keymap: &Keymap) {
+    fn group(&mut self, ui: &mut Ui, group: Group, title: &str, keymap: &mut Keymap) {
         let wanted = self.query.to_lowercase();
         let fits = |a: &&ActionDef| {
             let text = format!("{} {}", a.title, keymap.text(a.id)).to_lowercase();
@@ -127,6 +133,17 @@ impl Shortcuts {
                 };
                 let title = format!("{}{place}", action.title);
                 ui.label(egui::RichText::new(title).color(theme::text_weak()));
+                if keymap.is_changed(action.id) {
+                    let back = ui
+                        .small_button("Reset")
+                        .on_hover_text("The chord of the preset again");
+                    let name = format!("Reset the chord of {}", action.title);
+                    back.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                    if back.clicked() {
+                        keymap.reset_one(action.id);
+                        self.said.clear();
+                    }
+                }
             });
         }
     }
@@ -165,7 +182,15 @@ impl Shortcuts {
         let Some((key, modifiers)) = pressed else { return };
         self.awaiting = None;
         if key != Key::Escape {
-            keymap.rebind(id, Chord::pressed(key, modifiers));
+            let chord = Chord::pressed(key, modifiers);
+            let losers = keymap.rebind(id, chord);
+            self.said = match losers.is_empty() {
+                true => String::new(),
+                false => format!(
+                    "{chord} was the chord of {}: it is not any more.",
+                    losers.join(", ")
+                ),
+            };
         }
     }
 }
