@@ -202,7 +202,9 @@ impl Dock {
             match self.tree.tiles.get(id) {
                 Some(Tile::Pane(pane)) => match pane {
                     Pane::Tools => needed = needed.max(230.0),
-                    Pane::Objects | Pane::Prompt | Pane::Versions => needed = needed.max(266.0),
+                    Pane::Objects | Pane::Prompt | Pane::Versions | Pane::History => {
+                        needed = needed.max(266.0)
+                    }
                     Pane::Trade => needed = needed.max(400.0),
                     _ => return 0.0,
                 },
@@ -335,7 +337,12 @@ fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> Til
 /// Tools on the left and objects on the right of what stands in the middle.
 fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     let tools = tiles.insert_pane(Pane::Tools);
-    let column = [(Pane::Objects, 2.0), (Pane::Prompt, 1.6), (Pane::Versions, 0.95)];
+    let column = [
+        (Pane::Objects, 1.7),
+        (Pane::Prompt, 1.65),
+        (Pane::History, 0.75),
+        (Pane::Versions, 0.9),
+    ];
     let column = row(tiles, LinearDir::Vertical, &column);
     let parts = [(tools, 232.0), (center, 1100.0), (column, 268.0)];
     join(tiles, LinearDir::Horizontal, &parts)
@@ -442,6 +449,7 @@ mod tests {
             Pane::Objects,
             Pane::Prompt,
             Pane::Versions,
+            Pane::History,
             Pane::Cameras,
             Pane::Bev,
             Pane::View3d,

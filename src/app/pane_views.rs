@@ -12,6 +12,7 @@ use super::canvas::CanvasInput;
 use super::command::Command;
 use super::compare::{CompareMode, tag, wipe_line};
 use super::panels::cameras::CamerasInput;
+use super::panels::history::{history_title, history_ui};
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
 use super::panels::panes;
@@ -43,6 +44,10 @@ impl SceneloomApp {
                 });
             }
             Pane::Camera(_) => panes::camera_controls(ui, &mut self.state),
+            Pane::History => {
+                let text = history_title(&self.document);
+                ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+            }
             _ => {}
         }
     }
@@ -77,6 +82,9 @@ impl SceneloomApp {
             Pane::Trade => {
                 let (tuning, params) = (&mut self.tuning, self.live.params);
                 theme::panel_frame().show(ui, |ui| trade_ui(ui, tuning, &params, commands));
+            }
+            Pane::History => {
+                theme::panel_frame().show(ui, |ui| history_ui(ui, &self.document, commands));
             }
             Pane::Objects => {
                 theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));

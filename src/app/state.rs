@@ -84,15 +84,17 @@ pub enum Pane {
     Versions,
     /// Options of the tool in hand, map layers.
     Tools,
-    /// The chosen box in numbers, all boxes, the history.
+    /// The chosen box in numbers, all boxes.
     Objects,
+    /// The steps that can be undone.
+    History,
     /// The quality slider, its measurements, the receipt of the last edit.
     Trade,
 }
 
 impl Pane {
     /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 16] = [
+    pub const CHOICES: [Pane; 17] = [
         Pane::Bev,
         Pane::View3d,
         Pane::Cameras,
@@ -102,6 +104,7 @@ impl Pane {
         Pane::Versions,
         Pane::Tools,
         Pane::Objects,
+        Pane::History,
         Pane::Trade,
         Pane::Camera(0),
         Pane::Camera(1),
@@ -124,6 +127,7 @@ impl Pane {
             Pane::Versions => "Versions".into(),
             Pane::Tools => "Tools".into(),
             Pane::Objects => "Objects".into(),
+            Pane::History => "History".into(),
             Pane::Trade => "Speed and accuracy".into(),
         }
     }

@@ -274,6 +274,8 @@ fn a_finding_is_waived_with_a_reason_and_taken_back() {
         bench.frame().waivers,
         "kept in the project"
     );
+    bench.click("1 waived");
+    bench.steps(3);
     assert!(bench.sees(&format!("{finding}  ·  it turns round")));
     bench.click(&format!("Take back: {finding}"));
     bench.checked();

@@ -9,6 +9,7 @@ mod completion;
 pub mod dialogs;
 pub mod export;
 pub mod fields;
+pub mod history;
 pub mod layers;
 pub mod lidar_sweep;
 pub mod lit;

@@ -1,4 +1,4 @@
-//! The right panel: the chosen box in numbers, the list of boxes, the history.
+//! The right panel: the chosen box in numbers, the list of boxes.
 
 use egui::{DragValue, Ui};
 use glam::DVec3;
@@ -12,11 +12,6 @@ use crate::app::tools::{Choose, ToolCommand};
 use crate::editor::transform::Orientation;
 use crate::editor::{Document, Edit, arrange};
 use crate::scene::{BoxId, Class, Frame, SceneBox};
-
-/// What the history and its title take at the bottom, points.
-const HISTORY_HEIGHT: f32 = 168.0;
-/// Height of a line of it, with the gap.
-const HISTORY_ROW: f32 = theme::ROW - 3.0;
 
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
@@ -36,9 +31,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         n => format!("{n} boxes"),
     };
     section(ui, &title);
-    // The history takes no more than it has lines for.
-    let lines = document.history().len() as f32 * HISTORY_ROW + 40.0;
-    let list_height = (ui.available_height() - HISTORY_HEIGHT.min(lines)).max(80.0);
+    let list_height = ui.available_height().max(80.0);
     let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
     boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
     let list = egui::ScrollArea::vertical()
@@ -53,9 +46,6 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             box_row(ui, b, guess, state.is_chosen(b.id), commands);
         }
     });
-    ui.add_space(theme::GAP);
-    section(ui, &history_title(document));
-    history(ui, document, commands);
 }
 
 /// Scrolls to the chosen box, once, when another one was chosen elsewhere.
@@ -220,56 +210,6 @@ fn speed(ui: &mut Ui, b: &SceneBox) {
         };
         ui.label(text);
         ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::text_weak()));
-    });
-}
-
-/// What the history takes of the memory that it may.
-fn history_title(document: &Document) -> String {
-    let mb = |bytes: usize| bytes as f64 / f64::from(1 << 20);
-    let (used, limit) = (mb(document.history_bytes()), mb(document.history_limit()));
-    format!("History   {used:.1} of {limit:.0} MB")
-}
-
-fn history(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
-    let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
-    let mut area = egui::ScrollArea::vertical()
-        .id_salt("history")
-        .auto_shrink([false, false])
-        .stick_to_bottom(at + 1 == labels.len());
-    // Another state is shown: its line comes into sight.
-    let shown = ui.scope_id().with("history position");
-    if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {
-        ui.data_mut(|d| d.insert_temp(shown, at));
-        let above = at as f32 * HISTORY_ROW - ui.available_height() / 2.0;
-        area = area.vertical_scroll_offset(above.max(0.0));
-    }
-    area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
-        for i in range {
-            let color = match i.cmp(&at) {
-                std::cmp::Ordering::Less => theme::text(),
-                std::cmp::Ordering::Equal => theme::text_strong(),
-                std::cmp::Ordering::Greater => theme::text_weak().gamma_multiply(0.7),
-            };
-            let size = egui::vec2(ui.available_width(), theme::ROW - 4.0);
-            let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
-            let name = format!("History {i} {}", labels[i]);
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
-            });
-            let fill = match (i == at, response.hovered()) {
-                (true, _) => theme::field(),
-                (_, true) => theme::field().gamma_multiply(0.6),
-                _ => egui::Color32::TRANSPARENT,
-            };
-            ui.painter().rect_filled(rect, theme::RADIUS, fill);
-            let font = egui::TextStyle::Body.resolve(ui.style());
-            let text_at = rect.left_center() + egui::vec2(8.0, 0.0);
-            ui.painter()
-                .text(text_at, egui::Align2::LEFT_CENTER, labels[i], font, color);
-            if response.clicked() {
-                commands.push(Command::JumpTo(i));
-            }
-        }
     });
 }
 

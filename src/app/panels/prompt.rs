@@ -39,6 +39,7 @@ pub struct PromptPane {
     notes: Vec<String>,
     wants_focus: bool,
     offered: Option<Completion>,
+    is_sent: bool, // and not changed since
     plan: Plan,
 }
 
@@ -81,6 +82,18 @@ impl PromptPane {
         {
             self.complete(ui.ctx(), first);
         }
+        if has_focus && self.is_sent {
+            // The field has nothing to take back that its user means.
+            let undone = [
+                (Modifiers::CTRL, Command::Undo),
+                (Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
+            ];
+            for (modifiers, command) in undone.into_iter().rev() {
+                if ui.input_mut(|i| i.consume_key(modifiers, Key::Z)) {
+                    commands.push(command);
+                }
+            }
+        }
         let field = egui::TextEdit::multiline(&mut self.prompt)
             .id(field_id())
             .lock_focus(self.offered.is_some())
@@ -102,6 +115,7 @@ impl PromptPane {
         if field.changed() {
             (self.back, self.questions) = (0, Vec::new());
             self.notes.clear();
+            self.is_sent = false;
         }
         let (mut make, mut change) = (false, false);
         if field.has_focus() {
@@ -149,9 +163,7 @@ impl PromptPane {
             });
         });
         if change || make {
-            // What comes next is worked on with the keys of the tools.
-            field.surrender_focus();
-            self.offered = None;
+            self.sent(ui.ctx());
         }
         if change {
             self.change(scene, commands);
@@ -220,6 +232,18 @@ impl PromptPane {
             self.complete(ui.ctx(), end);
             self.wants_focus = true;
         }
+    }
+
+    /// The words were taken: the next ones replace them as they are typed.
+    fn sent(&mut self, ctx: &egui::Context) {
+        (self.offered, self.is_sent) = (None, true);
+        let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
+        let all = CCursorRange::two(
+            CCursor::default(),
+            CCursor::new(egui::text::CharIndex(self.prompt.chars().count())),
+        );
+        state.cursor.set_char_range(Some(all));
+        state.store(ctx, field_id());
     }
 
     fn complete(&mut self, ctx: &egui::Context, end: &str) {

@@ -144,15 +144,37 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
 pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
     let mut scratch = scene.clone();
     let mut edits = Vec::new();
-    for fix in waive::open(scene.frame(), findings).filter_map(|f| f.fixes.first()) {
-        let mut next = scratch.clone();
-        if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
-            scratch = next;
-            edits.extend(fix.edits.iter().cloned());
+    let mut fix = |findings: &[&Finding], scratch: &mut Scene| {
+        for fix in findings.iter().filter_map(|f| f.fixes.first()) {
+            let mut next = scratch.clone();
+            if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
+                *scratch = next;
+                edits.extend(fix.edits.iter().cloned());
+            }
         }
+    };
+    fix(
+        &waive::open(scene.frame(), findings).collect::<Vec<_>>(),
+        &mut scratch,
+    );
+    // A box that is moved out of one may come to stand in the next.
+    for _ in 0..MOST_ROUNDS {
+        let left = run_checks(&scratch, None);
+        let crowded: Vec<&Finding> = waive::open(scratch.frame(), &left)
+            .filter(|f| f.check == overlapping_boxes::NAME)
+            .collect();
+        if crowded.is_empty() {
+            break;
+        }
+        let mut next = scratch.clone();
+        fix(&crowded, &mut next);
+        scratch = next;
     }
     edits
 }
+
+/// Times that boxes are moved apart again, at most.
+const MOST_ROUNDS: usize = 8;
 
 impl Context<'_> {
     /// An id that no box has, nor had when the frame was last generated; another one each time.

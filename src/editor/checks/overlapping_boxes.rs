@@ -58,11 +58,8 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
                     name_of(b),
                     100.0 * share.min(1.0)
                 ),
-                fixes: if wrong {
-                    vec![remove, apart]
-                } else {
-                    vec![apart, remove]
-                },
+                // What takes a box away is never what is done without asking for it by name.
+                fixes: vec![apart, remove],
             });
         }
     }

@@ -227,7 +227,7 @@ fn overlaps_are_moved_apart_or_removed() {
     let finding = only(&street(&objects), "overlapping_boxes", Some(6));
     assert_eq!(
         (finding.severity, finding.fixes[0].label),
-        (Severity::Error, "Remove the later box")
+        (Severity::Error, "Move apart")
     );
     assert!(
         finding.text.starts_with("car 1 and car 6 overlap by 6"),
@@ -250,12 +250,12 @@ fn three_in_one_place_are_fixed_at_once() {
     let findings = run_checks(&scene, None);
     assert_eq!(checks(&findings), ["overlapping_boxes"; 3]);
     let edits = fix_all(&scene, &findings);
-    assert_eq!(
-        edits,
-        [Edit::RemoveBox { id: BoxId(6) }, Edit::RemoveBox { id: BoxId(7) }]
+    assert!(
+        edits.iter().all(|e| matches!(e, Edit::MoveBox { .. })),
+        "nothing is taken away unasked: {edits:?}"
     );
     edits.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
-    assert_eq!(run_checks(&scene, None), []);
+    assert!(!checks(&run_checks(&scene, None)).contains(&"overlapping_boxes"));
 }
 
 #[test]
