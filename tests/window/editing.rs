@@ -130,9 +130,9 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
     bench.click("Undo");
     assert!(bench.frame().boxes.contains_key(&BoxId(7)));
     // A step of the history is one click away.
-    bench.click("History 3 Turn box");
-    assert_eq!(bench.frame().boxes[&BoxId(8)], turned);
-    assert_eq!(bench.app().document.position(), 3);
+    bench.click("History 5 Duplicate box");
+    assert!(bench.frame().boxes.contains_key(&BoxId(9)), "the copy is back");
+    assert_eq!(bench.app().document.position(), 5);
 }
 
 #[test]

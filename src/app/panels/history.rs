@@ -19,6 +19,7 @@ pub fn history_title(document: &Document) -> String {
 /// Draws every step; a click goes there.
 pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
+    ui.spacing_mut().item_spacing.y = HISTORY_ROW - (theme::ROW - 4.0);
     let mut area = egui::ScrollArea::vertical()
         .id_salt("history")
         .auto_shrink([false, false])
