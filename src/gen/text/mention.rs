@@ -260,7 +260,7 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     R::Crossing | R::Following | R::OppositeDirection | R::SameDirection => {
                         spec.state = spec.state.or(Some(ObjectState::Moving));
                     }
-                    R::WaitingAt => spec.state = Some(ObjectState::Waiting),
+                    R::WaitingAt | R::Blocking => spec.state = Some(ObjectState::Waiting),
                     _ => {}
                 }
             }

@@ -248,6 +248,14 @@ impl<'a> Parser<'a> {
                 };
                 return self.pronoun(&its);
             }
+            // "the approaching car"
+            Sense::Rel(_)
+                if matches!(item.words.as_str(), "approaching" | "opposing")
+                    && (self.pre.article.is_some() || self.pre.count.is_some())
+                    && self.noun_directly(self.at + 1) =>
+            {
+                self.fronted_once(&[RelationKind::OppositeDirection], span);
+            }
             Sense::Rel(_) if self.stands_alone(item) => return true,
             Sense::Rel(kind) => {
                 if kind == RelationKind::Near

@@ -262,7 +262,7 @@ pub const FAR_SIDE: &str = "on the opposite pavement|on the opposite sidewalk|on
 /// One on each side.
 pub const BOTH_SIDES: &str = "on both sidewalks|on both pavements|on both footpaths|both sidewalks|both pavements|on either sidewalk|on each sidewalk|on both kerbs|on both curbs|at both kerbs|on both footways|on both sides|on either side|on each side|both sides|either side|each side|along both sides|on the left and right|left and right|on the left and on the right|to the left and right|on the left and the right|to both sides|at both sides|along each side|down both sides|on the left and right side|on the left and right sides|on the left and right hand side";
 /// Prepositions whose meaning depends on the place that follows.
-pub const IN: &str = "in|on|onto|into|along|inside|within|over|upon|through|down|up|in the middle of|in the centre of|in the center of|throughout|atop|on top of|all over|all along|occupying part of|out on|on to|inside of|off|line|lines|lining";
+pub const IN: &str = "in the middle of|in the centre of|in the center of|right in the middle of|into the middle of|onto the middle of|in the very middle of|smack in the middle of|bang in the middle of|in the dead centre of|in|on|onto|into|along|inside|within|over|upon|through|down|up|in the middle of|in the centre of|in the center of|throughout|atop|on top of|all over|all along|occupying part of|out on|on to|inside of|off|line|lines|lining";
 /// The same, less exact.
 pub const AT: &str = "at|by|outside|waiting for|stopped for|before the|waits for|wait for|stopping for|stops for|stop for|yielding to|yielding for";
 /// Next to a strip or an object.
