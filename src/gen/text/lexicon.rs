@@ -221,7 +221,8 @@ fn build() -> Table {
                 put(many, Sense::Noun(noun, true));
             }
             put(one, Sense::Noun(noun, false));
-            if !irregular {
+            // ("childs" is said, too)
+            if !irregular || !one.ends_with("man") {
                 put(&plural(one), Sense::Noun(noun, true));
             }
         }

@@ -291,7 +291,12 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
         Prep::Across => match anchor {
             Lane(_) if walks(spec.class) || moving => out.push((R::Crossing, anchor)),
             Lane(_) => out.push((R::Blocking, anchor)),
-            Crossing => out.push((R::On, Crossing)),
+            Crossing => {
+                if !walks(spec.class) && !moving {
+                    spec.state = Some(ObjectState::Waiting); // it lies across it
+                }
+                out.push((R::On, Crossing));
+            }
             _ => out.push((R::Across, anchor)),
         },
         Prep::FarSide => far_side(spec.class, parked, &mut out),

@@ -38,6 +38,7 @@ struct Gather<'a, 'b> {
     out: Vec<Spot>,
     base: Spot,
     against: bool, // it comes towards the ego
+    with: bool,    // it goes the ego's way
     own_way: bool, // traffic of the ego's direction is meant
 }
 
@@ -82,7 +83,10 @@ pub fn spots(
             on_road: false,
             anywhere: false,
         },
-        against: said(RelationKind::OppositeDirection),
+        // (who looks at the ego vehicle from ahead in its own lane stands against the traffic)
+        against: said(RelationKind::OppositeDirection)
+            || said(RelationKind::Facing) && said(RelationKind::InFrontOf),
+        with: said(RelationKind::SameDirection),
         own_way: (said(RelationKind::InFrontOf)
             || said(RelationKind::Behind)
             || said(RelationKind::Blocking))
@@ -309,7 +313,9 @@ impl Gather<'_, '_> {
             let across = self.draw.range(-0.25, 0.25);
             let wrong_way = self.against
                 && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right)
-                && l.role == role;
+                && l.role == role
+                // overtaking
+                || self.with && l.role == LaneRole::Oncoming && role == LaneRole::Oncoming;
             let yaw = l.dir.to_angle()
                 + if wrong_way { PI } else { 0.0 }
                 + if people {

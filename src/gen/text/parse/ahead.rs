@@ -36,6 +36,8 @@ impl Parser<'_> {
                             | "just"
                             | "other"
                             | "there is"
+                            | "theres"
+                            | "there"
                             | "there are"
                             | "is"
                             | "are"

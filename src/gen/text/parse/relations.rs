@@ -90,6 +90,7 @@ impl Parser<'_> {
             if !self.head.is_empty() || !self.chain {
                 self.new_clause();
             }
+            self.front = Some(frag.anchor);
             self.fronted.push(frag);
             self.chain = true;
             return;

@@ -37,8 +37,13 @@ impl<'a> Parser<'a> {
                     }
                     "i am" | "im" | "we are" | "i drive" | "we drive" | "i am driving" | "im driving"
                     | "we are driving" | "i am on" | "we are on" | "were"
-                        if self.pending.is_none() && self.head.is_empty() && !self.edits =>
+                        if self.pending.is_none()
+                            && (self.head.is_empty() || self.linked && self.fresh)
+                            && !self.edits =>
                     {
+                        if !self.head.is_empty() {
+                            self.new_clause();
+                        }
                         self.ego_subject = true;
                     }
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
@@ -170,7 +175,7 @@ impl<'a> Parser<'a> {
             Sense::Count(count) => {
                 let unit = matches!(self.sense(self.at + 1), Some(Sense::Unit(_)));
                 if unit && self.try_distance(f64::from(count.n), span) {
-                    return false;
+                    return self.distance.is_some();
                 }
                 if let (Some(Sense::Fraction(share)), Some(Sense::Unit(m))) =
                     (self.sense(self.at + 1), self.sense(self.at + 2))
@@ -420,6 +425,11 @@ impl<'a> Parser<'a> {
                     self.color(word, prenominal, span);
                 } else {
                     self.weather(weather, span);
+                    // "on an overcast day"
+                    let day = item.words.ends_with(" day") || item.words.ends_with(" daytime");
+                    if day && self.reading.description.time_of_day.is_none() {
+                        self.time(super::super::description::TimeOfDay::Day, span);
+                    }
                 }
             }
             Sense::Environment(environment) => {

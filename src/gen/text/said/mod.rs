@@ -85,6 +85,8 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     if let Some(c) = swap::swap(body, talk) {
         return vec![Piece::Meant(Box::new(c), None)];
     }
+    // people are on foot anyhow
+    let body = &without_feet(body)[..];
     let mut out: Vec<Piece> = Vec::new();
     let mut understood = false;
     let mut before: Option<String> = talk.last.clone();
@@ -113,6 +115,25 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
     }
     if understood { out } else { plain() }
+}
+
+/// The words without "on foot" and "who is on foot".
+fn without_feet(body: &[Token]) -> Vec<Token> {
+    let Some((i, n)) = find(
+        body,
+        &[
+            "who is on foot",
+            "who are on foot",
+            "that is on foot",
+            "that are on foot",
+            "on foot",
+        ],
+    ) else {
+        return body.to_vec();
+    };
+    let mut out = body.to_vec();
+    out.drain(i..i + n);
+    out
 }
 
 /// "why is the cyclist in front of me?" changes nothing; who it speaks of is remembered.
@@ -221,7 +242,20 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
                 && is(body.get(next + 1), &["it", "them", "him", "her"])
                 && !(from + 1..i).any(|k| is_place(&body[k..i]));
-            if !lead && !lifts && spoken && opens(rest, talk) && !starts_where(&body[from..i]) {
+            // "both walkers, they must change"
+            let named = is(rest.first(), words::PRONOUNS)
+                && t.kind == TokenKind::Comma
+                && first_noun(&body[from..i]).is_some_and(|n| {
+                    n.0 < 5
+                        && is(
+                            body.get(from),
+                            &["the", "both", "all", "that", "those", "these", "my"],
+                        )
+                })
+                && !body[from..i]
+                    .iter()
+                    .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
+            if !lead && !lifts && !named && spoken && opens(rest, talk) && !starts_where(&body[from..i]) {
                 out.push(&body[from..i]);
                 from = next;
                 i = next;
@@ -300,6 +334,12 @@ fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
             }
             _ => true,
         };
+    }
+    // "and a tram in its place"
+    if is(near.first(), &["a", "an", "another"])
+        && first_noun(near).is_some_and(|n| in_place(&near[n.1..]).is_some_and(|p| p.0 == 0))
+    {
+        return true;
     }
     let verb = super::rephrase::is_verb(first)
         && !is_place(inner)
@@ -398,6 +438,9 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     if let Some(found) = imperative(inner, talk) {
+        return Some(found);
+    }
+    if let Some(found) = turn_about(inner, talk) {
         return Some(found);
     }
     let s = subject(inner, talk, mood.caused)?;
@@ -519,6 +562,28 @@ fn fresh(s: &Subject, pred: &[Token], clause: &[Token]) -> Option<Vec<Piece>> {
         main.push(words::word("and", first));
     }
     main.pop();
+    // "directly behind the first one"
+    if let Some((i, n)) = find(
+        &main,
+        &[
+            "the first one",
+            "the first",
+            "the other one",
+            "the other",
+            "the existing one",
+            "the one that is there",
+            "the one already there",
+            "the one there",
+            "that one",
+            "the old one",
+            "the present one",
+            "it",
+        ],
+    ) && words::noun_at(&main[i + n..]).is_none()
+    {
+        let the = led("the", first, &[&s.noun]);
+        main.splice(i..i + n, the);
+    }
     let in_out = is(pred.first(), &["in"]);
     if !(helped || in_out) || counted && !in_out && main.is_empty() {
         return None;
@@ -707,6 +772,80 @@ fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) -> Option<V
     c.by = c.targets.first().cloned();
     let noun = Some(rest[a..b].to_vec());
     Some(vec![Piece::Meant(Box::new(c), noun)])
+}
+
+/// "turn the man so that his back is towards us": the end of the sentence says how.
+fn turn_about(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    if !is(
+        inner.first(),
+        &[
+            "turn",
+            "rotate",
+            "spin",
+            "swivel",
+            "orient",
+            "orientate",
+            "position",
+            "place",
+            "put",
+        ],
+    ) {
+        return None;
+    }
+    let (i, n) = find(
+        inner,
+        &["so that", "such that", "in such a way that", "with", "so"],
+    )?;
+    let end = first_noun(&inner[1..]).map_or(2, |x| x.1 + 1);
+    if i < end || inner[end..i].iter().any(|t| t.kind == TokenKind::Comma) {
+        return None;
+    }
+    let mut rest = &inner[i + n..];
+    while is(
+        rest.first(),
+        &["it", "he", "she", "they", "its", "his", "her", "their", "the"],
+    ) {
+        rest = &rest[1..];
+    }
+    let about = rest.iter().any(|t| {
+        matches!(
+            text(t),
+            "back"
+                | "backs"
+                | "rear"
+                | "tail"
+                | "front"
+                | "nose"
+                | "face"
+                | "faces"
+                | "facing"
+                | "looks"
+                | "look"
+                | "points"
+                | "point"
+        )
+    });
+    if !about {
+        return None;
+    }
+    let (kind, np) = match text(&inner[1]) {
+        "it" | "them" => (Kind::Back(Back::Same), &inner[1..2]),
+        "him" | "her" => (Kind::Back(Back::Person), &inner[1..2]),
+        _ => (Kind::Known, &inner[1..end]),
+    };
+    let s = Subject {
+        kind,
+        np: np.to_vec(),
+        noun: first_noun(np).map(|n| np[n.0..n.1].to_vec()).unwrap_or_default(),
+        pred: end,
+        plural: false,
+    };
+    let part = predicate::Part {
+        main: led("turn", &inner[0], &[rest]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
 }
 
 /// "put the car in the middle of my lane", "take it 5 m further back": what is known is moved.
