@@ -296,7 +296,10 @@ impl Parser<'_> {
                 .is_some_and(|noun| {
                     self.head.last().is_some_and(|i| {
                         let m = &self.mentions[*i];
-                        m.uncounted && m.bare && m.plural && m.classes.contains(&noun.classes[0])
+                        m.uncounted
+                            && (m.bare || m.definite)
+                            && m.plural
+                            && m.classes.contains(&noun.classes[0])
                     })
                 })
             && self.items[self.at + 1..]

@@ -34,6 +34,8 @@ pub enum Destination {
     },
     /// So far from the ego vehicle, on the side where it is.
     Range(f64),
+    /// So many times as far from the ego vehicle as it is.
+    Times(f64),
     /// So many lanes to the left; to the right if negative.
     Lanes(i32),
     /// Where the relations of this object hold; its anchors come with the command.

@@ -47,6 +47,16 @@ impl Editor<'_> {
                 let spec = range(&b, *metres, c.span);
                 self.to_place(&b, &spec, c);
             }
+            Some(Destination::Times(factor)) => {
+                let p = b.center_m.truncate();
+                let now = if p.x.abs() < p.y.abs() {
+                    p.y.abs()
+                } else {
+                    p.x.abs()
+                };
+                let spec = range(&b, now * factor, c.span);
+                self.to_place(&b, &spec, c);
+            }
             Some(Destination::Lanes(n)) => self.change_lane(&b, *n),
             Some(Destination::Place(spec)) => {
                 let mut spec = spec.as_ref().clone();

@@ -136,6 +136,43 @@ fn share_places(mentions: &mut [Mention]) {
             }
         }
     }
+    // Between two that stand anywhere there must be room.
+    for i in 0..mentions.len() {
+        let gap = if matches!(
+            mentions[i].spec.class,
+            Class::Pedestrian | Class::TrafficCone | Class::Barrier
+        ) {
+            11.0
+        } else {
+            18.0
+        };
+        let pair = mentions[i]
+            .spec
+            .relations
+            .iter()
+            .find_map(|r| match (r.relation, r.anchor, r.and) {
+                (RelationKind::Between, Anchor::Object(a), Some(Anchor::Object(b))) if a != b => {
+                    Some((a, b, r.span))
+                }
+                _ => None,
+            });
+        if let Some((a, b, span)) = pair
+            && mentions.get(a).is_some_and(|m| {
+                m.spec.relations.is_empty() && !m.definite && m.spec.state != Some(ObjectState::Parked)
+            })
+            && mentions.get(b).is_some_and(|m| {
+                m.spec.relations.is_empty() && !m.definite && m.spec.state != Some(ObjectState::Parked)
+            })
+        {
+            mentions[b].spec.relations.push(Stated {
+                relation: RelationKind::InFrontOf,
+                anchor: Anchor::Object(a),
+                and: None,
+                distance_m: Some(gap),
+                span,
+            });
+        }
+    }
     for i in 0..mentions.len() {
         let there: Vec<Stated> = mentions[i].spec.relations.clone();
         for r in &there {

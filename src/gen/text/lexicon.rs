@@ -299,6 +299,9 @@ fn build() -> Table {
             }
         });
     }
+    for (relations, list) in places::CLOSE {
+        words(list).for_each(|w| put(w, Sense::EgoRel(relations)));
+    }
     for (relations, list) in places::EGO_RELATIONS {
         words(list).for_each(|w| put(w, Sense::EgoRel(relations)));
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::holds::{Target, ego, holds, measured, overlap_m};
+use super::holds::{Target, course, ego, holds, measured, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
 use super::spots::{Spot, spots};
 use crate::generation::world::draw::Draw;
@@ -273,6 +273,7 @@ impl Placer<'_> {
         match o.class {
             Class::Pedestrian if moves => self.draw.range(0.9, 1.8),
             Class::Pedestrian if self.draw.chance(0.5) => self.draw.range(0.7, 1.6),
+            Class::Pedestrian => 0.0,
             Class::Bicycle => self.draw.range(2.5, 6.0),
             Class::ConstructionVehicle | Class::Trailer if !moves => 0.0,
             _ if moves || self.draw.chance(0.8) => self.draw.range(3.0, 12.0),
@@ -495,7 +496,13 @@ fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f6
         let missed = e
             .distance_m
             .map_or(0.0, |d| (measured(e.relation, &b, to) - d).abs());
-        missed.min(20.0)
+        // beside is level with it
+        let level = if e.relation == RelationKind::NextTo && to.class != Class::Pedestrian {
+            0.6 * course(to).dot(s.p - to.center_m.truncate()).abs()
+        } else {
+            0.0
+        };
+        missed.min(20.0) + level.min(12.0)
     };
     stated.iter().map(of).sum()
 }

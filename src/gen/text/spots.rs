@@ -351,10 +351,10 @@ impl Gather<'_, '_> {
                 let out = l.dir.perp() * side;
                 // How far the surface goes on.
                 let mut reach = 0.0;
-                while reach < 7.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
+                while reach < 9.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
                     reach += 0.2;
                 }
-                let blocked = reach >= 7.4 || reach < half;
+                let blocked = reach >= 9.4 || reach < half;
                 // Another lane lies between: not the outermost.
                 let inner = self.map.points.iter().any(|m| {
                     let d = m.p - l.p;

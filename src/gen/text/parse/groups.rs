@@ -78,10 +78,13 @@ impl Parser<'_> {
             self.again(Count::exactly(1), span);
             return;
         }
-        let parent = (0..self.mentions.len()).rev().find(|&i| {
-            !self.mentions[i].gone
-                && !self.mentions[i].is_anchor
-                && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+        let whole = self.whole.filter(|w| all && !self.mentions[*w].gone);
+        let parent = whole.or_else(|| {
+            (0..self.mentions.len()).rev().find(|&i| {
+                !self.mentions[i].gone
+                    && !self.mentions[i].is_anchor
+                    && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+            })
         });
         if matches!(
             self.item(self.at + 1).map(|i| i.words.as_str()),
@@ -158,6 +161,7 @@ impl Parser<'_> {
         part.spec.span = span;
         self.mentions.push(part);
         let index = self.mentions.len() - 1;
+        self.whole = Some(parent);
         let rest = left.n - n;
         let parent_spec = &mut self.mentions[parent].spec;
         parent_spec.count = Count {

@@ -63,6 +63,7 @@ pub(super) struct Parser<'a> {
     ego_named: bool,                       // "the host vehicle": "it" may mean it
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
+    pub(super) whole: Option<usize>,       // the group that the last part was taken from
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
@@ -120,6 +121,7 @@ impl<'a> Parser<'a> {
             ego_named: false,
             last_lane: None,
             last_place: None,
+            whole: None,
             front: None,
             pair: Vec::new(),
             with: false,

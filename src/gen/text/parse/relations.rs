@@ -56,6 +56,17 @@ impl Parser<'_> {
             Some(first) => (first, Some(anchor)),
             None => (anchor, if between { Some(anchor) } else { None }),
         };
+        // "I have to stop for a mother and two children": they are who it is about
+        if let (true, Anchor::Object(i), Prep::At, None) = (p.ego, anchor, &p.prep, and)
+            && self.mentions[i].is_anchor
+        {
+            self.mentions[i].is_anchor = false;
+            self.head = vec![i];
+            self.last = vec![i];
+            self.list = vec![i];
+            self.chain = true;
+            return;
+        }
         if let (true, Anchor::Object(i), Prep::Rels(kinds)) = (p.ego && and.is_none(), anchor, &p.prep) {
             // "I am behind a bus": the bus is in front of the ego vehicle.
             let frag = Frag {
@@ -65,6 +76,14 @@ impl Parser<'_> {
                 distance_m: p.distance_m,
                 span: p.span.to(span),
             };
+            let drawn = (0..self.mentions.len()).filter(|k| {
+                let m = &self.mentions[*k];
+                m.spec.class == Class::Trailer
+                    && m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+            });
+            for k in drawn.collect::<Vec<_>>() {
+                apply(&mut self.mentions[k].spec, &frag);
+            }
             let m = &mut self.mentions[i];
             m.is_anchor = false;
             apply(&mut m.spec, &frag);

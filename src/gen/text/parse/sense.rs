@@ -273,7 +273,11 @@ impl<'a> Parser<'a> {
             }
             Sense::EgoRel(kinds) => {
                 self.ego_named |= item.words.contains("ego") || item.words.contains("vehicle");
-                if is_prenominal(&item.words) && self.noun_directly(self.at + 1) && !self.takes_object(item) {
+                let led = self.pre.article.is_some() || self.pre.count.is_some();
+                if is_prenominal(&item.words)
+                    && self.noun_directly(self.at + 1)
+                    && (led || !self.takes_object(item))
+                {
                     self.fronted_once(kinds, span);
                     return false;
                 }

@@ -144,6 +144,20 @@ impl Parser<'_> {
     /// In the lane of what the target is behind or ahead of. True if it is that of something.
     fn lane_of_other(&mut self) -> bool {
         let targets = self.targets();
+        // (the truck of "behind the truck" was named last)
+        let placed = |t: &usize| {
+            self.mentions[*t].spec.relations.iter().any(|r| {
+                matches!(
+                    r.relation,
+                    RelationKind::Behind | RelationKind::Following | RelationKind::InFrontOf
+                ) && matches!(r.anchor, Anchor::Object(_))
+            })
+        };
+        let targets: Vec<usize> = if targets.iter().any(placed) {
+            targets
+        } else {
+            self.head.clone()
+        };
         let Some(&t) = targets.first() else {
             return false;
         };

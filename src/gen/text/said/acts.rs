@@ -167,14 +167,10 @@ const OUR_WAY: &[&str] = &[
     "in my direction",
     "in our direction",
     "in the direction i drive",
-    "with me",
-    "with us",
     "away from us like the others",
     "same direction as me",
     "same direction as us",
     "same direction",
-    "as i do",
-    "as we do",
 ];
 /// Verbs after which metres and a direction are a way to go, not a place.
 pub const MOTION: &[&str] = &[
@@ -411,6 +407,11 @@ pub fn acts(
         return Some(vec![remembered()]);
     }
     let main: Vec<Token> = joined(&said);
+    if let Some(factor) = times(&main) {
+        let mut c = about(Verb::Move, s, clause, talk);
+        c.destination = Some(Destination::Times(factor));
+        return Some(vec![meant(c)]);
+    }
     if let Some(destination) = step(&main, caused) {
         let mut c = about(Verb::Move, s, clause, talk);
         c.destination = Some(destination);
@@ -422,6 +423,33 @@ pub fn acts(
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "twice as far", "half the distance": how many times as far as now.
+pub fn times(main: &[Token]) -> Option<f64> {
+    let far = find(
+        main,
+        &["as far", "the distance", "as close", "as near", "distance"],
+    )?;
+    let before = &main[..far.0];
+    let factor = before.iter().rev().take(3).find_map(|t| {
+        Some(match text(t) {
+            "twice" | "double" | "doubled" => 2.0,
+            "half" | "halve" => 0.5,
+            "triple" | "thrice" => 3.0,
+            _ => return None,
+        })
+    })?;
+    let near = matches!(
+        text(
+            &main[far.0 + 1..far.0 + far.1]
+                .last()
+                .cloned()
+                .unwrap_or_else(|| main[far.0].clone())
+        ),
+        "close" | "near"
+    );
+    Some(if near { 1.0 / factor } else { factor })
 }
 
 /// "beside it" with what "it" is, if something but the subject was named.
@@ -875,6 +903,7 @@ fn placed(
             main = after.to_vec();
         }
     }
+    main = arrived(main);
     let mut c = about(Verb::Move, s, clause, talk);
     let head = match (&s.noun[..], talk.stand_in(s)) {
         ([], Some(word)) => vec![super::words::word(&word, &clause[0])],
@@ -929,6 +958,115 @@ fn placed(
     c.anchors = reading.description.foreground;
     c.destination = Some(Destination::Place(Box::new(spec)));
     Some(vec![Piece::Meant(Box::new(c), noun)])
+}
+
+/// "goes over to the left pavement" ends there, whichever way; "the other side" is that of the street.
+fn arrived(mut main: Vec<Token>) -> Vec<Token> {
+    let sides = [
+        "to the other side of the road",
+        "to the other side of the street",
+        "to the opposite side of the road",
+        "to the opposite side of the street",
+        "to the far side of the road",
+        "to the far side of the street",
+        "to the other side",
+        "to the opposite side",
+        "to the far side",
+        "on the other side",
+        "on the opposite side",
+        "over to the other side",
+        "on the other side of the road",
+        "on the other side of the street",
+    ];
+    if let Some((i, n)) = find(&main, &sides)
+        && !main[i + n..].first().is_some_and(|t| text(t) == "of")
+    {
+        let over = led("across the street", &main[i], &[]);
+        main.splice(i..i + n, over);
+        while i > 0 && main.first().is_some_and(|t| text(t) != "across") && main.len() > 3 {
+            main.remove(0);
+        }
+        return main;
+    }
+    // "comes back towards us"
+    let mut i = 1;
+    while i < main.len() {
+        if text(&main[i]) == "back"
+            && is(
+                main.get(i + 1),
+                &[
+                    "to", "towards", "toward", "into", "onto", "in", "on", "at", "here",
+                ],
+            )
+        {
+            main.remove(i);
+        }
+        i += 1;
+    }
+    let to = (1..main.len().min(5)).find(|i| {
+        matches!(text(&main[*i]), "to" | "onto" | "into") && !matches!(super::words::longest(&main[*i..]), Some((Sense::Rel(_) | Sense::EgoRel(_), n)) if n > 1)
+    });
+    let Some(to) = to else {
+        return main;
+    };
+    let way = |t: &Token| {
+        let w = text(t);
+        MOTION.contains(&w)
+            || matches!(
+                w,
+                "over"
+                    | "across"
+                    | "up"
+                    | "off"
+                    | "out"
+                    | "right"
+                    | "straight"
+                    | "back"
+                    | "along"
+                    | "down"
+                    | "on"
+                    | "through"
+                    | "and"
+            )
+            || super::words::is_finite(w, true)
+                && !matches!(
+                    w,
+                    "stand"
+                        | "stands"
+                        | "wait"
+                        | "waits"
+                        | "park"
+                        | "parks"
+                        | "next"
+                        | "close"
+                        | "closes"
+                        | "face"
+                        | "faces"
+                )
+            || w.ends_with("ing")
+                && matches!(
+                    look_up(w),
+                    Some(Sense::State(crate::scene::graph::ObjectState::Moving, _))
+                )
+    };
+    let ends = main.get(to + 1..).is_some_and(|rest| {
+        (0..rest.len().min(4)).any(|i| {
+            matches!(
+                super::words::longest(&rest[i..]),
+                Some((Sense::Place(..) | Sense::Noun(..), _))
+            )
+        })
+    });
+    if main[..to].iter().all(way) && ends {
+        let into = main[..to]
+            .iter()
+            .any(|t| matches!(text(t), "cross" | "crosses" | "crossed" | "crossing"))
+            && text(&main[to]) != "to";
+        if !into {
+            main.drain(..to);
+        }
+    }
+    main
 }
 
 /// "to the bus" is next to it, "to the left lane" in it.

@@ -445,7 +445,11 @@ fn lead(tokens: &[Token]) -> Option<usize> {
             )
         ) && !matches!(tokens[i].kind, TokenKind::Number(_))
     });
-    let verb = super::super::rephrase::is_verb(&tokens[0]);
+    let verb = super::super::rephrase::is_verb(&tokens[0])
+        || super::words::is_finite(text(&tokens[0]), true)
+        || tokens[..comma]
+            .iter()
+            .any(|t| super::words::HELPERS.contains(&text(t)));
     (plain && !verb && tokens.len() > comma + 3).then_some(comma + 1)
 }
 

@@ -229,6 +229,14 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
             }) {
                 next += 1;
             }
+            // "all cars but one can go"
+            if text(t) == "but"
+                && body.get(next).is_some_and(|t| number(t).is_some())
+                && body[from..i].iter().any(|t| matches!(text(t), "all" | "every"))
+            {
+                i += 1;
+                continue;
+            }
             let rest = &body[next.min(body.len())..(next + 40).min(body.len())];
             let lead = matches!(
                 text(&body[from]),
@@ -335,6 +343,10 @@ fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
             _ => true,
         };
     }
+    // "and in its place there is a roller"
+    if in_place(near).is_some_and(|p| p.0 == 0) && has_noun(&near[2..]) {
+        return true;
+    }
     // "and a tram in its place"
     if is(near.first(), &["a", "an", "another"])
         && first_noun(near).is_some_and(|n| in_place(&near[n.1..]).is_some_and(|p| p.0 == 0))
@@ -379,6 +391,12 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     if inner.iter().any(style) && !has_noun(inner) {
         return None;
+    }
+    if let Some(found) = distance_times(inner, talk) {
+        return Some(found);
+    }
+    if let Some(found) = all_but(inner) {
+        return Some(found);
     }
     if find(
         inner,
@@ -606,7 +624,8 @@ fn fragment(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let verb = inner[end..]
         .iter()
         .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
-    if !bare || verb || talk.fits(&inner[..end]) != 1 || !acts::is_step(&inner[end..]) {
+    let goal = is(inner.get(end), &["to", "onto", "into"]) && inner.len() > end + 1;
+    if !bare || verb || talk.fits(&inner[..end]) != 1 || !(goal || acts::is_step(&inner[end..])) {
         return None;
     }
     let s = Subject {
@@ -653,6 +672,86 @@ fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
         &inner[0],
         &[&inner[from..end], &inner[..verb], &inner[end..]],
     ))])
+}
+
+/// "double the distance to the truck"
+fn distance_times(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    if !is(inner.first(), &["double", "halve", "triple", "half"]) {
+        return None;
+    }
+    let factor = acts::times(inner)?;
+    let np_from = find(inner, &["to the", "of the", "from the", "and the"])?.0 + 1;
+    let end = np_from + first_noun(&inner[np_from..])?.1;
+    let s = Subject {
+        kind: Kind::Known,
+        np: inner[np_from..end].to_vec(),
+        noun: inner[end - 1..end].to_vec(),
+        pred: end,
+        plural: false,
+    };
+    let word = if factor > 2.0 {
+        "triple"
+    } else if factor > 1.0 {
+        "twice"
+    } else {
+        "half"
+    };
+    let part = predicate::Part {
+        main: led(&format!("{word} as far"), &inner[0], &[]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
+}
+
+/// "all parked cars but one can go"
+fn all_but(inner: &[Token]) -> Option<Vec<Piece>> {
+    if !is(inner.first(), &["all", "every"]) {
+        return None;
+    }
+    let but = inner
+        .iter()
+        .position(|t| matches!(text(t), "but" | "except" | "save" | "bar"))?;
+    let n = (but + 1..inner.len().min(but + 3)).find(|k| number(&inner[*k]).is_some())?;
+    let goes = inner[n + 1..].iter().any(|t| {
+        matches!(
+            text(t),
+            "go" | "goes"
+                | "gone"
+                | "leave"
+                | "left"
+                | "leaves"
+                | "away"
+                | "removed"
+                | "deleted"
+                | "disappear"
+                | "vanish"
+                | "out"
+                | "off"
+                | "home"
+        )
+    });
+    let before: Vec<Token> = inner[1..but]
+        .iter()
+        .filter(|t| !matches!(text(t), "the" | "of" | "my"))
+        .cloned()
+        .collect();
+    let end = (n + 1..inner.len())
+        .find(|k| HELPERS.contains(&text(&inner[*k])) || words::is_finite(text(&inner[*k]), true))
+        .unwrap_or(inner.len());
+    let after: Vec<Token> = inner[n + 1..end]
+        .iter()
+        .filter(|t| !matches!(text(t), "the" | "of" | "my" | "them"))
+        .cloned()
+        .collect();
+    let np = if has_noun(&before) { before } else { after };
+    (goes && has_noun(&np)).then(|| {
+        vec![Piece::Plain(led(
+            "keep exactly",
+            &inner[0],
+            &[&inner[n..=n], &np],
+        ))]
+    })
 }
 
 /// "only four must stay"
@@ -1009,6 +1108,14 @@ fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     };
     let rest = trimmed(&tokens[np_end..]);
     let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
+    if s.kind == Kind::Part && out_of {
+        let part = predicate::Part {
+            main: led("gone", first, &[]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
     if rest.is_empty() || out_of {
         return None;
     }

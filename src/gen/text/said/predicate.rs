@@ -270,9 +270,21 @@ impl Part {
         };
         let rest = &self.main[n..];
         // "has left the sidewalk", "go to the left", "goes over to", "left of me"
-        let ends = rest.is_empty()
-            || matches!(rest[0].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
-            || leads(rest, AFTERWARDS).is_some();
+        let ours = leads(
+            rest,
+            &[
+                "from me",
+                "from us",
+                "from the ego",
+                "from my car",
+                "from our car",
+            ],
+        )
+        .is_some();
+        let ends = !ours
+            && (rest.is_empty()
+                || matches!(rest[0].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
+                || leads(rest, AFTERWARDS).is_some());
         let bare = matches!(text(&self.main[0]), "out" | "off" | "away" | "left")
             && self.main.len() > 1
             && n == 1

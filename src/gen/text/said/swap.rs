@@ -86,27 +86,25 @@ pub fn swap(tokens: &[Token], talk: &Talk<'_>) -> Option<Command> {
                     "each others place",
                     "each others places",
                     "each other place",
-                    "the other way round",
                     "one anothers place",
                     "one anothers places",
                 ],
             )
             .map(|x| x.0)
-        })?;
-    let places = find(tokens, PLACES).is_some()
+        })
+        .or_else(|| (tokens.iter().filter(|t| text(t) == "where").count() == 2).then_some(0))?;
+    let twice = tokens.iter().filter(|t| text(t) == "where").count() == 2;
+    let places = twice
+        || find(tokens, PLACES).is_some()
         || find(
             tokens,
-            &[
-                "vice versa",
-                "each other",
-                "each others",
-                "the other way round",
-                "the other way around",
-                "one another",
-            ],
+            &["vice versa", "each other", "each others", "one another"],
         )
         .is_some();
-    let list = phrases(tokens);
+    let mut list = phrases(tokens);
+    if twice && list.len() > 2 {
+        list.truncate(2);
+    }
     let span = tokens.iter().fold(tokens[0].span, |s: Span, t| s.to(t.span));
     let mut c = Command::new(Verb::Swap, talk.text, span);
     // "let them swap places" of two that were named

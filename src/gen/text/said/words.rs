@@ -199,6 +199,14 @@ pub fn is_unit(t: Option<&Token>) -> bool {
     t.is_some_and(|t| matches!(look_up(text(t)), Some(Sense::Unit(_))))
 }
 
+/// How many tokens a unit of length takes here: "m", "car lengths".
+pub fn unit_at(tokens: &[Token]) -> Option<usize> {
+    (1..=2.min(tokens.len())).rev().find(|n| {
+        let words: Vec<&str> = tokens[..*n].iter().map(text).collect();
+        matches!(look_up(&words.join(" ")), Some(Sense::Unit(_)))
+    })
+}
+
 /// The longest run from here that the lexicon knows.
 pub fn longest(tokens: &[Token]) -> Option<(Sense, usize)> {
     (1..=6.min(tokens.len())).rev().find_map(|n| {
@@ -213,6 +221,9 @@ pub fn longest(tokens: &[Token]) -> Option<(Sense, usize)> {
 
 /// One past the noun that begins here.
 pub fn noun_at(tokens: &[Token]) -> Option<usize> {
+    if unit_at(tokens).is_some() {
+        return None; // "car lengths"
+    }
     (1..=4.min(tokens.len())).rev().find(|n| {
         let run = &tokens[..*n];
         let words: Vec<&str> = run.iter().map(text).collect();
@@ -240,7 +251,7 @@ pub fn is_place(tokens: &[Token]) -> bool {
     let Some(first) = tokens.first() else {
         return false;
     };
-    if number(first).is_some() && is_unit(tokens.get(1)) {
+    if number(first).is_some() && (is_unit(tokens.get(1)) || tokens.get(1..).and_then(unit_at).is_some()) {
         return true;
     }
     if matches!(

@@ -31,7 +31,7 @@ pub const PLACES: &[(Anchor, Option<Road>, &str)] = &[
     (
         Anchor::Lane(L::Ego),
         None,
-        "its lane|its own lane|his lane|his own lane|their lane|their own lane|its driving lane|egos own driving lane|my lane|our lane|my own side of the road|my driving lane ahead|lane i drive in|lane i am driving in|lane im driving in|lane that i drive in|lane that im in|lane that i am in|lane we drive in|lane we are driving in|lane were driving in|lane that we are in|lane i travel in|lane i use|lane i am using|lane im using|lane im on|lane i am on|lane were on|lane we are on|lane of mine|lane of ours|my traffic lane|our traffic lane|my travel lane|our travel lane|travel lane|ego vehicle lane|egos path|egos driving lane|egos own lane|the egos lane|lane of travel|my lane of travel|our lane of travel|my track|our track|my direct path|my trajectory|our trajectory|my route|our route|my line of travel|path ahead|my path ahead|our path ahead|the path ahead|road ahead lane|very same lane|identical lane|lane of the test vehicle|lane of the host vehicle|host vehicle lane|drivers lane|lane where i am|lane where we are|lane i occupy|lane we occupy|my half of the road|our half of the road|my carriageway|our carriageway|my line|our line|ego lane|egos lane|the ego lane|own lane|my own lane|our own lane|current lane|ego vehicles lane|lane im in|lane i am in|lane were in|lane we are in|lane of the ego|\
+        "middle lane|centre lane|center lane|its lane|its own lane|his lane|his own lane|their lane|their own lane|its driving lane|egos own driving lane|my lane|our lane|my own side of the road|my driving lane ahead|lane i drive in|lane i am driving in|lane im driving in|lane that i drive in|lane that im in|lane that i am in|lane we drive in|lane we are driving in|lane were driving in|lane that we are in|lane i travel in|lane i use|lane i am using|lane im using|lane im on|lane i am on|lane were on|lane we are on|lane of mine|lane of ours|my traffic lane|our traffic lane|my travel lane|our travel lane|travel lane|ego vehicle lane|egos path|egos driving lane|egos own lane|the egos lane|lane of travel|my lane of travel|our lane of travel|my track|our track|my direct path|my trajectory|our trajectory|my route|our route|my line of travel|path ahead|my path ahead|our path ahead|the path ahead|road ahead lane|very same lane|identical lane|lane of the test vehicle|lane of the host vehicle|host vehicle lane|drivers lane|lane where i am|lane where we are|lane i occupy|lane we occupy|my half of the road|our half of the road|my carriageway|our carriageway|my line|our line|ego lane|egos lane|the ego lane|own lane|my own lane|our own lane|current lane|ego vehicles lane|lane im in|lane i am in|lane were in|lane we are in|lane of the ego|\
          lane of the ego vehicle|host lane|my path|our path|my way|our way|my side of the road|our side of the road|lane|same lane|driving lane|the same lane as me|same lane as me|same lane as us|lane ahead|lane in front of me|my driving lane|path of the ego vehicle|path of the ego|ego path|lane of my car|traffic lane|my side|our side|my lane ahead|our lane ahead",
     ),
     (
@@ -158,6 +158,18 @@ pub const RELATIONS: &[(R, &str)] = &[
     ),
 ];
 
+/// The same, and near.
+pub const CLOSE: &[(&[R], &str)] = &[
+    (
+        &[R::Behind, R::Near],
+        "close behind|close behind me|close behind us|close behind the ego|close behind the ego vehicle|close behind my car|close on my tail|tight behind me|tight behind us|hard on my heels",
+    ),
+    (
+        &[R::InFrontOf, R::Near],
+        "close ahead|close ahead of me|close ahead of us|close in front|close in front of me|close in front of us|close in front of the ego vehicle",
+    ),
+];
+
 /// Relations to the ego vehicle that need nothing after them; followed by "of", they take what follows.
 pub const EGO_RELATIONS: &[(&[R], &str)] = &[
     (
@@ -272,7 +284,7 @@ pub const ACROSS: &str = "across";
 pub const EGO: &str = "my pupil|my student|my learner|the pupil|my trainee|the learner driver|the learner|my learner driver|my student driver|reporting vehicle|reporting car|reporting driver|subject vehicle|system vehicle|vehicle under test|car under test|vut|sut|my patrol car|our patrol car|my taxi|my van|my truck|my bus|the subject vehicle|subject vehicle|subject car|the subject car|test vehicle|the test vehicle|vehicle under test|the vehicle under test|vut|sut|host|the ego car|my own vehicle|the own car|the own vehicle|camera car|the camera car|recording vehicle|the recording vehicle|data collection vehicle|av|our test vehicle|our test car|test car|the test car|the car i am in|the car im in|the car i drive|the vehicle i drive|the vehicle i am driving|the car i am driving|ego driver|ego truck|the robotaxi i am in|yours truly|you|your car|your vehicle|me|us|ego|my car|our car|my vehicle|our vehicle|the ego vehicle|ego vehicle|ego car|the ego car|myself|host vehicle|own car|own vehicle|my own car|i|we|self|the ego|the av|the camera|camera|mine|ours|driver of the ego|the host|our own car|the viewer|viewer|our own vehicle|host car|ego agent";
 
 /// Words that point back.
-pub const PRONOUNS: &str = "it|them|they|that|this|those|these|its|their|him|her|he|she|same one|that one|this one|itself|the latter|theirs|each other|one another";
+pub const PRONOUNS: &str = "the two of them|them both|the pair of them|those two|it|them|they|that|this|those|these|its|their|him|her|he|she|same one|that one|this one|itself|the latter|theirs|each other|one another";
 /// Part of a group.
 pub const PARTS: &str = "another|another one|a second one|a third one|a second|a third|a further one|one other|the first one|the second one|the third one|the last one|other|other one|others|rest|remaining|remaining ones|the other|the others|the rest|second one|first one|third one|one of them|one of which|ones|the first|the second|the third|the last|the fourth|last one|the former|the other one|the remaining|the other two|the other three|the remaining two|the other four|the other five|the other six|the remaining four|the remaining five|the remaining three";
 
