@@ -468,9 +468,20 @@ impl Editor<'_> {
     /// "three more cones": where the others are.
     fn as_the_others(&self, spec: &mut super::description::ObjectSpec, c: &Command) {
         let more = c.text.to_lowercase();
-        let more = ["more", "another", "additional", "extra", "further"]
-            .iter()
-            .any(|w| more.contains(w));
+        let more = [
+            "more",
+            "another",
+            "additional",
+            "extra",
+            "further",
+            "a second",
+            "a third",
+            "a fourth",
+            "a fifth",
+            "a sixth",
+        ]
+        .iter()
+        .any(|w| more.contains(w));
         if more && spec.relations.is_empty() {
             let alike: Vec<BoxId> = self
                 .boxes

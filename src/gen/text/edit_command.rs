@@ -147,7 +147,9 @@ pub(super) fn imperatives(
             to -= 1;
         }
         let slice = super::back::resolved(&all[*from..to], *n, last_noun.as_ref());
-        if let Some(noun) = super::back::named(&slice[*n..], *verb) {
+        let into = slice.iter().any(|t| t.text == "into");
+        let role = if into { Some(Verb::Replace) } else { *verb };
+        if let Some(noun) = super::back::named(&slice[*n..], role) {
             *last_noun = Some(noun);
         }
         let mut c = command(text, &slice, *n, *verb);

@@ -189,6 +189,7 @@ impl<'t> Reader<'t> {
             text: self.text,
             map,
             boxes,
+            others: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
         let pieces = said(&self.tokens[from..end], &talk);

@@ -376,7 +376,8 @@ fn build() -> Table {
     for w in words(places::PARTS) {
         let all = ["rest", "remaining", "others", "the other two", "the other three"]
             .iter()
-            .any(|p| w.contains(p));
+            .any(|p| w.contains(p))
+            || w.starts_with("the other ") && !w.ends_with(" one");
         put(w, Sense::Part(all));
     }
     words(places::PRONOUNS).for_each(|w| put(w, Sense::Pronoun));

@@ -278,7 +278,14 @@ impl Gather<'_, '_> {
         if stated.iter().any(|(e, _)| e.relation == RelationKind::WaitingAt) {
             self.lanes(LaneRole::Road, false);
         }
-        if near_thing && (parked || two_wheels || self.base.still) {
+        let measured = stated.iter().any(|(e, _)| {
+            e.distance_m.is_some()
+                && matches!(
+                    e.relation,
+                    RelationKind::LeftOf | RelationKind::RightOf | RelationKind::Near
+                )
+        });
+        if (near_thing || measured && self.base.still) && (parked || two_wheels || self.base.still) {
             self.base.cost += 2.0;
             self.around(stated);
             self.base.cost -= 2.0;

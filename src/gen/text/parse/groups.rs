@@ -123,7 +123,8 @@ impl Parser<'_> {
             return;
         }
         // "two buses ahead, one behind", "parked cars: 3 on the left, 2 on the right"
-        if !all && !of_them && !self.edits && self.elsewhere(parent) {
+        let other = said.starts_with("the other") || said.starts_with("other");
+        if !all && !of_them && !other && !self.edits && self.elsewhere(parent) {
             self.again(count, span);
             return;
         }
@@ -174,6 +175,24 @@ impl Parser<'_> {
         self.last = vec![index];
         self.chain = false;
         self.pre = Pre::default();
+    }
+
+    /// A verb in the singular after those that something has speaks of what has them.
+    pub(super) fn back_to_host(&mut self) {
+        let Some(&i) = self.last.last() else {
+            return;
+        };
+        let m = &self.mentions[i];
+        let host = m
+            .host
+            .filter(|h| m.spec.count.n > 1 && self.mentions[*h].spec.count.n == 1);
+        if let Some(host) = host {
+            self.flush();
+            self.head = vec![host];
+            self.last = vec![host];
+            self.fresh = true;
+            self.chain = false;
+        }
     }
 
     /// True if what comes next says another place than the group has: they are others.
@@ -265,7 +284,7 @@ impl Parser<'_> {
                 .flatten();
             match antecedent {
                 _ if of_front.is_some() => self.anchor(of_front.unwrap_or(Anchor::Ego), item.span),
-                None if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
+                _ if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
                     self.anchor(placed_in.unwrap_or(Anchor::Ego), item.span);
                 }
                 Some(i) => self.anchor(Anchor::Object(i), item.span),

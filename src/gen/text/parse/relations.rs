@@ -101,7 +101,7 @@ impl Parser<'_> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
-        let set_off = p.fresh && p.anded && self.set_off();
+        let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
         let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
@@ -217,10 +217,18 @@ impl Parser<'_> {
         }
         // What is said of a trailer holds for what draws it.
         match self.last.as_slice() {
-            [i] if self.mentions[*i].spec.class == Class::Trailer => match self.mentions[*i].host {
-                Some(host) => vec![*i, host],
-                None => vec![*i],
-            },
+            [i] if self.mentions[*i].spec.class == Class::Trailer => {
+                match self.mentions[*i].host.or_else(|| {
+                    let r = &self.mentions[*i].spec.relations;
+                    r.iter().find_map(|r| match (r.relation, r.anchor) {
+                        (RelationKind::Following, Anchor::Object(k)) => Some(k),
+                        _ => None,
+                    })
+                }) {
+                    Some(host) => vec![*i, host],
+                    None => vec![*i],
+                }
+            }
             last => last.to_vec(),
         }
     }

@@ -17,6 +17,16 @@ impl<'a> Parser<'a> {
         match sense {
             Sense::Filler | Sense::Unit(_) | Sense::Away | Sense::Bound(_) => {
                 match item.words.as_str() {
+                    // "an ambulance with two paramedics beside it is parked"
+                    "it is" if self.pending.is_some() => {
+                        let it = Item {
+                            words: "it".into(),
+                            ..item.clone()
+                        };
+                        self.pronoun(&it);
+                        self.back_to_host();
+                    }
+                    "is" | "was" if self.pending.is_none() => self.back_to_host(),
                     // "the left lane has two cars in it"
                     "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
                     "with" | "has" | "have" | "having" => {
@@ -49,6 +59,17 @@ impl<'a> Parser<'a> {
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
                     | "which are" | "thats" | "whos" => {
                         self.relative = true;
+                        // "a mother and two children who ..."
+                        let class = self.last.last().map(|i| self.mentions[*i].spec.class);
+                        if self.head.len() > 1
+                            && self.list.len() == self.head.len()
+                            && self
+                                .head
+                                .iter()
+                                .all(|i| Some(self.mentions[*i].spec.class) == class)
+                        {
+                            self.last = self.head.clone();
+                        }
                     }
                     "both of which" | "both of whom" | "all of which" | "all of whom" => {
                         self.relative = true;
@@ -340,7 +361,10 @@ impl<'a> Parser<'a> {
             }
             Sense::BothSides(each) => {
                 self.flush();
-                let targets = self.targets();
+                let mut targets = self.targets();
+                if self.reversed.is_some() {
+                    targets.truncate(1); // "flanked by two cones on each side"
+                }
                 if targets.is_empty() {
                     self.unread(span, Some("nothing stands before it".into()));
                 }

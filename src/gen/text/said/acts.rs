@@ -1003,9 +1003,7 @@ fn arrived(mut main: Vec<Token>) -> Vec<Token> {
         }
         i += 1;
     }
-    let to = (1..main.len().min(5)).find(|i| {
-        matches!(text(&main[*i]), "to" | "onto" | "into") && !matches!(super::words::longest(&main[*i..]), Some((Sense::Rel(_) | Sense::EgoRel(_), n)) if n > 1)
-    });
+    let to = (1..main.len().min(5)).find(|i| super::words::is_goal(&main[*i..]));
     let Some(to) = to else {
         return main;
     };
@@ -1146,8 +1144,7 @@ pub fn split(tokens: &[Token], talk: &Talk<'_>) -> Option<usize> {
         .filter(|i| is_place(&tokens[*i..]))
         .collect();
     let goal = starts.iter().copied().find(|i| {
-        matches!(text(&tokens[*i]), "to" | "onto" | "into" | "until" | "till" | "by")
-            && !matches!(super::words::longest(&tokens[*i..]), Some((Sense::Rel(_) | Sense::EgoRel(_), n)) if n > 1)
+        super::words::is_goal(&tokens[*i..]) || matches!(text(&tokens[*i]), "until" | "till" | "by")
     });
     let first = *starts.first()?;
     if talk.fits(&tokens[..first]) == 1 {

@@ -327,6 +327,14 @@ fn conditional(tokens: &[Token]) -> Option<usize> {
 
 /// One past a clause that only says when or why: "by the time the officers arrived,".
 fn subordinate(tokens: &[Token]) -> Option<usize> {
+    // "instead of standing, the bus should drive"
+    if leads(tokens, &["instead of", "rather than"]).is_some()
+        && let Some(comma) = tokens.iter().position(|t| t.kind == TokenKind::Comma)
+        && !has_noun(&tokens[..comma])
+        && tokens.len() > comma + 3
+    {
+        return Some(comma + 1);
+    }
     leads(
         tokens,
         &[

@@ -33,6 +33,8 @@ pub struct Talk<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// A word for what was spoken of last.
     pub last: Option<String>,
+    /// The sentence speaks of "the other" of several, too.
+    pub others: bool,
 }
 
 impl Talk<'_> {
@@ -89,10 +91,12 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     let body = &without_feet(body)[..];
     let mut out: Vec<Piece> = Vec::new();
     let mut understood = false;
+    let others = find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
     for clause in clauses(body, talk) {
         let talk = Talk {
             last: before.clone(),
+            others,
             ..*talk
         };
         match clause_of(clause, &talk) {
@@ -112,6 +116,15 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         if let Some((a, b)) = first_noun(clause) {
             let run: Vec<&str> = clause[a..b].iter().map(text).collect();
             before = Some(run.join(" "));
+        }
+    }
+    // who is gone and then is elsewhere has only left where he was
+    for i in 0..out.len() {
+        let elsewhere = out[i + 1..].iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
+        if let (true, Piece::Meant(c, _)) = (elsewhere, &mut out[i])
+            && c.verb == Verb::Remove
+        {
+            c.verb = Verb::Note;
         }
     }
     if understood { out } else { plain() }
@@ -281,17 +294,18 @@ fn starts_where(tokens: &[Token]) -> bool {
     is(
         tokens.first(),
         &["where", "instead", "whatever", "whichever", "rather", "unless"],
-    ) || leads(
-        tokens,
-        &[
-            "in place of",
-            "in lieu of",
-            "by the time",
-            "apart from",
-            "except for",
-        ],
-    )
-    .is_some()
+    ) && has_noun(tokens)
+        || leads(
+            tokens,
+            &[
+                "in place of",
+                "in lieu of",
+                "by the time",
+                "apart from",
+                "except for",
+            ],
+        )
+        .is_some()
 }
 
 /// True if a clause of its own begins here.
@@ -353,9 +367,18 @@ fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     {
         return true;
     }
+    // "two would do"
+    if number(first).is_some()
+        && is(
+            inner.get(1),
+            &["would", "will", "is", "are", "should", "must", "may"],
+        )
+    {
+        return true;
+    }
     let verb = super::rephrase::is_verb(first)
         && !is_place(inner)
-        && !matches!(text(first), "up" | "face" | "facing" | "set");
+        && !matches!(text(first), "up" | "face" | "facing" | "set" | "about");
     verb && inner.get(1).is_some_and(|t| {
         matches!(
             text(t),
@@ -391,6 +414,20 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     if inner.iter().any(style) && !has_noun(inner) {
         return None;
+    }
+    // "there are too many parked cars"
+    if let Some(n) = leads(
+        inner,
+        &[
+            "there are too many",
+            "there are too few",
+            "there is too much",
+            "there are far too many",
+            "there are way too many",
+        ],
+    ) && has_noun(&inner[n..])
+    {
+        return Some(vec![remembered(&inner[n..], talk)]);
     }
     if let Some(found) = distance_times(inner, talk) {
         return Some(found);
@@ -759,7 +796,17 @@ fn only_so_many(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let stays = inner.iter().any(|t| {
         matches!(
             text(t),
-            "stay" | "stays" | "remain" | "remains" | "left" | "enough" | "suffice"
+            "stay"
+                | "stays"
+                | "remain"
+                | "remains"
+                | "left"
+                | "enough"
+                | "suffice"
+                | "do"
+                | "plenty"
+                | "suffices"
+                | "sufficient"
         )
     });
     let n = predicate::alone(inner)?;
@@ -796,6 +843,22 @@ fn run_out(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 
 /// "a bus than the truck", "a tram to the van", after "I'd rather have".
 fn preferred(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    // "a tram where the bus is"
+    if let Some(k) = inner.iter().position(|t| text(t) == "where").filter(|k| *k > 1) {
+        let (new, rest) = (trimmed(&inner[..k]), &inner[k + 1..]);
+        let is_at = rest
+            .iter()
+            .position(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), true))?;
+        let fresh = is(new.first(), &["a", "an", "another"]) || number(new.first()?).is_some();
+        let known = is(rest.first(), &["the", "that", "this", "both", "my", "those"]);
+        return (fresh && known && has_noun(new) && has_noun(&rest[..is_at])).then(|| {
+            vec![Piece::Plain(led(
+                "replace",
+                &inner[0],
+                &[&rest[..is_at], &led("with", &inner[0], &[new])],
+            ))]
+        });
+    }
     let (i, n) = find(
         inner,
         &[

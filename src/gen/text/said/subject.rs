@@ -313,6 +313,11 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
             && (number(first).is_some() || matches!(text(first), "any" | "some" | "either" | "most"))
             && is(tokens.get(k + 1), &["the", "these", "those", "my", "our"])
     });
+    // "one pedestrian crosses, the other one stays": one of those that are there
+    let one_of = talk.others
+        && !part
+        && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
+        && !described_fresh;
     let definite = matches!(
         text(first),
         "the"
@@ -351,7 +356,7 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         None => return None,
     };
     let known = definite || bare && talk.fits(&tokens[..end]) > 0;
-    let kind = if part {
+    let kind = if part || one_of {
         Kind::Part
     } else if known {
         Kind::Known
@@ -373,7 +378,9 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     }) {
         np.pop();
     }
-    if part {
+    if one_of {
+        np = led("any", first, &[&np]);
+    } else if part {
         let k = of.unwrap_or(1);
         let rest: Vec<Token> = np[k + 2..]
             .iter()

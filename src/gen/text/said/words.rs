@@ -59,7 +59,6 @@ pub const ADVERBS: &[&str] = &[
     "slightly",
     "immediately",
     "kindly",
-    "too",
     "obliged",
     "due",
     "about",
@@ -230,6 +229,18 @@ pub fn noun_at(tokens: &[Token]) -> Option<usize> {
         run.iter().all(|t| t.kind == TokenKind::Word)
             && matches!(look_up(&words.join(" ")), Some(Sense::Noun(..)))
     })
+}
+
+/// True if "to", "onto" or "into" a place or thing begins here: "to the left pavement", not "to the left of it".
+pub fn is_goal(tokens: &[Token]) -> bool {
+    if !is(tokens.first(), &["to", "onto", "into"]) {
+        return false;
+    }
+    let from = 1 + usize::from(is(tokens.get(1), &["the", "my", "our", "a", "that"]));
+    if matches!(tokens.get(from..).and_then(longest), Some((Sense::Place(..), _))) {
+        return true;
+    }
+    !matches!(longest(tokens), Some((Sense::Rel(_) | Sense::EgoRel(_), n)) if n > 1)
 }
 
 /// The first noun with those that follow it directly: first token and one past the last.
