@@ -283,6 +283,56 @@ impl Parser<'_> {
             self.head.clear();
             self.last.clear();
         }
+        // "Vehicles: one bus, ...": the list names them itself
+        let nouns_follow = listed
+            && self.items[self.at + 1..]
+                .iter()
+                .take(6)
+                .find_map(|n| match n.tag {
+                    Tag::Is(Sense::Noun(noun, _)) => Some(noun),
+                    Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At) | Tag::Stop => None,
+                    _ => None,
+                })
+                .is_some_and(|noun| {
+                    self.head.last().is_some_and(|i| {
+                        let m = &self.mentions[*i];
+                        m.uncounted
+                            && (m.bare || m.definite)
+                            && m.plural
+                            && m.classes.contains(&noun.classes[0])
+                    })
+                })
+            && self.items[self.at + 1..]
+                .iter()
+                .take_while(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
+                .all(|n| {
+                    !matches!(
+                        n.tag,
+                        Tag::Is(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_)) | Tag::Comma
+                    )
+                });
+        if nouns_follow && let Some(&i) = self.head.last() {
+            self.mentions[i].gone = true;
+            self.head.clear();
+            self.last.clear();
+            self.list.clear();
+        }
+        // "Left pavement: two ladies."
+        if let Some((anchor, span)) = self.topic.filter(|_| {
+            self.head.is_empty() && self.pending.is_none() && (listed || self.noun_ahead(self.at + 1))
+        }) && matches!(anchor, Anchor::Lane(_))
+            && !matches!(anchor, Anchor::Lane(crate::scene::graph::LaneRole::Road))
+        {
+            self.topic = None;
+            self.fronted.push(super::mention::Frag {
+                prep: Prep::In,
+                anchor,
+                and: None,
+                distance_m: None,
+                span,
+            });
+            self.chain = true;
+        }
     }
 
     /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
@@ -330,8 +380,11 @@ impl Parser<'_> {
         if set_apart {
             return true;
         }
-        let is =
-            matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article || lead == ":";
+        // "three of them are trucks"
+        let sorted = matches!(lead, "are" | "were") && pre.count.is_none() && pre.article.is_none();
+        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article
+            || lead == ":"
+            || sorted;
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
             return false;
         };
@@ -339,7 +392,7 @@ impl Parser<'_> {
         if noun.classes.len() > 1 || !m.classes.contains(&noun.classes[0]) {
             return false;
         }
-        if m.classes.len() > 1 && m.spec.count.n == 1 && m.classes.len() < 10 {
+        if m.classes.len() > 1 && (m.spec.count.n == 1 || sorted) && m.classes.len() < 10 {
             m.classes = noun.classes;
             m.spec.class = noun.classes[0];
             m.spec.noun = word.to_string();

@@ -113,6 +113,100 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
     }
 }
 
+/// What was said of road works holds for what they are made of; what stands beside something in a car park stands there, too.
+fn share_places(mentions: &mut [Mention]) {
+    use LaneRole as L;
+    let works = |c: Class| {
+        matches!(
+            c,
+            Class::TrafficCone | Class::Barrier | Class::ConstructionVehicle
+        )
+    };
+    // the parts of works that were named themselves took their place: the first of them, and who works there
+    let led: Option<(usize, Vec<Stated>)> = mentions
+        .windows(3)
+        .position(|w| w.iter().all(|m| m.spec.span == w[0].spec.span) && works(w[0].spec.class))
+        .map(|i| (i + 3, mentions[i].spec.relations.clone()))
+        .filter(|(i, r)| mentions[i - 3].gone && !r.is_empty());
+    if let Some((from, relations)) = led {
+        for m in mentions[from..].iter_mut() {
+            let part = works(m.spec.class) || m.spec.class == Class::Pedestrian;
+            if part && m.spec.relations.is_empty() && !m.gone {
+                m.spec.relations.clone_from(&relations);
+            }
+        }
+    }
+    // Between two that stand anywhere there must be room.
+    for i in 0..mentions.len() {
+        let gap = if matches!(
+            mentions[i].spec.class,
+            Class::Pedestrian | Class::TrafficCone | Class::Barrier
+        ) {
+            11.0
+        } else {
+            18.0
+        };
+        let pair = mentions[i]
+            .spec
+            .relations
+            .iter()
+            .find_map(|r| match (r.relation, r.anchor, r.and) {
+                (RelationKind::Between, Anchor::Object(a), Some(Anchor::Object(b))) if a != b => {
+                    Some((a, b, r.span))
+                }
+                _ => None,
+            });
+        if let Some((a, b, span)) = pair
+            && mentions.get(a).is_some_and(|m| {
+                m.spec.relations.is_empty() && !m.definite && m.spec.state != Some(ObjectState::Parked)
+            })
+            && mentions.get(b).is_some_and(|m| {
+                m.spec.relations.is_empty() && !m.definite && m.spec.state != Some(ObjectState::Parked)
+            })
+        {
+            mentions[b].spec.relations.push(Stated {
+                relation: RelationKind::InFrontOf,
+                anchor: Anchor::Object(a),
+                and: None,
+                distance_m: Some(gap),
+                span,
+            });
+        }
+    }
+    for i in 0..mentions.len() {
+        let there: Vec<Stated> = mentions[i].spec.relations.clone();
+        for r in &there {
+            let (RelationKind::NextTo, Anchor::Object(j)) = (r.relation, r.anchor) else {
+                continue;
+            };
+            let strip = there.iter().find(|x| {
+                matches!(x.relation, RelationKind::On | RelationKind::ParkedOn)
+                    && matches!(
+                        x.anchor,
+                        Anchor::Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk | L::Carpark)
+                    )
+            });
+            let Some(strip) = strip else {
+                continue;
+            };
+            let Some(other) = mentions.get_mut(j) else {
+                continue;
+            };
+            let walks = !matches!(strip.anchor, Anchor::Lane(L::Carpark));
+            let small = matches!(
+                other.spec.class,
+                Class::Pedestrian | Class::Bicycle | Class::Motorcycle | Class::TrafficCone | Class::Barrier
+            );
+            if other.spec.relations.is_empty() && (small || !walks) {
+                other.spec.relations.push(Stated {
+                    distance_m: None,
+                    ..*strip
+                });
+            }
+        }
+    }
+}
+
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     split_sides(mentions);
@@ -132,6 +226,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
             m.gone = true;
         }
     }
+    share_places(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;
     for (i, m) in mentions.iter().enumerate() {

@@ -122,6 +122,40 @@ pub fn in_role(map: &LaneMap<'_>, role: LaneRole, p: DVec2) -> bool {
     }
 }
 
+/// The lane or strip that a box is said to be in.
+pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
+    use LaneRole as L;
+    let p = b.center_m.truncate();
+    let walks = [L::LeftSidewalk, L::RightSidewalk];
+    let lanes = [L::Ego, L::Left, L::Right, L::Oncoming, L::Cross];
+    let strips = [L::LeftRoadside, L::RightRoadside, L::Carpark];
+    let all: Vec<L> = match b.class {
+        Class::Pedestrian => walks.to_vec(),
+        // A driver is in a lane, what stands beside one at the edge.
+        _ if b.velocity_mps.length() > 0.5 => [&lanes[..], &strips, &walks].concat(),
+        _ => {
+            let off = map.nearest(p).map_or(f64::INFINITY, |l| l.p.distance(p));
+            if off < 0.8 {
+                [&lanes[..], &strips, &walks].concat()
+            } else {
+                [&strips[..], &walks, &lanes].concat()
+            }
+        }
+    };
+    all.into_iter().find(|role| in_role(map, *role, p))
+}
+
+/// How far a box is from what a relation is to, as its distance is measured.
+pub fn measured(relation: RelationKind, from: &SceneBox, to: &SceneBox) -> f64 {
+    use RelationKind as R;
+    let (axis, d) = (course(to), from.center_m.truncate() - at(to));
+    match relation {
+        R::InFrontOf | R::Behind | R::Following => axis.dot(d).abs(),
+        R::LeftOf | R::RightOf => axis.perp_dot(d).abs(),
+        _ => d.length(),
+    }
+}
+
 /// True if `relation` holds between a box and a target. Stated distances are met to 15 %, or 1.5 m.
 pub fn holds(
     map: &LaneMap<'_>,
@@ -142,7 +176,6 @@ pub fn holds(
             let (fwd, lat) = (axis.dot(d), axis.perp_dot(d));
             let half = b.size_m.truncate() / 2.0;
             let is_ego = b.id == BoxId(u32::MAX);
-            let from_at = p - at(b);
             let toward = heading.dot((at(b) - p).normalize_or_zero());
             let held = match relation {
                 R::InFrontOf => fwd > half.x && lat.abs() <= (0.6 * fwd).max(2.0),
@@ -183,11 +216,7 @@ pub fn holds(
                 R::WaitingAt => standing && gap_m(from, b) < 7.0,
                 R::On | R::ParkedOn => is_ego && in_role(map, LaneRole::Ego, p),
             };
-            let distance = match relation {
-                R::InFrontOf | R::Behind | R::Following => axis.dot(from_at).abs(),
-                R::LeftOf | R::RightOf => axis.perp_dot(from_at).abs(),
-                _ => from_at.length(),
-            };
+            let distance = measured(relation, from, b);
             (held, distance)
         }
         Target::Lane(role) => {

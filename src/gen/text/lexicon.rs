@@ -221,7 +221,8 @@ fn build() -> Table {
                 put(many, Sense::Noun(noun, true));
             }
             put(one, Sense::Noun(noun, false));
-            if !irregular {
+            // ("childs" is said, too)
+            if !irregular || !one.ends_with("man") {
                 put(&plural(one), Sense::Noun(noun, true));
             }
         }
@@ -298,6 +299,9 @@ fn build() -> Table {
             }
         });
     }
+    for (relations, list) in places::CLOSE {
+        words(list).for_each(|w| put(w, Sense::EgoRel(relations)));
+    }
     for (relations, list) in places::EGO_RELATIONS {
         words(list).for_each(|w| put(w, Sense::EgoRel(relations)));
     }
@@ -372,7 +376,8 @@ fn build() -> Table {
     for w in words(places::PARTS) {
         let all = ["rest", "remaining", "others", "the other two", "the other three"]
             .iter()
-            .any(|p| w.contains(p));
+            .any(|p| w.contains(p))
+            || w.starts_with("the other ") && !w.ends_with(" one");
         put(w, Sense::Part(all));
     }
     words(places::PRONOUNS).for_each(|w| put(w, Sense::Pronoun));

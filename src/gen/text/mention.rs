@@ -260,7 +260,7 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
                     R::Crossing | R::Following | R::OppositeDirection | R::SameDirection => {
                         spec.state = spec.state.or(Some(ObjectState::Moving));
                     }
-                    R::WaitingAt => spec.state = Some(ObjectState::Waiting),
+                    R::WaitingAt | R::Blocking => spec.state = Some(ObjectState::Waiting),
                     _ => {}
                 }
             }
@@ -291,7 +291,12 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
         Prep::Across => match anchor {
             Lane(_) if walks(spec.class) || moving => out.push((R::Crossing, anchor)),
             Lane(_) => out.push((R::Blocking, anchor)),
-            Crossing => out.push((R::On, Crossing)),
+            Crossing => {
+                if !walks(spec.class) && !moving {
+                    spec.state = Some(ObjectState::Waiting); // it lies across it
+                }
+                out.push((R::On, Crossing));
+            }
             _ => out.push((R::Across, anchor)),
         },
         Prep::FarSide => far_side(spec.class, parked, &mut out),

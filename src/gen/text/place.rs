@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::holds::{Target, ego, holds, overlap_m};
+use super::holds::{Target, course, ego, holds, measured, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
 use super::spots::{Spot, spots};
 use crate::generation::world::draw::Draw;
@@ -44,6 +44,18 @@ pub fn place_with(
     sizes_m: &BTreeMap<u32, [f64; 3]>,
     others: &[SceneBox],
 ) -> Placement {
+    place_from(graph, layout, seed, sizes_m, others, None)
+}
+
+/// The same for a box that is moved: of all places that fit the one nearest to where it was is taken.
+pub fn place_from(
+    graph: &SceneGraph,
+    layout: &BevLayout,
+    seed: u64,
+    sizes_m: &BTreeMap<u32, [f64; 3]>,
+    others: &[SceneBox],
+    from: Option<&SceneBox>,
+) -> Placement {
     let map = LaneMap::new(layout);
     let mut best: Option<Placement> = None;
     for attempt in 0..ATTEMPTS {
@@ -54,6 +66,8 @@ pub fn place_with(
             sizes_m,
             placed: BTreeMap::new(),
             others,
+            from,
+            exact: if attempt == 0 { 0.8 } else { 0.1 },
         };
         let found = placer.run();
         let cost = |p: &Placement| p.left_out.len() * 4 + p.unmet.len();
@@ -78,6 +92,8 @@ pub fn broken(graph: &SceneGraph, layout: &BevLayout, boxes: &BTreeMap<u32, Scen
         sizes_m: &BTreeMap::new(),
         placed: boxes.clone(),
         others: &[],
+        from: None,
+        exact: 0.0,
     };
     let wrong = |e: &&Edge| boxes.get(&e.from).is_some_and(|b| !placer.edge_holds(e, b));
     graph.edges.iter().filter(wrong).map(|e| e.from).collect()
@@ -90,6 +106,8 @@ struct Placer<'a> {
     sizes_m: &'a BTreeMap<u32, [f64; 3]>,
     placed: BTreeMap<u32, SceneBox>,
     others: &'a [SceneBox],
+    from: Option<&'a SceneBox>, // where the box that is moved was
+    exact: f64,                 // what a metre beside a stated distance costs
 }
 
 impl Placer<'_> {
@@ -207,6 +225,17 @@ impl Placer<'_> {
         })
     }
 
+    /// The two ends of the line that something shall be between.
+    fn line(&self, e: &Edge, first: &Option<Target>) -> Option<[DVec2; 2]> {
+        let at = |t: Target| match t {
+            Target::Thing(b) if b.id.0 == u32::MAX => Some(DVec2::ZERO),
+            Target::Thing(b) => Some(b.center_m.truncate()),
+            _ => None,
+        };
+        let second = self.target(e.and.filter(|_| e.relation == RelationKind::Between)?)?;
+        Some([at((*first)?)?, at(second)?])
+    }
+
     fn edge_holds(&self, e: &Edge, b: &SceneBox) -> bool {
         let Some(to) = self.target(e.to) else {
             return false;
@@ -244,6 +273,7 @@ impl Placer<'_> {
         match o.class {
             Class::Pedestrian if moves => self.draw.range(0.9, 1.8),
             Class::Pedestrian if self.draw.chance(0.5) => self.draw.range(0.7, 1.6),
+            Class::Pedestrian => 0.0,
             Class::Bicycle => self.draw.range(2.5, 6.0),
             Class::ConstructionVehicle | Class::Trailer if !moves => 0.0,
             _ if moves || self.draw.chance(0.8) => self.draw.range(3.0, 12.0),
@@ -262,11 +292,18 @@ impl Placer<'_> {
         let siblings: Vec<DVec2> = self.siblings(id, o, edges);
         let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
         let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
+        let between: Vec<[DVec2; 2]> = stated.iter().filter_map(|(e, t)| self.line(e, t)).collect();
         // A rough cost first; the costly tests only for those that could win.
         let mut ranked: Vec<(f64, usize)> = Vec::with_capacity(candidates.len());
         for (i, s) in candidates.iter().enumerate() {
             let far = s.p.length();
-            let mut cost = s.cost + 0.02 * (far - 14.0).abs() + self.draw.unit() * 1.2;
+            let chance = self.draw.unit();
+            let mut cost = match self.from {
+                Some(old) => s.cost + 0.3 * chance + moved_far(old, s),
+                None => s.cost + 0.02 * (far - 14.0).abs() + chance * 1.2,
+            };
+            cost += self.exact * off_measure(&stated, s, size_m);
+            cost += between.iter().map(|ends| 0.5 * off_line(*ends, s.p)).sum::<f64>();
             if let Some(near) = siblings.iter().map(|q| q.distance(s.p)).min_by(f64::total_cmp) {
                 cost += match o.class {
                     Class::TrafficCone | Class::Barrier => 0.5 * near,
@@ -321,7 +358,18 @@ impl Placer<'_> {
                 }
                 break;
             }
-            let total = cost + 40.0 * broken as f64;
+            // What is ahead but not so far is nearer to what was said than what is behind.
+            let wrong = |e: &Edge| {
+                !self.edge_holds(
+                    &Edge {
+                        distance_m: None,
+                        ..*e
+                    },
+                    &b,
+                )
+            };
+            let wholly = stated.iter().filter(|(e, _)| wrong(e)).count();
+            let total = cost + 40.0 * (broken + wholly) as f64;
             if best.as_ref().is_none_or(|b| total < b.0) {
                 best = Some((total, b));
             }
@@ -414,6 +462,49 @@ impl Placer<'_> {
         keep.size_m = DVec3::new(7.0, 2.6, 1.6);
         clear(&keep) && self.placed.values().all(clear) && self.others.iter().all(clear)
     }
+}
+
+/// What it costs to bring a box to a place: the way, and turning it.
+fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
+    let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
+    let walks = old.class == Class::Pedestrian;
+    0.25 * old.center_m.truncate().distance(s.p) + if walks { 0.2 } else { 1.5 } * turned
+}
+
+/// Metres beside the line, and beyond the middle half of it.
+fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
+    let line = ends[1] - ends[0];
+    let (dir, length) = (line.normalize_or_zero(), line.length());
+    let along = dir.dot(p - ends[0]) - length / 2.0;
+    dir.perp_dot(p - ends[0]).abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+}
+
+/// How far a place misses what was said in metres, and how far off the line of what it is behind or between.
+fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f64 {
+    let b = SceneBox {
+        id: BoxId(0),
+        class: Class::Car,
+        center_m: s.p.extend(0.0),
+        size_m,
+        yaw_rad: s.yaw_rad,
+        velocity_mps: DVec2::ZERO,
+    };
+    let of = |(e, t): &(Edge, Option<Target>)| {
+        let Some(Target::Thing(to)) = t else {
+            return 0.0;
+        };
+        let missed = e
+            .distance_m
+            .map_or(0.0, |d| (measured(e.relation, &b, to) - d).abs());
+        // beside is level with it
+        let level = if e.relation == RelationKind::NextTo && to.class != Class::Pedestrian {
+            0.6 * course(to).dot(s.p - to.center_m.truncate()).abs()
+        } else {
+            0.0
+        };
+        missed.min(20.0) + level.min(12.0)
+    };
+    stated.iter().map(of).sum()
 }
 
 /// True if the relation binds an object to a lane role that only holds for standing things.

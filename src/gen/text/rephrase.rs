@@ -216,7 +216,7 @@ fn is_noun(t: &Token) -> bool {
     matches!(sense(t), Some(Sense::Noun(..)))
 }
 
-fn is_verb(t: &Token) -> bool {
+pub(super) fn is_verb(t: &Token) -> bool {
     VERBS.iter().any(|(_, list)| {
         list.split('|')
             .any(|w| w.split(' ').next() == Some(t.text.as_str()))

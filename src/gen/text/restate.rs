@@ -542,7 +542,7 @@ fn stated(clause: &[Token]) -> Option<Vec<Token>> {
                     Verb::Turn => "turn",
                     Verb::Replace => "replace",
                     Verb::Paint => "paint",
-                    Verb::Keep | Verb::Make => return None,
+                    Verb::Keep | Verb::Make | Verb::Swap | Verb::Note => return None,
                 };
                 if let (Some(more), "remove") = (likewise(tail), verb) {
                     return Some(command("remove", first, &[np, &command("and", first, &[]), more]));

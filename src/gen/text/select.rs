@@ -10,7 +10,7 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::words::edits::Pick;
 use crate::scene::graph::{ObjectState, RelationKind};
-use crate::scene::{BevLayer, BoxId, SceneBox};
+use crate::scene::{BevLayer, BoxId, Class, SceneBox};
 
 /// A box that a question names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -117,7 +117,11 @@ fn fitting_deep(
         RelationKind::Behind => Some(b.center_m.x < -0.5 && b.center_m.y.abs() < (-b.center_m.x).max(3.0)),
         _ => None,
     };
-    let mut fit: Vec<&SceneBox> = boxes.values().filter(|b| m.classes.contains(&b.class)).collect();
+    // Who is called a rider rides, if anybody in the scene does.
+    let rides: &[Class] = &[Class::Motorcycle, Class::Bicycle];
+    let rider = m.spec.noun.starts_with("rider") && boxes.values().any(|b| rides.contains(&b.class));
+    let classes = if rider { rides } else { m.classes };
+    let mut fit: Vec<&SceneBox> = boxes.values().filter(|b| classes.contains(&b.class)).collect();
     // "vehicles" and the like mean every class of the list, a plain noun its own.
     if let Some(state) = m.spec.state {
         let strict: Vec<&SceneBox> = fit.iter().copied().filter(|b| state_of(map, b, state)).collect();

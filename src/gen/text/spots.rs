@@ -38,6 +38,7 @@ struct Gather<'a, 'b> {
     out: Vec<Spot>,
     base: Spot,
     against: bool, // it comes towards the ego
+    with: bool,    // it goes the ego's way
     own_way: bool, // traffic of the ego's direction is meant
 }
 
@@ -82,7 +83,10 @@ pub fn spots(
             on_road: false,
             anywhere: false,
         },
-        against: said(RelationKind::OppositeDirection),
+        // (who looks at the ego vehicle from ahead in its own lane stands against the traffic)
+        against: said(RelationKind::OppositeDirection)
+            || said(RelationKind::Facing) && said(RelationKind::InFrontOf),
+        with: said(RelationKind::SameDirection),
         own_way: (said(RelationKind::InFrontOf)
             || said(RelationKind::Behind)
             || said(RelationKind::Blocking))
@@ -274,7 +278,14 @@ impl Gather<'_, '_> {
         if stated.iter().any(|(e, _)| e.relation == RelationKind::WaitingAt) {
             self.lanes(LaneRole::Road, false);
         }
-        if near_thing && (parked || two_wheels || self.base.still) {
+        let measured = stated.iter().any(|(e, _)| {
+            e.distance_m.is_some()
+                && matches!(
+                    e.relation,
+                    RelationKind::LeftOf | RelationKind::RightOf | RelationKind::Near
+                )
+        });
+        if (near_thing || measured && self.base.still) && (parked || two_wheels || self.base.still) {
             self.base.cost += 2.0;
             self.around(stated);
             self.base.cost -= 2.0;
@@ -309,7 +320,9 @@ impl Gather<'_, '_> {
             let across = self.draw.range(-0.25, 0.25);
             let wrong_way = self.against
                 && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right)
-                && l.role == role;
+                && l.role == role
+                // overtaking
+                || self.with && l.role == LaneRole::Oncoming && role == LaneRole::Oncoming;
             let yaw = l.dir.to_angle()
                 + if wrong_way { PI } else { 0.0 }
                 + if people {
@@ -345,10 +358,10 @@ impl Gather<'_, '_> {
                 let out = l.dir.perp() * side;
                 // How far the surface goes on.
                 let mut reach = 0.0;
-                while reach < 7.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
+                while reach < 9.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
                     reach += 0.2;
                 }
-                let blocked = reach >= 7.4 || reach < half;
+                let blocked = reach >= 9.4 || reach < half;
                 // Another lane lies between: not the outermost.
                 let inner = self.map.points.iter().any(|m| {
                     let d = m.p - l.p;

@@ -74,6 +74,21 @@ fn identifier(chars: &[(usize, char)], i: usize) -> usize {
     if lines >= 2 { j } else { i }
 }
 
+/// A word for one that is only spoken or typed so.
+fn plain(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "em" => "them",
+        "n" => "and",
+        "u" => "you",
+        "ur" => "your",
+        "thru" => "through",
+        "w" => "with",
+        "cos" | "cuz" | "coz" => "because",
+        "tho" => "though",
+        _ => return None,
+    })
+}
+
 /// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
 pub fn tokens(prompt: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
@@ -161,6 +176,7 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
                 None => text,
             };
             if !text.is_empty() {
+                let text = plain(&text).map_or(text, str::to_string);
                 push(TokenKind::Word, text, i, j);
             }
         } else {
@@ -169,8 +185,10 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
                 '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => {
                     push(TokenKind::Stop, ".".into(), i, j)
                 }
-                ':' | '(' | ')' | '/' | '—' | '–' | '[' | ']' | '"' | '“' | '”' | '#' | '|' | '*' => {
-                    push(TokenKind::Mark, c.into(), i, j);
+                ':' | '(' | ')' | '/' | '—' | '–' | '[' | ']' | '"' | '“' | '”' | '#' | '|' | '*' | '=' =>
+                {
+                    let mark = if c == '=' { ':' } else { c };
+                    push(TokenKind::Mark, mark.into(), i, j);
                 }
                 '-' | '_' => {
                     // Between spaces it parts clauses, inside a word it parts words.

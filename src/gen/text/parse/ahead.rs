@@ -36,6 +36,8 @@ impl Parser<'_> {
                             | "just"
                             | "other"
                             | "there is"
+                            | "theres"
+                            | "there"
                             | "there are"
                             | "is"
                             | "are"
@@ -111,7 +113,7 @@ impl Parser<'_> {
         let before = self.item(self.at.wrapping_sub(1)).map(|i| i.words.as_str());
         matches!(
             before,
-            Some("is" | "are" | "was" | "were" | "looks" | "being" | "been")
+            Some("it is" | "is" | "are" | "was" | "were" | "looks" | "being" | "been")
         )
     }
 

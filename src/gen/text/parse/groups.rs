@@ -78,10 +78,13 @@ impl Parser<'_> {
             self.again(Count::exactly(1), span);
             return;
         }
-        let parent = (0..self.mentions.len()).rev().find(|&i| {
-            !self.mentions[i].gone
-                && !self.mentions[i].is_anchor
-                && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+        let whole = self.whole.filter(|w| all && !self.mentions[*w].gone);
+        let parent = whole.or_else(|| {
+            (0..self.mentions.len()).rev().find(|&i| {
+                !self.mentions[i].gone
+                    && !self.mentions[i].is_anchor
+                    && (self.mentions[i].plural || self.mentions[i].spec.count.n > 1)
+            })
         });
         if matches!(
             self.item(self.at + 1).map(|i| i.words.as_str()),
@@ -119,6 +122,24 @@ impl Parser<'_> {
             self.mentions[parent].uncounted = false;
             return;
         }
+        // "two buses ahead, one behind", "parked cars: 3 on the left, 2 on the right"
+        let other = said.starts_with("the other") || said.starts_with("other");
+        if !all && !of_them && !other && !self.edits && self.elsewhere(parent) {
+            self.again(count, span);
+            return;
+        }
+        if !all
+            && !of_them
+            && !self.edits
+            && self.mentions[parent].uncounted
+            && self.mentions[parent].bare
+            && self.mentions[parent].spec.relations.is_empty()
+        {
+            // "People: two on the left, ..." counts them one after another
+            self.again(count, span);
+            self.mentions[parent].gone = true;
+            return;
+        }
         if !all
             && !of_them
             && !self.edits
@@ -141,6 +162,7 @@ impl Parser<'_> {
         part.spec.span = span;
         self.mentions.push(part);
         let index = self.mentions.len() - 1;
+        self.whole = Some(parent);
         let rest = left.n - n;
         let parent_spec = &mut self.mentions[parent].spec;
         parent_spec.count = Count {
@@ -153,6 +175,49 @@ impl Parser<'_> {
         self.last = vec![index];
         self.chain = false;
         self.pre = Pre::default();
+    }
+
+    /// A verb in the singular after those that something has speaks of what has them.
+    pub(super) fn back_to_host(&mut self) {
+        let Some(&i) = self.last.last() else {
+            return;
+        };
+        let m = &self.mentions[i];
+        let host = m
+            .host
+            .filter(|h| m.spec.count.n > 1 && self.mentions[*h].spec.count.n == 1);
+        if let Some(host) = host {
+            self.flush();
+            self.head = vec![host];
+            self.last = vec![host];
+            self.fresh = true;
+            self.chain = false;
+        }
+    }
+
+    /// True if what comes next says another place than the group has: they are others.
+    fn elsewhere(&self, group: usize) -> bool {
+        use crate::scene::graph::{LaneRole as L, RelationKind as R};
+        let own = &self.mentions[group].spec.relations;
+        let opposite = |k: R| match k {
+            R::LeftOf => Some(R::RightOf),
+            R::RightOf => Some(R::LeftOf),
+            R::InFrontOf => Some(R::Behind),
+            R::Behind => Some(R::InFrontOf),
+            _ => None,
+        };
+        let next = (self.at + 1..self.items.len().min(self.at + 6)).find_map(|i| match self.sense(i) {
+            Some(Sense::EgoRel(kinds)) => Some(kinds.iter().any(|k| {
+                opposite(*k).is_some_and(|o| own.iter().any(|r| r.anchor == Anchor::Ego && r.relation == o))
+            })),
+            Some(Sense::Place(Anchor::Lane(role), _)) => Some(own.iter().any(|r| match r.anchor {
+                Anchor::Lane(L::Road | L::Roadside | L::Sidewalk) => false,
+                Anchor::Lane(own) => matches!(r.relation, R::On | R::ParkedOn) && own != role,
+                _ => false,
+            })),
+            _ => None,
+        });
+        next.unwrap_or(false)
     }
 
     pub(super) fn pronoun(&mut self, item: &Item) -> bool {
@@ -200,7 +265,28 @@ impl Parser<'_> {
             } else {
                 antecedent
             };
+            // "left of me a car, right of it a van": of the same
+            let of_front = self
+                .front
+                .filter(|f| {
+                    fresh && self.noun_ahead(self.at + 1) && matches!(f, Anchor::Ego | Anchor::Object(_))
+                })
+                .filter(|_| {
+                    self.pending
+                        .as_ref()
+                        .is_some_and(|p| matches!(p.prep, Prep::Rels(_)))
+                });
+            let placed_in = self
+                .pending
+                .as_ref()
+                .is_some_and(|p| matches!(p.prep, Prep::In))
+                .then_some(self.last_place)
+                .flatten();
             match antecedent {
+                _ if of_front.is_some() => self.anchor(of_front.unwrap_or(Anchor::Ego), item.span),
+                _ if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
+                    self.anchor(placed_in.unwrap_or(Anchor::Ego), item.span);
+                }
                 Some(i) => self.anchor(Anchor::Object(i), item.span),
                 None if item.words == "that" => return true,
                 None if self.ego_named || self.ego_subject => self.anchor(Anchor::Ego, item.span),

@@ -47,11 +47,11 @@ pub(super) struct Parser<'a> {
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
-    pub(super) chain: bool, // only nouns so far in this clause
-    list: Vec<usize>,       // those nouns
-    linked: bool,           // "and" or a comma right before
-    anded: bool,            // "and" right before
-    pub(super) fresh: bool, // nothing but small words since the clause began or a comma
+    pub(super) chain: bool,      // only nouns so far in this clause
+    pub(super) list: Vec<usize>, // those nouns
+    linked: bool,                // "and" or a comma right before
+    anded: bool,                 // "and" right before
+    pub(super) fresh: bool,      // nothing but small words since the clause began or a comma
     pub(super) pending: Option<Pending>,
     pub(super) pre: Pre,
     not_goes_on: bool,
@@ -63,6 +63,8 @@ pub(super) struct Parser<'a> {
     ego_named: bool,                       // "the host vehicle": "it" may mean it
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
+    pub(super) whole: Option<usize>,       // the group that the last part was taken from
+    front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
@@ -119,6 +121,8 @@ impl<'a> Parser<'a> {
             ego_named: false,
             last_lane: None,
             last_place: None,
+            whole: None,
+            front: None,
             pair: Vec::new(),
             with: false,
             edits,
@@ -246,7 +250,7 @@ impl<'a> Parser<'a> {
                     return false;
                 }
                 if self.try_distance(v, span) {
-                    return false;
+                    return self.distance.is_some();
                 }
                 let back = if self.item(self.at.wrapping_sub(1)).is_some_and(|i| i.words == ":") {
                     2

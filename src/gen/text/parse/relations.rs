@@ -56,6 +56,17 @@ impl Parser<'_> {
             Some(first) => (first, Some(anchor)),
             None => (anchor, if between { Some(anchor) } else { None }),
         };
+        // "I have to stop for a mother and two children": they are who it is about
+        if let (true, Anchor::Object(i), Prep::At, None) = (p.ego, anchor, &p.prep, and)
+            && self.mentions[i].is_anchor
+        {
+            self.mentions[i].is_anchor = false;
+            self.head = vec![i];
+            self.last = vec![i];
+            self.list = vec![i];
+            self.chain = true;
+            return;
+        }
         if let (true, Anchor::Object(i), Prep::Rels(kinds)) = (p.ego && and.is_none(), anchor, &p.prep) {
             // "I am behind a bus": the bus is in front of the ego vehicle.
             let frag = Frag {
@@ -65,6 +76,14 @@ impl Parser<'_> {
                 distance_m: p.distance_m,
                 span: p.span.to(span),
             };
+            let drawn = (0..self.mentions.len()).filter(|k| {
+                let m = &self.mentions[*k];
+                m.spec.class == Class::Trailer
+                    && m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+            });
+            for k in drawn.collect::<Vec<_>>() {
+                apply(&mut self.mentions[k].spec, &frag);
+            }
             let m = &mut self.mentions[i];
             m.is_anchor = false;
             apply(&mut m.spec, &frag);
@@ -82,7 +101,7 @@ impl Parser<'_> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
-        let set_off = p.fresh && p.anded && self.set_off();
+        let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
         let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
@@ -90,6 +109,7 @@ impl Parser<'_> {
             if !self.head.is_empty() || !self.chain {
                 self.new_clause();
             }
+            self.front = Some(frag.anchor);
             self.fronted.push(frag);
             self.chain = true;
             return;
@@ -197,10 +217,18 @@ impl Parser<'_> {
         }
         // What is said of a trailer holds for what draws it.
         match self.last.as_slice() {
-            [i] if self.mentions[*i].spec.class == Class::Trailer => match self.mentions[*i].host {
-                Some(host) => vec![*i, host],
-                None => vec![*i],
-            },
+            [i] if self.mentions[*i].spec.class == Class::Trailer => {
+                match self.mentions[*i].host.or_else(|| {
+                    let r = &self.mentions[*i].spec.relations;
+                    r.iter().find_map(|r| match (r.relation, r.anchor) {
+                        (RelationKind::Following, Anchor::Object(k)) => Some(k),
+                        _ => None,
+                    })
+                }) {
+                    Some(host) => vec![*i, host],
+                    None => vec![*i],
+                }
+            }
             last => last.to_vec(),
         }
     }

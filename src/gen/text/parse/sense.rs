@@ -17,6 +17,16 @@ impl<'a> Parser<'a> {
         match sense {
             Sense::Filler | Sense::Unit(_) | Sense::Away | Sense::Bound(_) => {
                 match item.words.as_str() {
+                    // "an ambulance with two paramedics beside it is parked"
+                    "it is" if self.pending.is_some() => {
+                        let it = Item {
+                            words: "it".into(),
+                            ..item.clone()
+                        };
+                        self.pronoun(&it);
+                        self.back_to_host();
+                    }
+                    "is" | "was" if self.pending.is_none() => self.back_to_host(),
                     // "the left lane has two cars in it"
                     "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
                     "with" | "has" | "have" | "having" => {
@@ -37,13 +47,29 @@ impl<'a> Parser<'a> {
                     }
                     "i am" | "im" | "we are" | "i drive" | "we drive" | "i am driving" | "im driving"
                     | "we are driving" | "i am on" | "we are on" | "were"
-                        if self.pending.is_none() && self.head.is_empty() && !self.edits =>
+                        if self.pending.is_none()
+                            && (self.head.is_empty() || self.linked && self.fresh)
+                            && !self.edits =>
                     {
+                        if !self.head.is_empty() {
+                            self.new_clause();
+                        }
                         self.ego_subject = true;
                     }
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
                     | "which are" | "thats" | "whos" => {
                         self.relative = true;
+                        // "a mother and two children who ..."
+                        let class = self.last.last().map(|i| self.mentions[*i].spec.class);
+                        if self.head.len() > 1
+                            && self.list.len() == self.head.len()
+                            && self
+                                .head
+                                .iter()
+                                .all(|i| Some(self.mentions[*i].spec.class) == class)
+                        {
+                            self.last = self.head.clone();
+                        }
                     }
                     "both of which" | "both of whom" | "all of which" | "all of whom" => {
                         self.relative = true;
@@ -170,7 +196,7 @@ impl<'a> Parser<'a> {
             Sense::Count(count) => {
                 let unit = matches!(self.sense(self.at + 1), Some(Sense::Unit(_)));
                 if unit && self.try_distance(f64::from(count.n), span) {
-                    return false;
+                    return self.distance.is_some();
                 }
                 if let (Some(Sense::Fraction(share)), Some(Sense::Unit(m))) =
                     (self.sense(self.at + 1), self.sense(self.at + 2))
@@ -248,6 +274,14 @@ impl<'a> Parser<'a> {
                 };
                 return self.pronoun(&its);
             }
+            // "the approaching car"
+            Sense::Rel(_)
+                if matches!(item.words.as_str(), "approaching" | "opposing")
+                    && (self.pre.article.is_some() || self.pre.count.is_some())
+                    && self.noun_directly(self.at + 1) =>
+            {
+                self.fronted_once(&[RelationKind::OppositeDirection], span);
+            }
             Sense::Rel(_) if self.stands_alone(item) => return true,
             Sense::Rel(kind) => {
                 if kind == RelationKind::Near
@@ -260,7 +294,11 @@ impl<'a> Parser<'a> {
             }
             Sense::EgoRel(kinds) => {
                 self.ego_named |= item.words.contains("ego") || item.words.contains("vehicle");
-                if is_prenominal(&item.words) && self.noun_directly(self.at + 1) && !self.takes_object(item) {
+                let led = self.pre.article.is_some() || self.pre.count.is_some();
+                if is_prenominal(&item.words)
+                    && self.noun_directly(self.at + 1)
+                    && (led || !self.takes_object(item))
+                {
                     self.fronted_once(kinds, span);
                     return false;
                 }
@@ -323,7 +361,10 @@ impl<'a> Parser<'a> {
             }
             Sense::BothSides(each) => {
                 self.flush();
-                let targets = self.targets();
+                let mut targets = self.targets();
+                if self.reversed.is_some() {
+                    targets.truncate(1); // "flanked by two cones on each side"
+                }
                 if targets.is_empty() {
                     self.unread(span, Some("nothing stands before it".into()));
                 }
@@ -412,6 +453,11 @@ impl<'a> Parser<'a> {
                     self.color(word, prenominal, span);
                 } else {
                     self.weather(weather, span);
+                    // "on an overcast day"
+                    let day = item.words.ends_with(" day") || item.words.ends_with(" daytime");
+                    if day && self.reading.description.time_of_day.is_none() {
+                        self.time(super::super::description::TimeOfDay::Day, span);
+                    }
                 }
             }
             Sense::Environment(environment) => {

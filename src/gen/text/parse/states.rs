@@ -27,8 +27,22 @@ impl Parser<'_> {
             } else {
                 self.targets()
             };
+            let of_ego = matches!(self.sense(self.at + 1), Some(super::super::lexicon::Sense::Ego));
             for t in targets.iter().copied() {
                 self.mentions[t].spec.state = Some(state);
+                if of_ego {
+                    // past us in the oncoming lane it goes our way
+                    self.mentions[t]
+                        .spec
+                        .relations
+                        .push(super::super::description::Stated {
+                            relation: RelationKind::SameDirection,
+                            anchor: super::super::description::Anchor::Ego,
+                            and: None,
+                            distance_m: None,
+                            span,
+                        });
+                }
             }
             self.last = targets;
             self.begin(Prep::Rels(vec![RelationKind::LeftOf]), span);

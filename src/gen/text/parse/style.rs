@@ -31,6 +31,10 @@ impl Parser<'_> {
             && self
                 .item(self.at.wrapping_sub(1))
                 .is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
+        // "behind it in the same lane": the lane of what it is behind
+        if same && anchor == Anchor::Lane(LaneRole::Ego) && self.lane_of_other() {
+            return;
+        }
         let anchor = match self
             .last_lane
             .filter(|_| same && anchor == Anchor::Lane(LaneRole::Ego))
@@ -135,6 +139,80 @@ impl Parser<'_> {
             self.phrase(span, Became::Road, &item.words);
         }
         self.topic = Some((anchor, span));
+    }
+
+    /// In the lane of what the target is behind or ahead of. True if it is that of something.
+    fn lane_of_other(&mut self) -> bool {
+        let targets = self.targets();
+        // (the truck of "behind the truck" was named last)
+        let placed = |t: &usize| {
+            self.mentions[*t].spec.relations.iter().any(|r| {
+                matches!(
+                    r.relation,
+                    RelationKind::Behind | RelationKind::Following | RelationKind::InFrontOf
+                ) && matches!(r.anchor, Anchor::Object(_))
+            })
+        };
+        let targets: Vec<usize> = if targets.iter().any(placed) {
+            targets
+        } else {
+            self.head.clone()
+        };
+        let Some(&t) = targets.first() else {
+            return false;
+        };
+        let to = self.mentions[t]
+            .spec
+            .relations
+            .iter()
+            .find_map(|r| match (r.relation, r.anchor) {
+                (
+                    RelationKind::Behind | RelationKind::Following | RelationKind::InFrontOf,
+                    Anchor::Object(i),
+                ) => Some((r.relation, i)),
+                _ => None,
+            });
+        let Some((relation, other)) = to else {
+            return false;
+        };
+        self.pending = None;
+        self.pre = Pre::default();
+        let lane = self.mentions[other]
+            .spec
+            .relations
+            .iter()
+            .find(|r| {
+                matches!(r.relation, RelationKind::On | RelationKind::OppositeDirection)
+                    && matches!(
+                        r.anchor,
+                        Anchor::Lane(
+                            LaneRole::Ego
+                                | LaneRole::Left
+                                | LaneRole::Right
+                                | LaneRole::Oncoming
+                                | LaneRole::Cross
+                        ) | Anchor::Ego
+                    )
+            })
+            .copied();
+        for t in targets {
+            let list = &mut self.mentions[t].spec.relations;
+            if relation == RelationKind::Behind {
+                for r in list
+                    .iter_mut()
+                    .filter(|r| r.anchor == Anchor::Object(other) && r.relation == relation)
+                {
+                    r.relation = RelationKind::Following; // in its lane, going its way
+                }
+            }
+            if let Some(lane) = lane {
+                list.push(super::super::description::Stated {
+                    distance_m: None,
+                    ..lane
+                });
+            }
+        }
+        true
     }
 
     pub(super) fn road_kind(&mut self, road: Road, environment: Option<Environment>, span: Span) {

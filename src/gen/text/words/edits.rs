@@ -21,6 +21,10 @@ pub enum Verb {
     Make,
     /// Takes all away but.
     Clear,
+    /// Exchanges the places of two; no word of its own.
+    Swap,
+    /// Nothing: what is spoken of is only remembered.
+    Note,
 }
 
 /// Imperatives.

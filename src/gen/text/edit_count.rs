@@ -1,0 +1,191 @@
+//! Numbers of boxes: so many are kept, those too many go, those too few come; one kind in the place of another.
+
+use glam::DVec3;
+
+use super::description::{Anchor, Count, Description, ObjectSpec, Stated};
+use super::edit::{Editor, TextEdit};
+use super::edit_grammar::Command;
+use super::holds::{overlap_m, role_of};
+use super::rephrase::Change;
+use super::select::{Chosen, choose};
+use crate::scene::graph::RelationKind;
+use crate::scene::{BoxId, SceneBox};
+
+impl Editor<'_> {
+    pub(super) fn take_absent(&mut self, d: &Description) {
+        for a in &d.absent {
+            let ids: Vec<BoxId> = self
+                .boxes
+                .values()
+                .filter(|b| a.classes.contains(&b.class))
+                .filter(|b| a.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
+                .map(|b| b.id)
+                .collect();
+            ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
+        }
+    }
+
+    pub(super) fn keep_only(&mut self, ids: &[BoxId]) {
+        let others: Vec<BoxId> = self
+            .boxes
+            .keys()
+            .filter(|id| !ids.contains(id))
+            .copied()
+            .collect();
+        others
+            .iter()
+            .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+    }
+
+    /// "only two cars": removes the farthest or adds.
+    pub(super) fn keep(&mut self, c: &Command) {
+        for m in &c.targets {
+            let fitting = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
+            let wanted = match c.change {
+                Some(Change::Times(f)) => (fitting.len() as f64 * f).round() as usize,
+                Some(Change::Plus(n)) => (fitting.len() as i64 + n).max(0) as usize,
+                None => m.spec.count.n as usize,
+            };
+            if c.change.is_none() && m.definite && !m.plural {
+                // "keep only the bus"
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => self.keep_only(&ids),
+                    _ => self.note(format!("{:?}: which is to stay was not clear", c.text)),
+                }
+                continue;
+            }
+            if c.change.is_none() && m.uncounted && m.plural {
+                // "only cars", "keep the cars": everything else of its kind goes.
+                self.keep_only(&fitting);
+                continue;
+            }
+            if fitting.len() > wanted {
+                let mut by_range: Vec<(f64, BoxId)> = fitting
+                    .iter()
+                    .map(|id| (self.boxes[id].center_m.truncate().length(), *id))
+                    .collect();
+                by_range.sort_by(|a, b| b.0.total_cmp(&a.0));
+                for (_, id) in by_range.iter().take(fitting.len() - wanted) {
+                    self.push(TextEdit::Remove { id: *id });
+                }
+                self.note(format!("the {} farthest were removed", fitting.len() - wanted));
+            } else if fitting.len() < wanted {
+                let mut spec = m.spec.clone();
+                spec.count = Count::exactly((wanted - fitting.len()) as u32);
+                self.like_the_others(&mut spec, &fitting);
+                let d = Description {
+                    foreground: vec![spec],
+                    ..Description::default()
+                };
+                self.add(&d);
+            }
+        }
+    }
+
+    /// More of a kind stand where all of that kind stand, if nothing else was said.
+    pub(super) fn like_the_others(&self, spec: &mut ObjectSpec, others: &[BoxId]) {
+        let roles: Vec<_> = others
+            .iter()
+            .map(|id| role_of(&self.map, &self.boxes[id]))
+            .collect();
+        let Some(Some(role)) = roles.first().copied().filter(|r| roles.iter().all(|x| x == r)) else {
+            return;
+        };
+        // "on the sidewalk" is the one where they are
+        let wide = |r: &Stated| {
+            use crate::scene::graph::LaneRole as L;
+            matches!(
+                (r.anchor, role),
+                (Anchor::Lane(L::Sidewalk), L::LeftSidewalk | L::RightSidewalk)
+                    | (Anchor::Lane(L::Roadside), L::LeftRoadside | L::RightRoadside)
+            )
+        };
+        if let Some(r) = spec.relations.iter_mut().find(|r| wide(r)) {
+            r.anchor = Anchor::Lane(role);
+        }
+        if !spec.relations.is_empty() {
+            return;
+        }
+        spec.relations.push(Stated {
+            relation: RelationKind::On,
+            anchor: Anchor::Lane(role),
+            and: None,
+            distance_m: None,
+            span: spec.span,
+        });
+    }
+
+    /// One for one; where both sides are counted, those too many go and those too few are added.
+    pub(super) fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
+        let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
+        let wanted = match &c.by {
+            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1) => by.spec.count.n as usize,
+            _ => ids.len(),
+        };
+        for id in ids.iter().skip(wanted.max(1)) {
+            self.push(TextEdit::Remove { id: *id });
+        }
+        for id in ids.iter().take(wanted.max(1)) {
+            self.replace(*id, c);
+        }
+        if let Some(by) = c.by.as_ref().filter(|_| wanted > ids.len()) {
+            let mut spec = by.spec.clone();
+            spec.count = Count::exactly((wanted - ids.len()) as u32);
+            spec.relations
+                .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            self.add(&Description {
+                foreground: vec![spec],
+                ..Description::default()
+            });
+        }
+    }
+
+    pub(super) fn replace(&mut self, id: BoxId, c: &Command) {
+        let (Some(b), Some(by)) = (self.boxes.get(&id).copied(), &c.by) else {
+            self.note(format!("{:?}: replaced by what?", c.text));
+            return;
+        };
+        let Some(new) = in_place_of(&b, &by.spec, id) else {
+            return;
+        };
+        // A longer one may need a step along its course.
+        let new = match self.clear_of_others(new) {
+            Some(clear) => {
+                let step = clear.center_m.truncate().distance(new.center_m.truncate());
+                if step > 0.0 {
+                    self.note(format!(
+                        "box {} stands {step:.1} m further along, clear of others",
+                        id.0
+                    ));
+                }
+                clear
+            }
+            None => new,
+        };
+        let hit = self
+            .boxes
+            .values()
+            .find(|o| o.id != id && overlap_m(&new, o, 0.0) > 0.0);
+        if let Some(o) = hit {
+            let text = format!("the larger box {} now overlaps box {}", id.0, o.id.0);
+            self.note(text);
+        }
+        self.push(TextEdit::Replace { id, object: new });
+    }
+}
+
+/// A box of another kind where one stands or stood.
+pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Option<SceneBox> {
+    let size_m = DVec3::from_array(spec.size_m.or(spec.class.typical_size_m())?);
+    let center_m = old
+        .center_m
+        .truncate()
+        .extend(old.center_m.z - old.size_m.z / 2.0 + size_m.z / 2.0);
+    Some(SceneBox {
+        id,
+        class: spec.class,
+        size_m,
+        center_m,
+        ..*old
+    })
+}

@@ -1,0 +1,257 @@
+//! What an edit puts in: its places are found around what stands there already. What "the" was said of, and what is named
+//! bare while the scene has it, is the thing that stands there; it is not put in a second time.
+
+use glam::DVec2;
+
+use super::description::{Anchor, Count, Description, ObjectSpec, Stated};
+use super::edit::{Editor, Question, TextEdit};
+use super::lexicon::{Sense, look_up};
+use super::mention::{Mention, Pre};
+use super::place::{Placement, place_from};
+use super::select::{fitting, of_size, where_is};
+use super::to_graph::to_graph;
+use super::words::objects::NOUNS;
+use crate::scene::graph::{Locked, Node, RelationKind};
+use crate::scene::{BoxId, SceneBox};
+
+/// What came of looking for places.
+pub(super) enum Arranged {
+    /// An anchor fits several boxes: it was asked back.
+    Asked,
+    /// The new boxes, what found no place, and the relations that do not hold.
+    Placed {
+        new: Vec<SceneBox>,
+        left_out: Vec<String>,
+        unmet: Vec<&'static str>,
+    },
+}
+
+/// Indices that relations of the objects end in.
+fn referred(d: &Description) -> Vec<usize> {
+    d.foreground
+        .iter()
+        .flat_map(|o| o.relations.iter())
+        .flat_map(|r| [Some(r.anchor), r.and])
+        .flatten()
+        .filter_map(|a| match a {
+            Anchor::Object(i) => Some(i),
+            _ => None,
+        })
+        .collect()
+}
+
+impl Editor<'_> {
+    /// Boxes that an anchor of a description may mean; those that stand where it was said to be, if any do.
+    fn meant(&self, o: &ObjectSpec) -> Vec<SceneBox> {
+        let noun = match look_up(&o.noun) {
+            Some(Sense::Noun(noun, _)) => Some(noun),
+            _ => NOUNS.iter().find(|n| n.classes.first() == Some(&o.class)),
+        };
+        let Some(noun) = noun else {
+            return Vec::new();
+        };
+        let mut mention = Mention::new(noun, &o.noun, o.count.n > 1, Pre::default(), o.span);
+        mention.spec = o.clone();
+        mention
+            .spec
+            .relations
+            .retain(|r| !matches!(r.anchor, Anchor::Object(_)) && !matches!(r.and, Some(Anchor::Object(_))));
+        let mut ids = fitting(&self.map, &self.boxes, &mention, &[]);
+        if ids.is_empty() {
+            mention.spec.relations.clear();
+            mention.spec.state = None;
+            ids = fitting(&self.map, &self.boxes, &mention, &[]);
+        }
+        ids.iter().map(|id| self.boxes[id]).collect()
+    }
+
+    /// Of several boxes those that the text spoke of last, if any; else those of the size that the noun has.
+    fn likely(&self, fits: Vec<SceneBox>, o: &ObjectSpec) -> Vec<SceneBox> {
+        let sized = of_size(&fits, &o.noun, o.size_m);
+        let recent: Vec<SceneBox> = sized
+            .iter()
+            .filter(|b| self.last.contains(&b.id))
+            .copied()
+            .collect();
+        if recent.len() == 1 { recent } else { sized }
+    }
+
+    /// Finds places for what a description names; `from` is the box that is moved there, which does not stand in its own way.
+    pub(super) fn arrange(&mut self, d: &Description, from: Option<&SceneBox>) -> Arranged {
+        let mut d = d.clone();
+        d.density = None;
+        let refers = referred(&d);
+        let mut held: Vec<(usize, Vec<SceneBox>)> = Vec::new();
+        for i in 0..d.foreground.len() {
+            let o = d.foreground[i].clone();
+            let beside = i > 0 && !refers.contains(&i); // "two adults with the children"
+            let known = self.definite.contains(&o.span);
+            if !(known && (refers.contains(&i) || beside)) {
+                continue;
+            }
+            let mut fits = self.meant(&o);
+            if fits.is_empty() {
+                self.note(format!("no {} is in the scene: one is added", o.noun));
+                continue;
+            }
+            if o.count.n == 1 {
+                fits = self.likely(fits, &o);
+                if fits.len() > 1 {
+                    self.out.questions.push(Question {
+                        text: format!("{} {}: which?", fits.len(), o.noun),
+                        phrase: o.noun.clone(),
+                        candidates: fits.iter().map(|b| where_is(&self.map, b)).collect(),
+                    });
+                    return Arranged::Asked;
+                }
+            } else if !o.count.is_exact() || fits.len() < o.count.n as usize {
+                d.foreground[i].count = Count::exactly(fits.len() as u32);
+            } else if fits.len() > o.count.n as usize {
+                fits.truncate(o.count.n as usize);
+            }
+            if beside {
+                let to = Stated {
+                    relation: RelationKind::NextTo,
+                    anchor: Anchor::Object(i),
+                    and: None,
+                    distance_m: None,
+                    span: o.span,
+                };
+                let first = &mut d.foreground[0].relations;
+                if !first.iter().any(|r| matches!(r.anchor, Anchor::Object(_))) {
+                    first.push(to);
+                }
+            }
+            held.push((i, fits));
+        }
+        let mut graphed = to_graph(&d, self.seed);
+        let mut locked: Vec<u32> = Vec::new();
+        let mut stay: Vec<BoxId> = Vec::new();
+        for (i, fits) in &held {
+            let nodes = graphed.nodes.get(*i).cloned().unwrap_or_default();
+            for (node, b) in nodes.iter().zip(fits) {
+                if let Some(n) = graphed.graph.nodes.iter_mut().find(|n: &&mut Node| n.id == *node) {
+                    n.locked = Some(Locked::Box(*b));
+                    locked.push(*node);
+                    stay.push(b.id);
+                }
+            }
+        }
+        let others: Vec<SceneBox> = self
+            .boxes
+            .values()
+            .filter(|b| !stay.contains(&b.id))
+            .copied()
+            .collect();
+        let placement: Placement = place_from(
+            &graphed.graph,
+            self.layout,
+            self.seed,
+            &graphed.sizes_m,
+            &others,
+            from,
+        );
+        Arranged::Placed {
+            new: placement
+                .boxes
+                .iter()
+                .filter(|b| !locked.contains(&b.id.0))
+                .copied()
+                .collect(),
+            left_out: placement.left_out.into_iter().map(|l| l.1).collect(),
+            unmet: placement
+                .unmet
+                .iter()
+                .map(|i| graphed.graph.edges[*i])
+                .filter(|e| !locked.contains(&e.from))
+                .map(|e| e.relation.name())
+                .collect(),
+        }
+    }
+
+    /// Adds what a description names; what it refers to by "the" may be a box of the scene.
+    pub(super) fn add(&mut self, d: &Description) -> bool {
+        let Arranged::Placed { new, left_out, unmet } = self.arrange(d, None) else {
+            return false;
+        };
+        self.last.clear();
+        for b in &new {
+            let object = SceneBox {
+                id: self.next_id(),
+                ..*b
+            };
+            self.last.push(object.id);
+            self.push(TextEdit::Add { object });
+        }
+        if let Some(why) = left_out.first() {
+            self.note(format!(
+                "{} of {} were placed: {why}",
+                new.len(),
+                new.len() + left_out.len()
+            ));
+        }
+        if !unmet.is_empty() {
+            self.note(format!("not everything said could be met: {}", unmet.join(", ")));
+        }
+        !new.is_empty()
+    }
+
+    /// Puts new boxes where others were taken away: "the bus goes, a tanker comes in its place".
+    pub(super) fn add_in_place(&mut self, d: &Description) -> bool {
+        let Some(spec) = d.foreground.first() else {
+            return false;
+        };
+        let spots: Vec<SceneBox> = self.gone.clone();
+        let mut rest = spec.count.n as usize;
+        self.last.clear();
+        for old in spots.iter().take(rest) {
+            let id = self.next_id();
+            let Some(object) = super::edit_count::in_place_of(old, spec, id) else {
+                continue;
+            };
+            rest -= 1;
+            self.last.push(id);
+            self.push(TextEdit::Add { object });
+        }
+        if rest == 0 {
+            return true;
+        }
+        // More than were taken away: the others stand by them, in the same lane or strip.
+        let mut spec = spec.clone();
+        spec.count = Count::exactly(rest as u32);
+        if let Some(old) = spots.first() {
+            spec.relations.extend(self.where_it_is(old, spec.span));
+        }
+        let done = self.last.clone();
+        let added = self.add(&Description {
+            foreground: vec![spec],
+            ..Description::default()
+        });
+        self.last.extend(done.iter());
+        added || !done.is_empty()
+    }
+
+    /// The strip or lane that a box stands in, as a relation.
+    pub(super) fn where_it_is(&self, b: &SceneBox, span: super::tokens::Span) -> Option<Stated> {
+        let role = super::holds::role_of(&self.map, b)?;
+        Some(Stated {
+            relation: RelationKind::On,
+            anchor: Anchor::Lane(role),
+            and: None,
+            distance_m: None,
+            span,
+        })
+    }
+
+    /// Heading and speed of a box that takes the place of another, or is sent elsewhere.
+    pub(super) fn pace(class: crate::scene::Class, heading: DVec2, moving: bool) -> DVec2 {
+        let speed = match class {
+            _ if !moving => 0.0,
+            crate::scene::Class::Pedestrian => 1.4,
+            crate::scene::Class::Bicycle => 4.0,
+            crate::scene::Class::TrafficCone | crate::scene::Class::Barrier => 0.0,
+            _ => 8.0,
+        };
+        heading * speed
+    }
+}

@@ -1,0 +1,656 @@
+//! What a clause says of its subject: helpers and denials taken off, its parts after "and" told apart.
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::{Token, TokenKind};
+use super::words::{
+    ADVERBS, HELPERS, NEGATED, PRONOUNS, find, has_noun, is, is_finite, is_place, leads, longest, number,
+    text,
+};
+
+/// One verb phrase without its helpers.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// The verb and what follows it.
+    pub main: Vec<Token>,
+    /// "not", "no longer".
+    pub not: bool,
+    /// "has gone": over already.
+    pub perfect: bool,
+    /// "is": a noun after it says what it becomes.
+    pub is: bool,
+    /// Any helper stood there.
+    pub helped: bool,
+}
+
+const GONE: &[&str] = &[
+    "no longer there",
+    "no longer here",
+    "not there",
+    "gone",
+    "missing",
+    "away",
+    "leave",
+    "leaves",
+    "left",
+    "leaving",
+    "depart",
+    "departs",
+    "departed",
+    "departing",
+    "disappear",
+    "disappears",
+    "disappeared",
+    "vanish",
+    "vanishes",
+    "vanished",
+    "drive off",
+    "drives off",
+    "drove off",
+    "driven off",
+    "drive away",
+    "drives away",
+    "drove away",
+    "driven away",
+    "pull away",
+    "pulls away",
+    "pulled away",
+    "pull off",
+    "pulls off",
+    "pulled off",
+    "walk away",
+    "walks away",
+    "walked away",
+    "walk off",
+    "walks off",
+    "walked off",
+    "go away",
+    "goes away",
+    "went away",
+    "go home",
+    "goes home",
+    "went home",
+    "gone home",
+    "go",
+    "goes",
+    "go off",
+    "gone off",
+    "gone away",
+    "moved on",
+    "moves on",
+    "move on",
+    "moved off",
+    "moves off",
+    "move off",
+    "moved away",
+    "rides off",
+    "rode off",
+    "ride off",
+    "ridden off",
+    "ridden away",
+    "rolled away",
+    "rolls away",
+    "towed away",
+    "towed",
+    "towed off",
+    "unnecessary",
+    "superfluous",
+    "redundant",
+    "unwanted",
+    "obsolete",
+    "surplus",
+    "out of the scene",
+    "out of the picture",
+    "off the road",
+    "off the street",
+    "out of here",
+    "history",
+    "cleared away",
+    "cleared",
+    "taken",
+    "taken away",
+    "taken out",
+    "taken off",
+    "exit",
+    "exits",
+    "exited",
+    "clear off",
+    "clears off",
+    "withdrawn",
+    "retired",
+    "scrapped",
+    "dismissed",
+    "absent",
+    "out of the way",
+    "carted off",
+    "carted away",
+    "hauled away",
+    "hauled off",
+    "removed",
+    "deleted",
+    "erased",
+    "eliminated",
+    "thrown out",
+    "gotten rid of",
+    "got rid of",
+    "cut out",
+    "dropped",
+    "omitted",
+    "out",
+    "off",
+    "driven on",
+    "drives on",
+    "drove on",
+    "run off",
+    "ran off",
+    "runs off",
+    "run away",
+    "ran away",
+    "runs away",
+    "no more",
+    "done here",
+    "finished here",
+    "set off",
+    "sped off",
+    "speeds off",
+    "speed off",
+    "cycled off",
+    "cycled away",
+    "cycles off",
+    "hurried off",
+    "hurried away",
+    "wandered off",
+    "wanders off",
+    "been removed",
+    "been taken away",
+    "dispensed with",
+    "done away with",
+    "disposed of",
+    "struck",
+    "cancelled",
+    "canceled",
+    "too much",
+    "too many",
+    "one too many",
+];
+/// What may follow one of those.
+const AFTERWARDS: &[&str] = &[
+    "from",
+    "now",
+    "already",
+    "please",
+    "too",
+    "as",
+    "again",
+    "completely",
+    "entirely",
+    "altogether",
+    "for",
+    "by",
+    "in the meantime",
+    "and",
+    "so",
+    "the scene",
+    "the road",
+    "the street",
+    "the area",
+    "the place",
+    "the picture",
+    "the image",
+    "the site",
+    "us",
+    "me",
+    "home",
+    "work",
+    "instead",
+    "then",
+    "long",
+    "because",
+    "since",
+    "after",
+    "anyway",
+    "off",
+    "at",
+    "with",
+    "for good",
+];
+
+impl Part {
+    pub fn begins(&self, list: &[&str]) -> Option<usize> {
+        leads(&self.main, list)
+    }
+
+    /// True if it says that the subject is no more in the scene.
+    pub fn is_gone(&self) -> bool {
+        if self.not {
+            let there = self.main.is_empty()
+                || self
+                    .begins(&[
+                        "there",
+                        "here",
+                        "in the scene",
+                        "in the picture",
+                        "belong",
+                        "needed",
+                        "necessary",
+                        "wanted",
+                        "required",
+                        "exist",
+                        "around",
+                        "anymore",
+                        "any more",
+                        "present",
+                        "appear",
+                        "part of",
+                        "to be seen",
+                        "visible",
+                        "useful",
+                        "welcome",
+                        "of use",
+                        "in use",
+                        "interesting",
+                        "relevant",
+                        "want",
+                        "need",
+                        "on the scene",
+                        "at the scene",
+                        "in this scene",
+                        "in our scene",
+                        "to be there",
+                        "be there",
+                        "needed anymore",
+                        "show",
+                        "shown",
+                        "seen",
+                    ])
+                    .is_some();
+            return there;
+        }
+        let Some(n) = self.begins(GONE) else {
+            return false;
+        };
+        let rest = &self.main[n..];
+        // "has left the sidewalk", "go to the left", "goes over to", "left of me"
+        let ours = leads(
+            rest,
+            &[
+                "from me",
+                "from us",
+                "from the ego",
+                "from my car",
+                "from our car",
+            ],
+        )
+        .is_some();
+        let ends = !ours
+            && (rest.is_empty()
+                || matches!(rest[0].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
+                || leads(rest, AFTERWARDS).is_some());
+        let bare = matches!(text(&self.main[0]), "out" | "off" | "away" | "left")
+            && self.main.len() > 1
+            && n == 1
+            && text(&self.main[0]) != "left";
+        let side = text(&self.main[0]) == "left" && !self.perfect;
+        ends && !(bare && !rest.is_empty() && rest[0].kind != TokenKind::Comma) && !side
+    }
+}
+
+/// Takes the helpers off one verb phrase.
+fn part(tokens: &[Token]) -> Part {
+    let mut p = Part::default();
+    let mut k = 0;
+    while let Some(t) = tokens.get(k) {
+        let w = text(t);
+        if w == "no" && is(tokens.get(k + 1), &["longer", "more"]) {
+            p.not = true;
+            k += 2;
+            continue;
+        }
+        if w == "to"
+            && !tokens
+                .get(k + 1)
+                .is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true))
+        {
+            break; // "must to the left"
+        }
+        // "would look better on the left"
+        if matches!(w, "look" | "looks" | "fit" | "fits" | "be")
+            && is(
+                tokens.get(k + 1),
+                &["better", "nicer", "good", "best", "fine", "well", "great"],
+            )
+        {
+            k += 2;
+            continue;
+        }
+        if NEGATED.contains(&w) {
+            p.not = true;
+        } else if HELPERS.contains(&w) {
+            // "has the bus behind it" has another object
+            p.perfect |= matches!(w, "has" | "have" | "had");
+            p.is = matches!(w, "is" | "are" | "be" | "was" | "were" | "been");
+            p.helped = true;
+        } else if !(ADVERBS.contains(&w) && !(w == "about" && !is(tokens.get(k + 1), &["to"]))
+            || matches!(w, "longer" | "hereby" | "like"))
+        {
+            break;
+        } else if w == "rather" && is(tokens.get(k + 1), &["than"])
+            || w == "instead" && is(tokens.get(k + 1), &["of"])
+        {
+            break;
+        } else if w == "so" && is(tokens.get(k + 1), &["that"]) {
+            break;
+        }
+        k += 1;
+    }
+    p.perfect &= !p.is || tokens.iter().take(k).any(|t| text(t) == "been");
+    p.main = without_reasons(&tokens[k..]).to_vec();
+    while p.main.last().is_some_and(|t| {
+        matches!(t.kind, TokenKind::Comma | TokenKind::Mark | TokenKind::Stop)
+            || matches!(
+                text(t),
+                "instead" | "please" | "now" | "and" | "then" | "thanks" | "though" | "so" | "but"
+            )
+    }) {
+        p.main.pop();
+    }
+    p
+}
+
+/// What stands before "because", "so that we see her face", "not ahead", "rather than behind".
+fn without_reasons(tokens: &[Token]) -> &[Token] {
+    let mut end = tokens.len();
+    for i in 1..tokens.len() {
+        let rest = &tokens[i..];
+        let reason = leads(
+            rest,
+            &[
+                "because",
+                "since",
+                "so that we",
+                "so we",
+                "so that i",
+                "so i",
+                "as it",
+                "as he",
+                "as she",
+                "as they",
+                "for safety",
+                "in order to",
+                "which is",
+                "which means",
+                "so as to",
+                "to make it",
+                "or else",
+                "otherwise",
+                "to let",
+                "to avoid",
+                "for whatever",
+                "like before",
+                "as before",
+                "as usual",
+            ],
+        )
+        .is_some();
+        let against = (matches!(text(&tokens[i]), "not")
+            || leads(
+                rest,
+                &[
+                    "rather than",
+                    "instead of",
+                    "and not",
+                    "and no longer",
+                    "but no longer",
+                    "but not",
+                    "no longer",
+                ],
+            )
+            .is_some())
+            && !is(tokens.get(i - 1), &["is", "are", "does", "do", "should", "must"]);
+        if reason || against {
+            end = i;
+            break;
+        }
+    }
+    &tokens[..end]
+}
+
+/// True if a verb phrase of the same subject begins here: "and is now riding", "and stops".
+fn goes_on(tokens: &[Token], plural: bool, before: &[Token]) -> bool {
+    let mut k = 0;
+    while tokens
+        .get(k)
+        .is_some_and(|t| ADVERBS.contains(&text(t)) && text(t) != "to" || text(t) == "then")
+    {
+        k += 1;
+    }
+    let Some(t) = tokens.get(k) else {
+        return false;
+    };
+    let w = text(t);
+    if HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, plural) {
+        return !has_place_only(tokens, k);
+    }
+    // "should stop and wait", "has gone over and standing": the same form again
+    let modal = before.first().is_some_and(|t| {
+        matches!(
+            text(t),
+            "should"
+                | "must"
+                | "shall"
+                | "can"
+                | "could"
+                | "to"
+                | "may"
+                | "will"
+                | "would"
+                | "has"
+                | "have"
+                | "had"
+                | "ought"
+                | "needs"
+        )
+    });
+    modal && is_finite(w, true)
+        || matches!(longest(&tokens[k..]), Some((Sense::State(..), _))) && w.ends_with("ing")
+}
+
+/// "left" and the like are verbs as well as places.
+fn has_place_only(tokens: &[Token], k: usize) -> bool {
+    matches!(text(&tokens[k]), "left" | "right" | "back")
+}
+
+/// The verb phrases of a predicate.
+pub fn parts(tokens: &[Token], plural: bool) -> Vec<Part> {
+    let mut out = Vec::new();
+    let mut from = 0;
+    let mut i = 1;
+    while i < tokens.len() {
+        let link =
+            tokens[i].kind == TokenKind::Comma || matches!(text(&tokens[i]), "and" | "but" | "so" | "then");
+        if link {
+            let mut next = i + 1;
+            while tokens.get(next).is_some_and(|t| {
+                t.kind == TokenKind::Comma || matches!(text(t), "and" | "but" | "so" | "then")
+            }) {
+                next += 1;
+            }
+            // "so it is now", "and it waits there"
+            let said_again = is(tokens.get(next), PRONOUNS) && text(&tokens[i]) != "that";
+            let begin = if said_again && !is(tokens.get(next), &["hes", "shes", "theyre"]) {
+                next + 1
+            } else {
+                next
+            };
+            let rest = &tokens[begin.min(tokens.len())..];
+            if goes_on(
+                rest,
+                plural || said_again && is(tokens.get(next), &["they"]),
+                &tokens[from..i],
+            ) {
+                out.push(part(&tokens[from..i]));
+                from = begin;
+                i = begin;
+                continue;
+            }
+            // "is not behind us but in front": what is meant comes after "but"
+            if text(&tokens[i]) == "but" && is_place(rest) && out.is_empty() {
+                let first = part(&tokens[from..i]);
+                if first.not {
+                    let mut p = part(rest);
+                    p.helped = true;
+                    p.is = first.is;
+                    p.main = rest.to_vec();
+                    out.push(first);
+                    out.push(p);
+                    return out;
+                }
+            }
+        }
+        i += 1;
+    }
+    out.push(part(&tokens[from..]));
+    out
+}
+
+/// A number alone: "four are enough", "should be six", "only two".
+pub fn alone(main: &[Token]) -> Option<Token> {
+    let small = |t: &Token| {
+        matches!(
+            text(t),
+            "only"
+                | "just"
+                | "exactly"
+                | "are"
+                | "is"
+                | "will"
+                | "would"
+                | "be"
+                | "enough"
+                | "suffice"
+                | "suffices"
+                | "plenty"
+                | "do"
+                | "sufficient"
+                | "in"
+                | "total"
+                | "altogether"
+                | "all"
+                | "all told"
+                | "of"
+                | "them"
+                | "at"
+                | "most"
+                | "now"
+                | "please"
+                | "number"
+                | "should"
+                | "must"
+                | "may"
+                | "shall"
+                | "can"
+                | "so"
+                | "stays"
+                | "remains"
+                | "remain"
+                | "stay"
+                | "left"
+                | "there"
+                | "to"
+                | "down"
+                | "up"
+                | "no"
+                | "more"
+        ) || t.kind == TokenKind::Comma
+    };
+    let mut numbers = main.iter().filter(|t| number(t).is_some());
+    let n = numbers.next()?.clone();
+    let rest = main.iter().filter(|t| number(t).is_none()).all(small);
+    (rest && numbers.next().is_none()).then_some(n)
+}
+
+/// "a van", "a bus instead": what the subject becomes.
+pub fn new_kind(main: &[Token]) -> Option<&[Token]> {
+    let article = matches!(text(main.first()?), "a" | "an");
+    let noun = super::words::first_noun(main).filter(|n| n.0 <= 4)?;
+    let plain = main[1..noun.0].iter().all(|t| {
+        !matches!(
+            look_up(text(t)),
+            Some(Sense::Unit(_) | Sense::Rel(_) | Sense::EgoRel(_))
+        ) && !matches!(text(t), "bit" | "little" | "metre" | "meter" | "lane")
+    });
+    (article && plain).then_some(main)
+}
+
+/// True if the words name a thing that is put in the place of another: one past "in its place".
+pub fn in_place(tokens: &[Token]) -> Option<(usize, usize)> {
+    find(
+        tokens,
+        &[
+            "in its place",
+            "in their place",
+            "in his place",
+            "in her place",
+            "in the same place",
+            "in same place",
+            "in that place",
+            "in its stead",
+            "in their stead",
+            "in his stead",
+            "in its spot",
+            "in their spot",
+            "in the same spot",
+            "at the same place",
+            "at same place",
+            "at the same spot",
+            "at the same position",
+            "at the same location",
+            "in the same position",
+            "in its position",
+            "in their position",
+            "at its place",
+            "at their place",
+            "at that place",
+            "at that spot",
+            "at this place",
+            "on the same spot",
+            "on its spot",
+            "to its place",
+            "to the same place",
+            "to take its place",
+            "to take their place",
+            "takes its place",
+            "take its place",
+            "takes their place",
+            "take their place",
+            "takes his place",
+            "takes her place",
+            "as a replacement",
+            "as replacement",
+            "as a substitute",
+            "exactly there",
+            "right there",
+            "where it was",
+            "where it stood",
+            "where it is",
+            "where they were",
+            "where they stood",
+            "where he was",
+            "where she was",
+            "where he stood",
+            "where she stood",
+            "where it has been",
+            "where it had been",
+            "on the spot",
+            "into its place",
+            "into the gap",
+            "in the gap",
+            "to replace it",
+            "to replace them",
+        ],
+    )
+}
+
+/// True if there is anything that places the subject.
+pub fn places(main: &[Token]) -> bool {
+    (0..main.len()).any(|i| is_place(&main[i..])) || has_noun(main)
+}
