@@ -630,6 +630,7 @@ impl SceneloomApp {
         let input = ToolbarInput {
             name: &scene.name,
             dirty: self.document.is_dirty(),
+            recent: &self.settings.recent,
             undo: self.document.undo_label(),
             redo: self.document.redo_label(),
             live: self.live.on,

@@ -60,6 +60,7 @@ fn a_day_of_work() {
         "{:?}",
         bench.history()
     );
+    bench.key(Modifiers::NONE, Key::Escape); // the keys belong to the tools again
     sweep(&mut bench);
     // Voxels, and forty nudges of a box.
     let ctx = bench.harness.ctx.clone();

@@ -12,3 +12,4 @@ mod shell;
 mod tools;
 mod trade;
 mod views;
+mod words;

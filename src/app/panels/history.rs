@@ -56,9 +56,16 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             };
             ui.painter().rect_filled(rect, theme::RADIUS, fill);
             let font = egui::TextStyle::Body.resolve(ui.style());
-            let text_at = rect.left_center() + egui::vec2(8.0, 0.0);
-            ui.painter()
-                .text(text_at, egui::Align2::LEFT_CENTER, labels[i], font, color);
+            let mut line = egui::text::LayoutJob::simple_singleline(labels[i].to_owned(), font, color);
+            line.wrap = egui::text::TextWrapping::truncate_at_width(rect.width() - 16.0);
+            let galley = ui.fonts_mut(|fonts| fonts.layout_job(line));
+            let at = rect.left_center() + egui::vec2(8.0, -galley.size().y / 2.0);
+            let cut = galley.elided;
+            ui.painter().galley(at, galley, color);
+            let response = match cut {
+                true => response.on_hover_text(labels[i]),
+                false => response,
+            };
             if response.clicked() {
                 commands.push(Command::JumpTo(i));
             }

@@ -333,7 +333,12 @@ impl PromptPane {
         ui.add_space(4.0);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            let mut shown = std::collections::BTreeSet::new();
             for phrase in &reading.phrases {
+                // What says something of two objects is one phrase all the same.
+                if !shown.insert((phrase.span.start, phrase.span.end)) {
+                    continue;
+                }
                 super::chip::make_room(ui, &phrase.text);
                 match phrase.became {
                     Became::Object(i) => {

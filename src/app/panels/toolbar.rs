@@ -1,5 +1,7 @@
 //! The bar at the top: menus, tools, history, generation.
 
+use std::path::PathBuf;
+
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
@@ -17,6 +19,8 @@ pub struct ToolbarInput<'a> {
     pub name: &'a str,
     /// There are changes that are in no file.
     pub dirty: bool,
+    /// Files opened or saved lately, the last one first.
+    pub recent: &'a [PathBuf],
     /// What undo would take back.
     pub undo: Option<&'a str>,
     /// What redo would bring back.
@@ -125,6 +129,18 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
     ui.menu_button("File", |ui| {
         on(item(ui, "New scene", "Ctrl+N", true), Command::New);
         on(item(ui, "Open…", "Ctrl+O", true), Command::Open);
+        ui.add_enabled_ui(!input.recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| {
+                for path in input.recent {
+                    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                    let clicked = ui
+                        .button(name)
+                        .on_hover_text(path.display().to_string())
+                        .clicked();
+                    on(clicked, Command::OpenPath(path.clone()));
+                }
+            });
+        });
         ui.separator();
         on(item(ui, "Save", "Ctrl+S", true), Command::Save);
         on(item(ui, "Save as…", "Ctrl+Shift+S", true), Command::SaveAs);

@@ -1,0 +1,80 @@
+//! Words: typed into the prompt, they change the scene or make another one, and all of it can be undone.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use sceneloom::app::state::CameraMode;
+
+use crate::bench::Bench;
+
+fn say(bench: &mut Bench, words: &str) {
+    bench.key(Modifiers::NONE, Key::Slash);
+    bench.steps(3);
+    bench.harness.get_by_label("Prompt").type_text(words);
+    bench.steps(3);
+}
+
+#[test]
+fn a_sentence_names_its_step_and_the_next_one_replaces_it() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "make it night");
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“make it night”"]);
+    assert_eq!(
+        bench.app().state.camera_mode,
+        CameraMode::Picture,
+        "night is seen in pictures"
+    );
+    // The field keeps the keyboard: undo is still that of the scene, letters are no shortcuts.
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(bench.app().document.position(), 0);
+    bench
+        .harness
+        .get_by_label("Prompt")
+        .type_text("add a bus 20 m ahead");
+    bench.steps(3);
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“add a bus 20 m ahead”"]);
+    let bus = bench
+        .frame()
+        .boxes
+        .values()
+        .find(|b| b.class.name() == "bus")
+        .map(|b| b.id);
+    assert!(
+        bus.is_some() && bench.app().state.selected == bus,
+        "what came is chosen"
+    );
+}
+
+#[test]
+fn tab_completes_the_word_at_the_caret() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "add two pede");
+    bench.harness.get_by_label("Complete with pedestrians");
+    bench.key(Modifiers::NONE, Key::Tab);
+    bench.harness.get_by_label("Prompt").type_text("20 m ahead");
+    bench.steps(3);
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“add two pedestrians 20 m ahead”"]);
+}
+
+#[test]
+fn a_scene_of_words_can_be_undone() {
+    let mut bench = Bench::new();
+    bench.off();
+    let before = bench.frame().boxes.len();
+    say(&mut bench, "straight street, three parked cars, a bus 20 m ahead");
+    bench.key(Modifiers::CTRL, Key::Enter);
+    bench.wait_until("the scene", |b| b.history().len() == 2);
+    assert_eq!(bench.history(), ["Open", "Scene from words"]);
+    assert!(bench.app().document.is_dirty(), "it is in no file");
+    assert_eq!(bench.app().path(), None, "saving asks where to");
+    assert_eq!(bench.frame().boxes.len(), 4);
+    // Another roll is another step.
+    bench.click("Re-roll");
+    bench.wait_until("another scene", |b| b.history().len() == 3);
+    bench.app().document.jump_to(0);
+    assert_eq!(bench.frame().boxes.len(), before);
+}
