@@ -61,6 +61,21 @@ impl Editor<'_> {
             Some(Destination::Place(spec)) => {
                 let mut spec = spec.as_ref().clone();
                 let said = c.text.to_lowercase();
+                // What stands at the edge of the road stands at the other edge there.
+                let over = ["other side", "opposite side", "far side", "across the"]
+                    .iter()
+                    .any(|w| said.contains(w));
+                let aside = matches!(
+                    role_of(&self.map, &b),
+                    Some(LaneRole::LeftRoadside | LaneRole::RightRoadside)
+                ) && b.velocity_mps.length() < 0.5;
+                if over && aside {
+                    for r in &mut spec.relations {
+                        if r.anchor == Anchor::Lane(LaneRole::Oncoming) {
+                            r.anchor = Anchor::Lane(LaneRole::LeftRoadside);
+                        }
+                    }
+                }
                 // The other side is that on which it is not.
                 if b.center_m.y > 0.0
                     && [

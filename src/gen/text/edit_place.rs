@@ -171,8 +171,33 @@ impl Editor<'_> {
 
     /// Adds what a description names; what it refers to by "the" may be a box of the scene.
     pub(super) fn add(&mut self, d: &Description) -> bool {
-        let Arranged::Placed { new, left_out, unmet } = self.arrange(d, None) else {
-            return false;
+        // Behind a vehicle is in its lane, going its way, if there is room.
+        let mut follows = d.clone();
+        let mut any = false;
+        for o in &mut follows.foreground {
+            let drives = (o.class.is_vehicle() || o.class == crate::scene::Class::Motorcycle)
+                && o.state != Some(crate::scene::graph::ObjectState::Parked);
+            let lane = o.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
+            for r in o.relations.iter_mut().filter(|_| drives && !lane) {
+                if r.relation == RelationKind::Behind && matches!(r.anchor, Anchor::Object(_)) {
+                    r.relation = RelationKind::Following;
+                    any = true;
+                }
+            }
+        }
+        let tried = match any.then(|| self.arrange(&follows, None)) {
+            Some(Arranged::Asked) => return false,
+            Some(Arranged::Placed { new, left_out, unmet }) if left_out.is_empty() && unmet.is_empty() => {
+                Some((new, left_out, unmet))
+            }
+            _ => None,
+        };
+        let (new, left_out, unmet) = match tried {
+            Some(found) => found,
+            None => match self.arrange(d, None) {
+                Arranged::Placed { new, left_out, unmet } => (new, left_out, unmet),
+                Arranged::Asked => return false,
+            },
         };
         self.last.clear();
         for b in &new {

@@ -329,6 +329,10 @@ impl Placer<'_> {
             ranked.push((cost, i));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Told to stand close to the ego vehicle it may.
+        let close = stated.iter().any(|(e, t)| {
+            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX) && e.distance_m.is_some_and(|d| d < 8.0)
+        });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
             if best.as_ref().is_some_and(|b| b.0 <= cost) {
@@ -343,7 +347,7 @@ impl Placer<'_> {
                 yaw_rad: spot.yaw_rad,
                 velocity_mps: DVec2::ZERO,
             };
-            if !self.fits(&b, o.class, spot) {
+            if !self.fits(&b, o.class, spot, close) {
                 continue;
             }
             let speed = if spot.moves { 2.0 } else { 0.0 };
@@ -420,7 +424,7 @@ impl Placer<'_> {
             .collect()
     }
 
-    fn fits(&self, b: &SceneBox, class: Class, spot: &Spot) -> bool {
+    fn fits(&self, b: &SceneBox, class: Class, spot: &Spot, close: bool) -> bool {
         let inside = b
             .footprint()
             .iter()
@@ -459,7 +463,7 @@ impl Placer<'_> {
         };
         let mut keep = ego();
         keep.center_m.x = 1.6;
-        keep.size_m = DVec3::new(7.0, 2.6, 1.6);
+        keep.size_m = DVec3::new(if close { 4.8 } else { 7.0 }, 2.6, 1.6);
         clear(&keep) && self.placed.values().all(clear) && self.others.iter().all(clear)
     }
 }

@@ -154,6 +154,9 @@ impl<'a> Parser<'a> {
                 self.reading.notes.push(note);
             }
             let small = self.step(item);
+            // what describes a noun to come leaves the list that it is one of
+            let small =
+                small || self.pending.is_none() && self.pre.says_something() && self.noun_ahead(self.at + 1);
             if !small {
                 self.linked = false;
                 self.anded = false;

@@ -415,7 +415,11 @@ impl<'a> Parser<'a> {
                 if self.pending.is_some() {
                     self.anchor(Anchor::Ego, span);
                 } else {
-                    self.ego_subject |= self.head.is_empty() && !self.edits;
+                    // "in front from me"
+                    let of = self
+                        .item(self.at.wrapping_sub(1))
+                        .is_some_and(|b| matches!(b.words.as_str(), "from" | "of" | "to" | "than" | "for"));
+                    self.ego_subject |= self.head.is_empty() && !self.edits && !of;
                     self.ego_named |= third;
                     return true;
                 }

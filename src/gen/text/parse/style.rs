@@ -27,10 +27,11 @@ impl Parser<'_> {
             self.pending = None; // "we stand by the traffic light" sets the stage
         }
         // "in that same lane"
-        let same = matches!(item.words.as_str(), "same lane" | "lane")
-            && self
-                .item(self.at.wrapping_sub(1))
-                .is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
+        let same = item.words == "same lane" && self.at > 0
+            || matches!(item.words.as_str(), "lane")
+                && self
+                    .item(self.at.wrapping_sub(1))
+                    .is_some_and(|b| matches!(b.words.as_str(), "that" | "this" | "same" | "the"));
         // "behind it in the same lane": the lane of what it is behind
         if same && anchor == Anchor::Lane(LaneRole::Ego) && self.lane_of_other() {
             return;

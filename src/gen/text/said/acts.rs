@@ -606,12 +606,20 @@ fn step(main: &[Token], caused: bool) -> Option<Destination> {
         });
     }
     // (a place that was named, too, says that the metres are none on the way)
-    let named = items.iter().any(|x| {
-        matches!(
-            x.tag,
-            Tag::Is(Sense::Place(..) | Sense::Rel(_) | Sense::Noun(..) | Sense::Fixed(..) | Sense::Pronoun)
-        )
+    let placed = metres.is_some_and(|m| {
+        items[..m.0]
+            .iter()
+            .any(|x| matches!(x.tag, Tag::Is(Sense::EgoRel(_))) && !x.words.starts_with("back"))
     });
+    let named = placed
+        || items.iter().any(|x| {
+            matches!(
+                x.tag,
+                Tag::Is(
+                    Sense::Place(..) | Sense::Rel(_) | Sense::Noun(..) | Sense::Fixed(..) | Sense::Pronoun
+                )
+            )
+        });
     if let Some((i, m, n)) = metres.filter(|_| (motion || caused) && !named) {
         let next = items.get(i + n);
         let to_me = items[i + n..]

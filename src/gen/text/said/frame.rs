@@ -511,6 +511,11 @@ fn denial(tokens: &[Token]) -> Option<usize> {
     if !is(tokens.first(), &["i", "we"]) {
         return None;
     }
+    if begins(&tokens[1..], "no longer").is_some()
+        && is(tokens.get(3), &["want", "need", "require", "like", "have"])
+    {
+        return Some(4);
+    }
     let not = (1..3).find(|k| is(tokens.get(*k), NEGATED))?;
     let verb = (not + 1..not + 3).find(|k| is(tokens.get(*k), &["want", "like", "need", "wish", "think"]))?;
     Some(verb + 1)

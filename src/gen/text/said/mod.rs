@@ -87,8 +87,8 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     if let Some(c) = swap::swap(body, talk) {
         return vec![Piece::Meant(Box::new(c), None)];
     }
-    // people are on foot anyhow
-    let body = &without_feet(body)[..];
+    // people are on foot anyhow; "the one behind me" is something
+    let body = &with_ones(&without_feet(body))[..];
     let mut out: Vec<Piece> = Vec::new();
     let mut understood = false;
     let others = find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
@@ -128,6 +128,35 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
     }
     if understood { out } else { plain() }
+}
+
+/// "the one behind me", "what's behind me" as "the object behind me".
+fn with_ones(body: &[Token]) -> Vec<Token> {
+    let mut out = body.to_vec();
+    let mut i = 0;
+    while i + 1 < out.len() {
+        let the = is(out.get(i), &["the", "that", "this"]) && is(out.get(i + 1), &["one", "ones"]);
+        let more = out.get(i + 2..).unwrap_or(&[]);
+        let told = is_place(more) || is(more.first(), &["that", "which", "who"]);
+        let first = i == 0 || words::trimmed(&out[..i]).is_empty();
+        if the && told && first {
+            out[i + 1] = words::word("object", &out[i + 1].clone());
+        }
+        let what = first
+            && (is(out.get(i), &["whats"])
+                || is(out.get(i), &["what", "whatever", "whoever"])
+                    && is(out.get(i + 1), &["is", "drives", "stands", "comes"]));
+        if what {
+            let n = if text(&out[i]) == "whats" { 1 } else { 2 };
+            let later = out[i + n..].iter().any(|t| HELPERS.contains(&text(t)));
+            if later && is_place(&out[i + n..]) {
+                let the = led("the object", &out[i].clone(), &[]);
+                out.splice(i..i + n, the);
+            }
+        }
+        i += 1;
+    }
+    out
 }
 
 /// The words without "on foot" and "who is on foot".
@@ -201,7 +230,8 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         let lead = (0..a)
             .rev()
             .take_while(|i| matches!(text(&body[*i]), "the" | "my" | "that" | "this"))
-            .last();
+            .last()
+            .or((talk.fits(&body[a..b]) > 0).then_some(a));
         if let Some(lead) = lead {
             out.push(remembered(&body[lead..b], talk));
         }
@@ -256,7 +286,11 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
                 "where" | "instead" | "if" | "when" | "since" | "because" | "as" | "by" | "until"
             ) && from == 0
                 && !has_noun(&body[from..i]);
-            let spoken = has_noun(&body[from..i])
+            let styled = body[from..i]
+                .iter()
+                .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
+            let spoken = styled
+                || has_noun(&body[from..i])
                 || is(body.get(from), words::PRONOUNS)
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
@@ -276,7 +310,16 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
                 && !body[from..i]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
-            if !lead && !lifts && !named && spoken && opens(rest, talk) && !starts_where(&body[from..i]) {
+            let therefore =
+                is(rest.first(), words::PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            if !lead
+                && !lifts
+                && !named
+                && !therefore
+                && spoken
+                && opens(rest, talk)
+                && !starts_where(&body[from..i])
+            {
                 out.push(&body[from..i]);
                 from = next;
                 i = next;
@@ -415,6 +458,16 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if inner.iter().any(style) && !has_noun(inner) {
         return None;
     }
+    // "the cones, please set them up ..."
+    if is(inner.first(), &["the", "those", "these", "both", "that", "my"])
+        && first_noun(inner).is_some_and(|n| n.1 == inner.len() && n.0 < 4)
+        && talk.fits(inner) > 0
+    {
+        return Some(vec![remembered(inner, talk)]);
+    }
+    if let Some(found) = half(inner) {
+        return Some(found);
+    }
     // "there are too many parked cars"
     if let Some(n) = leads(
         inner,
@@ -495,6 +548,31 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if let Some(found) = imperative(inner, talk) {
         return Some(found);
     }
+    if mood.denied
+        && let Some((a, b)) = first_noun(inner).filter(|n| n.0 < 4)
+        && (a == 0 || !is(inner.first(), &["a", "an"]))
+        && trimmed(&inner[b..]).iter().all(|t| {
+            matches!(
+                text(t),
+                "anymore"
+                    | "any"
+                    | "more"
+                    | "here"
+                    | "there"
+                    | "at"
+                    | "all"
+                    | "in"
+                    | "the"
+                    | "scene"
+                    | "picture"
+                    | "now"
+                    | "longer"
+            )
+        })
+    {
+        let any = usize::from(is(inner.first(), &["any"]));
+        return Some(vec![Piece::Plain(led("remove", first, &[&inner[any..b]]))]);
+    }
     if let Some(found) = turn_about(inner, talk) {
         return Some(found);
     }
@@ -534,10 +612,23 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     let parts = parts(pred, s.plural || mood.caused);
     // "Bus is too far off": a complaint says only what "it" will mean
-    let complaint = parts.iter().all(|p| {
-        p.begins(&["too far", "too close", "too near", "wrong", "in the wrong", "too"])
-            .is_some()
-    });
+    let complaint = find(
+        pred,
+        &[
+            "wrong way",
+            "wrong direction",
+            "wrong side",
+            "wrong lane",
+            "wrong place",
+            "wrong spot",
+            "the wrong way round",
+        ],
+    )
+    .is_some()
+        || parts.iter().all(|p| {
+            p.begins(&["too far", "too close", "too near", "wrong", "in the wrong", "too"])
+                .is_some()
+        });
     if complaint && !parts.iter().any(predicate::Part::is_gone) && matches!(s.kind, Kind::Known) {
         return Some(vec![remembered(&s.np, talk)]);
     }
@@ -709,6 +800,50 @@ fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
         &inner[0],
         &[&inner[from..end], &inner[..verb], &inner[end..]],
     ))])
+}
+
+/// "half of the cones can go", "remove half the cones"
+fn half(inner: &[Token]) -> Option<Vec<Piece>> {
+    let (i, n) = find(
+        inner,
+        &[
+            "half of the",
+            "half the",
+            "half of my",
+            "half of these",
+            "half of those",
+            "every second one of the",
+        ],
+    )?;
+    let removing = i == 1
+        && matches!(
+            text(&inner[0]),
+            "remove" | "delete" | "take" | "erase" | "drop" | "clear" | "lose" | "scrap" | "bin"
+        );
+    let end = i + n + first_noun(&inner[i + n..])?.1;
+    let goes = i == 0
+        && inner[end..].iter().any(|t| {
+            matches!(
+                text(t),
+                "go" | "gone"
+                    | "leave"
+                    | "leaves"
+                    | "left"
+                    | "away"
+                    | "removed"
+                    | "disappear"
+                    | "out"
+                    | "off"
+                    | "superfluous"
+            )
+        });
+    (removing || goes).then(|| {
+        vec![Piece::Plain(led(
+            "half the number of",
+            &inner[0],
+            &[&inner[i + n..end]],
+        ))]
+    })
 }
 
 /// "double the distance to the truck"
@@ -954,6 +1089,31 @@ fn turn_about(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     ) {
         return None;
     }
+    // "turn it around"
+    if is(inner.get(1), &["it", "him", "her", "them"])
+        && inner.len() > 2
+        && !is(inner.get(2), &["into", "on", "off", "up", "down"])
+        && matches!(text(&inner[0]), "turn" | "rotate" | "spin" | "swivel")
+        && !inner.iter().any(|t| matches!(text(t), "into" | "so"))
+    {
+        let s = Subject {
+            kind: Kind::Back(if is(inner.get(1), &["him", "her"]) {
+                Back::Person
+            } else {
+                Back::Same
+            }),
+            np: inner[1..2].to_vec(),
+            noun: Vec::new(),
+            pred: 2,
+            plural: false,
+        };
+        let part = predicate::Part {
+            main: led("turn", &inner[0], &[&inner[2..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
     let (i, n) = find(
         inner,
         &["so that", "such that", "in such a way that", "with", "so"],
@@ -1170,6 +1330,10 @@ fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         (split, s)
     };
     let rest = trimmed(&tokens[np_end..]);
+    // "out of my lane and onto the sidewalk"
+    let goal = leads(rest, &["out of", "off", "away from", "from"])
+        .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..])));
+    let rest = &rest[goal.unwrap_or(0)..];
     let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
     if s.kind == Kind::Part && out_of {
         let part = predicate::Part {

@@ -492,6 +492,43 @@ pub fn parts(tokens: &[Token], plural: bool) -> Vec<Part> {
                 i = begin;
                 continue;
             }
+            // "should not block my lane but the oncoming one"
+            if text(&tokens[i]) == "but"
+                && out.is_empty()
+                && is(rest.first(), &["the", "a", "an", "my", "our"])
+            {
+                let first = part(&tokens[from..i]);
+                if first.not && !first.main.is_empty() {
+                    let places = [
+                        "lane", "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "footpath",
+                        "verge", "shoulder",
+                    ];
+                    let place = first
+                        .main
+                        .iter()
+                        .rev()
+                        .find(|t| places.contains(&text(t)))
+                        .cloned();
+                    let lead = first
+                        .main
+                        .iter()
+                        .position(|t| is(Some(t), &["the", "a", "an", "my", "our"]))
+                        .unwrap_or(1);
+                    let mut p = part(rest);
+                    let mut main = first.main[..lead].to_vec();
+                    main.extend(rest.iter().map(|t| match &place {
+                        Some(place) if text(t) == "one" => super::words::word(text(place), t),
+                        _ => t.clone(),
+                    }));
+                    p.main = main;
+                    p.helped = true;
+                    p.is = first.is;
+                    p.not = false;
+                    out.push(first);
+                    out.push(p);
+                    return out;
+                }
+            }
             // "is not behind us but in front": what is meant comes after "but"
             if text(&tokens[i]) == "but" && is_place(rest) && out.is_empty() {
                 let first = part(&tokens[from..i]);
@@ -586,6 +623,7 @@ pub fn in_place(tokens: &[Token]) -> Option<(usize, usize)> {
     find(
         tokens,
         &[
+            "there instead",
             "in its place",
             "in their place",
             "in his place",
