@@ -9,6 +9,7 @@ use crossbeam_channel::{Receiver, TryRecvError};
 use egui::{Rect, Ui};
 
 use crate::editor::Document;
+use crate::editor::checks::{Severity, waive};
 use crate::generation::job::{
     GenError, GenParams, GenResult, Job, JobCtx, JobEvent, JobUpdate, Named, Pipeline, UpdateGate,
 };
@@ -551,6 +552,8 @@ impl SceneloomApp {
                 if let Some(path) = &opening.path {
                     self.settings.remember(path);
                 }
+                // What the camera looked at is not there any more.
+                self.view3d.camera.focus_all();
                 // Saving must not replace the file of another scene without asking.
                 self.path = opening.path;
                 self.state.choose(&[], super::tools::Choose::Only);
@@ -652,7 +655,13 @@ impl SceneloomApp {
         let touched = self.live.look(&settled, now_s);
         self.unsettled = self.live.parts();
         let unsettled = !touched.is_empty;
+        let findings = self.checking.findings().map(|all| {
+            let open = waive::open(settled.frame(), all);
+            let (errors, warnings): (Vec<_>, Vec<_>) = open.partition(|f| f.severity == Severity::Error);
+            (errors.len(), warnings.len())
+        });
         let status = StatusInput {
+            findings,
             running: self.live.running.as_ref(),
             now_s,
             receipt: self.receipt.as_ref(),

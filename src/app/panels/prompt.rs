@@ -284,6 +284,12 @@ impl PromptPane {
         } = text::read_edit(&self.prompt, scene, self.seed);
         self.notes = notes;
         self.notes.extend(not_understood.iter().map(unread));
+        let road = text::read(&self.prompt).ok().and_then(|r| r.description.road.kind);
+        if let Some(road) = road {
+            let name = format!("{road:?}").to_lowercase();
+            self.notes
+                .push(format!("The road stays as it is: “New scene” makes a {name}."));
+        }
         self.questions = questions;
         let edits: Vec<_> = edits.iter().flat_map(text::edits).collect();
         if edits.is_empty() && self.questions.is_empty() && self.notes.is_empty() {

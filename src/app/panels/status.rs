@@ -75,6 +75,8 @@ pub struct StatusInput<'a> {
     pub waiting: bool,
     /// Something is being dragged.
     pub dragging: bool,
+    /// Errors and warnings of the checks that nobody waived; none before the first check.
+    pub findings: Option<(usize, usize)>,
     /// What the pointer does with the tool in hand.
     pub hint: &'a str,
 }
@@ -102,6 +104,9 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
             if ui.add(button).on_hover_text("What happened so far").clicked() {
                 commands.push(Command::ToggleLog);
             }
+            if let Some((errors, warnings)) = input.findings.filter(|(e, w)| e + w > 0) {
+                found(ui, errors, warnings, commands);
+            }
             // What is under the pointer, then what the pointer does; the end of the latter gives way first.
             ui.add(
                 egui::Label::new(egui::RichText::new(&state.readout).color(theme::text_weak())).truncate(),
@@ -114,6 +119,19 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
             });
         });
     });
+}
+
+/// How many findings there are; a click lists them.
+fn found(ui: &mut Ui, errors: usize, warnings: usize, commands: &mut Vec<Command>) {
+    let color = if errors > 0 { theme::bad() } else { theme::warn() };
+    let text = format!("{} findings", errors + warnings);
+    let button = egui::Button::new(egui::RichText::new(text).color(color)).frame(false);
+    let hint = format!("Checks: {errors} errors, {warnings} warnings");
+    let response = ui.add(button).on_hover_text(&hint);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &hint));
+    if response.clicked() {
+        commands.push(Command::ToggleChecks);
+    }
 }
 
 fn say(ui: &mut Ui, text: &str, color: Color32) {
