@@ -325,6 +325,9 @@ impl Editor<'_> {
             Verb::Note => {
                 for m in &c.targets {
                     if let Chosen::These(ids) = choose(&self.map, &self.boxes, m, &c.mentions) {
+                        if m.pick == Some(Pick::Any) {
+                            self.part_of = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
+                        }
                         self.last = ids;
                     }
                 }

@@ -190,6 +190,7 @@ impl<'t> Reader<'t> {
             map,
             boxes,
             others: false,
+            carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
         let pieces = said(&self.tokens[from..end], &talk);

@@ -204,8 +204,18 @@ impl Editor<'_> {
         let moves = b.velocity_mps.length() > 0.5;
         let told = spec.state;
         if spec.state.is_none() && !aside {
+            let at_edge = matches!(
+                role_of(&self.map, b),
+                Some(LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark)
+            );
+            let sided = spec
+                .relations
+                .iter()
+                .all(|r| matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf));
             spec.state = Some(if moves {
                 ObjectState::Moving
+            } else if at_edge && sided && b.class.is_vehicle() {
+                ObjectState::Parked // what is parked stays so on the other side
             } else {
                 ObjectState::Waiting
             });

@@ -135,7 +135,8 @@ pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
         _ if b.velocity_mps.length() > 0.5 => [&lanes[..], &strips, &walks].concat(),
         _ => {
             let off = map.nearest(p).map_or(f64::INFINITY, |l| l.p.distance(p));
-            if off < 0.8 {
+            let small = matches!(b.class, Class::TrafficCone | Class::Barrier);
+            if off < if small { 1.6 } else { 0.8 } {
                 [&lanes[..], &strips, &walks].concat()
             } else {
                 [&strips[..], &walks, &lanes].concat()

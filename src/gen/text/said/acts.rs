@@ -59,8 +59,6 @@ const BECOMES: &[&str] = &[
     "succeeded by",
     "turned out to be",
     "turns out to be",
-    "give way to",
-    "gives way to",
     "make way for",
     "makes way for",
     "makes room for",
@@ -325,6 +323,7 @@ pub fn acts(
     let kept: Vec<&Part> = parts
         .iter()
         .enumerate()
+        .filter(|(i, p)| !(p.begins(&["lets", "let", "allows", "makes room"]).is_some() && later(*i)))
         .filter(|(i, p)| !((p.perfect || p.is_gone() || p.not) && later(*i)))
         .map(|x| x.1)
         .collect();
@@ -406,7 +405,14 @@ pub fn acts(
     if first.begins(STAYS).is_some() && said.len() == 1 && metres_in(&first.main).is_none() {
         return Some(vec![remembered()]);
     }
-    let main: Vec<Token> = joined(&said);
+    let mut main: Vec<Token> = joined(&said);
+    if let Some((i, _)) = find(&main, &["back up", "backs up", "backed up", "backing up"]) {
+        main[i] = super::words::word("back", &main[i].clone());
+        main.remove(i + 1); // "up" leads forward
+        if i == 0 {
+            main.insert(0, super::words::word("move", &main[0].clone()));
+        }
+    }
     if let Some(factor) = times(&main) {
         let mut c = about(Verb::Move, s, clause, talk);
         c.destination = Some(Destination::Times(factor));
@@ -803,7 +809,14 @@ fn turned(main: &[Token], parts: &[&Part]) -> Option<Turn> {
     if !verb || parts.len() > 1 && place {
         return None;
     }
-    let items = tag(main);
+    // ("turn around" is one word of the lexicon)
+    let led_by_turn = main.len() > 1
+        && matches!(
+            text(&main[0]),
+            "turn" | "turns" | "turned" | "spin" | "spins" | "rotate" | "swivel" | "flip" | "face"
+        );
+    let from = usize::from(led_by_turn && !matches!(text(&main[0]), "face"));
+    let items = tag(&main[from..]);
     let ego = items
         .iter()
         .any(|i| matches!(i.tag, Tag::Is(Sense::Ego | Sense::EgoRel(_))));
@@ -970,6 +983,29 @@ fn placed(
 
 /// "goes over to the left pavement" ends there, whichever way; "the other side" is that of the street.
 fn arrived(mut main: Vec<Token>) -> Vec<Token> {
+    // "where the cones are" is next to them
+    if let Some(k) = main.iter().position(|t| text(t) == "where")
+        && let Some((a, b)) = first_noun(&main[k..])
+        && a < 4
+        && main[k + b..].iter().all(|t| {
+            super::words::HELPERS.contains(&text(t))
+                || super::words::is_finite(text(t), true)
+                || super::words::ADVERBS.contains(&text(t))
+        })
+    {
+        let np = main[k + 1..k + b].to_vec();
+        let next = led("next to", &main[k], &[&np]);
+        main.truncate(k);
+        main.extend(next);
+        return main;
+    }
+    // "goes from the right lane to the left one"
+    if let Some((i, _)) = find(&main, &["from", "out of", "away from"])
+        && let Some(goal) =
+            (i + 1..main.len()).find(|k| text(&main[*k]) == "to" || super::words::is_goal(&main[*k..]))
+    {
+        main.drain(i..goal);
+    }
     let sides = [
         "to the other side of the road",
         "to the other side of the street",

@@ -33,6 +33,8 @@ pub struct Talk<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// A word for what was spoken of last.
     pub last: Option<String>,
+    /// The clause before moves something: its verb may hold for the next.
+    pub carried: bool,
     /// The sentence speaks of "the other" of several, too.
     pub others: bool,
 }
@@ -93,7 +95,27 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     let mut understood = false;
     let others = find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
-    for clause in clauses(body, talk) {
+    let parted = clauses(body, talk);
+    let mut lead: Option<Token> = None;
+    for clause in parted {
+        // "put the truck on the left and the car on the right"
+        let mut clause = clause.to_vec();
+        let bare = is(clause.first(), &["the", "that", "both", "my"])
+            && first_noun(&clause).is_some_and(|n| n.0 < 4 && is_place(&clause[n.1..]))
+            && !clause
+                .iter()
+                .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
+        if let (true, Some(verb)) = (bare, &lead) {
+            clause.insert(0, verb.clone());
+        }
+        let verb = unwrapped(&clause).0.first().cloned();
+        lead = verb.filter(|v| {
+            matches!(
+                text(v),
+                "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
+            )
+        });
+        let clause = &clause[..];
         let talk = Talk {
             last: before.clone(),
             others,
@@ -133,6 +155,42 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
 /// "the one behind me", "what's behind me" as "the object behind me".
 fn with_ones(body: &[Token]) -> Vec<Token> {
     let mut out = body.to_vec();
+    // "the driver of the bus", "the bus driver": the bus
+    if let Some((i, n)) = find(
+        &out,
+        &[
+            "the driver of",
+            "the person driving",
+            "the driver in",
+            "the man driving",
+            "the woman driving",
+        ],
+    ) {
+        out.drain(i..i + n);
+    }
+    let mut i = 1;
+    while i < out.len() {
+        let vehicle =
+            matches!(look_up(text(&out[i - 1])), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle());
+        if vehicle && is(out.get(i), &["driver", "drivers"]) {
+            out.remove(i);
+        }
+        // "the car in the right one": lane
+        let side = is(
+            out.get(i - 1),
+            &["left", "right", "other", "oncoming", "opposite", "hand"],
+        );
+        let place = out[..i].iter().rev().find(|t| {
+            matches!(
+                text(t),
+                "lane" | "sidewalk" | "pavement" | "side" | "kerb" | "curb" | "roadside" | "shoulder"
+            )
+        });
+        if let (true, true, Some(place)) = (side, is(out.get(i), &["one"]), place.cloned()) {
+            out[i] = words::word(text(&place), &out[i].clone());
+        }
+        i += 1;
+    }
     let mut i = 0;
     while i + 1 < out.len() {
         let the = is(out.get(i), &["the", "that", "this"]) && is(out.get(i + 1), &["one", "ones"]);
@@ -317,7 +375,14 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
                 && !named
                 && !therefore
                 && spoken
-                && opens(rest, talk)
+                && opens(
+                    rest,
+                    &Talk {
+                        carried: text(t) == "and" && carries(&body[from..i]),
+                        last: None,
+                        ..*talk
+                    },
+                )
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -330,6 +395,15 @@ fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
     out.push(&body[from..]);
     out.retain(|c| !c.is_empty());
     out
+}
+
+/// True if a clause is "put the truck in the left lane".
+fn carries(clause: &[Token]) -> bool {
+    let (inner, _) = unwrapped(clause);
+    is(
+        inner.first(),
+        &["put", "move", "place", "set", "bring", "shift", "send"],
+    ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
 }
 
 /// "where the truck is, put a digger" and "instead of the van, ..." are one clause.
@@ -410,6 +484,14 @@ fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     {
         return true;
     }
+    // "... and the car in the right lane"
+    if is(near.first(), &["the", "that", "both", "my"])
+        && first_noun(near).is_some_and(|n| n.0 < 4 && is_place(&near[n.1..]))
+        && talk.carried
+        && !near.iter().any(|t| HELPERS.contains(&text(t)))
+    {
+        return true;
+    }
     // "two would do"
     if number(first).is_some()
         && is(
@@ -421,7 +503,7 @@ fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     let verb = super::rephrase::is_verb(first)
         && !is_place(inner)
-        && !matches!(text(first), "up" | "face" | "facing" | "set" | "about");
+        && !matches!(text(first), "up" | "face" | "facing" | "about");
     verb && inner.get(1).is_some_and(|t| {
         matches!(
             text(t),
@@ -464,6 +546,23 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         && talk.fits(inner) > 0
     {
         return Some(vec![remembered(inner, talk)]);
+    }
+    // "I can't see the pedestrian"
+    if let Some((i, n)) = find(
+        inner,
+        &[
+            "cant see",
+            "cannot see",
+            "can not see",
+            "dont see",
+            "barely see",
+            "hardly see",
+            "do not see",
+        ],
+    ) && i < 3
+        && has_noun(&inner[i + n..])
+    {
+        return Some(vec![remembered(&inner[i + n..], talk)]);
     }
     if let Some(found) = half(inner) {
         return Some(found);
@@ -573,7 +672,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         let any = usize::from(is(inner.first(), &["any"]));
         return Some(vec![Piece::Plain(led("remove", first, &[&inner[any..b]]))]);
     }
-    if let Some(found) = turn_about(inner, talk) {
+    if let Some(found) = turn_about(inner, talk).or_else(|| some_replaced(inner, talk)) {
         return Some(found);
     }
     let s = subject(inner, talk, mood.caused)?;
@@ -589,7 +688,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     let pred = &inner[s.pred..];
     if s.kind == Kind::Fresh {
-        return fresh(&s, pred, inner);
+        return fresh(&s, pred, inner, talk);
     }
     // "the cyclist I don't need any more"
     if matches!(text(pred.first()?), "i" | "we" | "you") {
@@ -636,7 +735,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 }
 
 /// Something new and where it shall be: "a woman has to stand between the two trucks".
-fn fresh(s: &Subject, pred: &[Token], clause: &[Token]) -> Option<Vec<Piece>> {
+fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let first = &clause[0];
     let np: Vec<Token> = {
         // "a second bus", "another bus" is one more
@@ -646,7 +745,11 @@ fn fresh(s: &Subject, pred: &[Token], clause: &[Token]) -> Option<Vec<Piece>> {
                 "second" | "third" | "fourth" | "further" | "additional" | "extra" | "new"
             )
         };
-        s.np.iter().filter(|t| !skip(t)).cloned().collect()
+        let own = is(s.np.first(), &["their", "his", "her", "its"]);
+        let lead = if own { led("a", first, &[]) } else { Vec::new() };
+        lead.into_iter()
+            .chain(s.np.iter().skip(usize::from(own)).filter(|t| !skip(t)).cloned())
+            .collect()
     };
     let parts = parts(pred, true);
     let helped = parts.iter().any(|p| p.helped);
@@ -723,12 +826,22 @@ fn fresh(s: &Subject, pred: &[Token], clause: &[Token]) -> Option<Vec<Piece>> {
             "that one",
             "the old one",
             "the present one",
-            "it",
         ],
     ) && words::noun_at(&main[i + n..]).is_none()
     {
         let the = led("the", first, &[&s.noun]);
         main.splice(i..i + n, the);
+    }
+    // "behind it": what else was named
+    let other = first_noun(&main)
+        .map(|n| main[n.0..n.1].to_vec())
+        .or_else(|| talk.last.as_ref().map(|l| led(l, first, &[])));
+    if let (Some(other), Some(k)) = (
+        other,
+        (1..main.len()).find(|k| is(main.get(*k), &["it", "him", "her", "them"]) && is_place(&main[k - 1..])),
+    ) && other.first().map(text) != s.noun.first().map(text)
+    {
+        main.splice(k..=k, led("the", first, &[&other]));
     }
     let in_out = is(pred.first(), &["in"]);
     if !(helped || in_out) || counted && !in_out && main.is_empty() {
@@ -1071,6 +1184,48 @@ fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) -> Option<V
     Some(vec![Piece::Meant(Box::new(c), noun)])
 }
 
+/// "replace three of the cones with barriers"
+fn some_replaced(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    let verb = is(
+        inner.first(),
+        &[
+            "replace",
+            "swap",
+            "exchange",
+            "change",
+            "turn",
+            "convert",
+            "substitute",
+            "transform",
+            "make",
+        ],
+    );
+    let part = number(inner.get(1)?).is_some() && is(inner.get(2), &["of"]);
+    if !(verb && part) {
+        return None;
+    }
+    let k = (3..inner.len()).find(|k| is(inner.get(*k), &["with", "by", "for", "into", "to", "against"]))?;
+    let (a, b) = first_noun(&inner[3..k])?;
+    let rest: Vec<Token> = inner[4..k]
+        .iter()
+        .filter(|t| number(t).is_none())
+        .cloned()
+        .collect();
+    let s = Subject {
+        kind: Kind::Part,
+        np: led("any", &inner[0], &[&inner[1..2], &rest]),
+        noun: inner[3 + a..3 + b].to_vec(),
+        pred: k,
+        plural: true,
+    };
+    let part = predicate::Part {
+        main: led("replaced by", &inner[0], &[&inner[k + 1..]]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
+}
+
 /// "turn the man so that his back is towards us": the end of the sentence says how.
 fn turn_about(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if !is(
@@ -1296,7 +1451,19 @@ fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         let known = is(
             tokens.first(),
             &[
-                "the", "that", "this", "those", "these", "both", "my", "all", "our", "every",
+                "everything",
+                "everyone",
+                "everybody",
+                "the",
+                "that",
+                "this",
+                "those",
+                "these",
+                "both",
+                "my",
+                "all",
+                "our",
+                "every",
             ],
         ) || tokens
             .first()
@@ -1332,7 +1499,7 @@ fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let rest = trimmed(&tokens[np_end..]);
     // "out of my lane and onto the sidewalk"
     let goal = leads(rest, &["out of", "off", "away from", "from"])
-        .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..])));
+        .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
     let rest = &rest[goal.unwrap_or(0)..];
     let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
     if s.kind == Kind::Part && out_of {

@@ -303,7 +303,7 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     }
     let described_fresh = matches!(
         text(first),
-        "a" | "an" | "another" | "some" | "somebody" | "someone"
+        "a" | "an" | "another" | "some" | "somebody" | "someone" | "their" | "his" | "her" | "its"
     ) || tokens[..noun]
         .iter()
         .any(|t| matches!(text(t), "more" | "additional" | "extra" | "another" | "further"));
