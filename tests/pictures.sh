@@ -9,7 +9,7 @@ for look in dark light; do
     for size in 1280x800 2560x1440; do
         size_window $size
         number=0
-        for workspace in edit paint voxels sensors label; do
+        for workspace in edit paint voxels sensors label trade; do
             number=$((number + 1))
             xdotool windowfocus "$window" mousemove $((${size%x*} * 6 / 10)) 22 key "alt+$number"
             # The box of which the label workspace shows three sides.

@@ -48,7 +48,6 @@ use super::perf::Perf;
 use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
-use super::software_ui;
 use super::state::{Pane, UiState};
 use super::theme;
 use super::tuning::Tuning;
@@ -816,10 +815,7 @@ impl eframe::App for SceneloomApp {
         }
     }
 
-    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
-        if self.passes == 0 && self.view3d.is_software() {
-            software_ui::wait_for_no_screen(frame);
-        }
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.draw(ui);
     }
 

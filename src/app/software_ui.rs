@@ -31,18 +31,6 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
     }
 }
 
-/// Shows frames when they are ready: the screen that a software driver would wait for is made up. Frames are drawn when
-/// something changes, so they do not run away. On X without a real screen it made no difference that could be measured
-/// (medians of 24 nudges 85 and 71 ms without waiting, 86 and 66 with).
-pub fn wait_for_no_screen(frame: &mut eframe::Frame) {
-    if let Some(config) = frame.wgpu_surface_config() {
-        frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig {
-            present_mode: wgpu::PresentMode::AutoNoVsync,
-            ..config
-        });
-    }
-}
-
 /// Says that a texture which egui does not own was drawn into; `share` is the part of it, 0 to 1, none: all.
 pub fn picture_changed(ctx: &Context, texture: TextureId, share: Option<Rect>) {
     ctx.data_mut(|data| {
