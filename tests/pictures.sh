@@ -11,7 +11,7 @@ for look in dark light; do
         number=0
         for workspace in edit paint voxels sensors label trade; do
             number=$((number + 1))
-            xdotool windowfocus "$window" mousemove $((${size%x*} * 6 / 10)) 22 key "alt+$number"
+            xdotool windowfocus "$window" mousemove $((${size%x*} * 77 / 100)) 22 key "alt+$number"
             # The box of which the label workspace shows three sides.
             [ $workspace$size = edit1280x800 ] && xdotool key j
             sleep "${PICTURES_WAIT_S:-8}" # pictures of the sensors

@@ -265,7 +265,9 @@ pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect) {
 pub fn swatch(ui: &Ui, center: Pos2, size: f32, color: Color32) {
     let rect = Rect::from_center_size(center, Vec2::splat(size));
     ui.painter().rect_filled(rect, 3.0, color);
-    let edge = Stroke::new(1.0, Color32::from_white_alpha(28));
+    // White on white is seen by its edge.
+    let alpha = if ui.visuals().dark_mode { 0.25 } else { 0.6 };
+    let edge = Stroke::new(1.0, theme::text_weak().gamma_multiply(alpha));
     ui.painter()
         .rect_stroke(rect, 3.0, edge, egui::StrokeKind::Inside);
 }

@@ -37,6 +37,8 @@ const SOURCES: [(CameraSource, &str, &str); 3] = [
     ),
 ];
 
+/// Width that the button of the sensors takes, points.
+const SENSORS_BUTTON: f32 = 84.0;
 /// Width that the number of LiDAR returns takes, points.
 const LIDAR_TEXT: f32 = 130.0;
 
@@ -71,7 +73,8 @@ pub fn header(
             ui.label(egui::RichText::new("updating").small().color(theme::text_weak()));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Sensors…").clicked() {
+            // The menu has it too.
+            if ui.available_width() > SENSORS_BUTTON && ui.button("Sensors…").clicked() {
                 commands.push(Command::ToggleSensors);
             }
             let text = input
