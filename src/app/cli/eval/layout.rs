@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 5] = [
+const SETS: [(&str, &str); 8] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -39,6 +39,15 @@ const SETS: [(&str, &str); 5] = [
     (
         "strangers_4.jsonl",
         include_str!("../../../../tests/data/strangers_4.jsonl"),
+    ),
+    ("exam.jsonl", include_str!("../../../../tests/data/exam.jsonl")),
+    (
+        "strangers_5.jsonl",
+        include_str!("../../../../tests/data/strangers_5.jsonl"),
+    ),
+    (
+        "strangers_6.jsonl",
+        include_str!("../../../../tests/data/strangers_6.jsonl"),
     ),
 ];
 

@@ -2,7 +2,8 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
-use super::words::{NEGATED, begins, find, has_noun, is, leads, longest, text};
+use super::lists::{HELPERS, NEGATED, OPENERS, PRONOUNS, SUBORDINATE, WISHING};
+use super::words::{begins, find, has_noun, is, leads, longest, text};
 
 /// How what is inside was said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,241 +15,6 @@ pub struct Mood {
     /// Anything was taken off.
     pub framed: bool,
 }
-
-const OPENERS: &[&str] = &[
-    "and",
-    "but",
-    "so",
-    "then",
-    "now",
-    "please",
-    "pls",
-    "ok",
-    "okay",
-    "oh",
-    "well",
-    "hey",
-    "hi",
-    "hello",
-    "yo",
-    "bro",
-    "dude",
-    "mate",
-    "sorry",
-    "hmm",
-    "actually",
-    "also",
-    "next",
-    "finally",
-    "nope",
-    "yes",
-    "yeah",
-    "wait",
-    "ah",
-    "just",
-    "kindly",
-    "maybe",
-    "perhaps",
-    "simply",
-    "additionally",
-    "afterwards",
-    "meanwhile",
-    "apparently",
-    "evidently",
-    "on second thought",
-    "on second thoughts",
-    "in reality",
-    "in fact",
-    "as it turns out",
-    "it turns out that",
-    "it turned out that",
-    "it turns out",
-    "turns out",
-    "turned out",
-    "in addition",
-    "after that",
-    "on closer inspection",
-    "upon closer inspection",
-    "upon inspection",
-    "upon reflection",
-    "on reflection",
-    "correction",
-    "now then",
-    "first of all",
-    "in the meantime",
-    "by now",
-    "to be precise",
-    "at this point",
-    "i think",
-    "i guess",
-    "i suppose",
-    "i believe",
-    "as a matter of fact",
-    "in the end",
-    "could you please",
-    "can you please",
-    "would you please",
-    "will you please",
-    "could you",
-    "can you",
-    "would you",
-    "will you",
-    "can we",
-    "could we",
-    "would you mind",
-    "you should",
-    "you can",
-    "you may",
-    "you must",
-    "go ahead and",
-    "feel free to",
-    "be so kind as to",
-    "be so kind and",
-    "time to",
-    "try to",
-    "lets",
-    "let us",
-    "i would like you to",
-    "id like you to",
-    "i want you to",
-    "i need you to",
-    "we should",
-    "we need to",
-    "we have to",
-    "we must",
-    "why not",
-    "why dont you",
-    "why dont we",
-    "how about",
-    "what about",
-    "make sure to",
-    "make sure that",
-    "make sure",
-    "be sure to",
-    "remember to",
-    "dont forget to",
-    "id ask you to",
-    "i would ask you to",
-    "may i ask you to",
-    "i ask you to",
-    "is it possible to",
-    "would it be possible to",
-    "would it be ok to",
-    "do me a favour and",
-    "do me a favor and",
-    "it is important that",
-    "change of plan",
-    "change of plans",
-    "new plan",
-    "small change",
-    "one more thing",
-    "for this one",
-    "from now on",
-    "as of now",
-    "second thought",
-    "scratch that",
-    "my mistake",
-    "my bad",
-    "hang on",
-    "hold on",
-    "listen",
-    "look here",
-    "alright",
-    "all right",
-    "right then",
-    "better still",
-    "better yet",
-    "even better",
-    "or rather",
-    "or better",
-    "rather",
-    "this time",
-    "for a change",
-    "somehow",
-    "obviously",
-];
-
-/// Words that show that a clause before "if" or "that" only wishes.
-const WISHING: &[&str] = &[
-    "would",
-    "id",
-    "itd",
-    "could",
-    "good",
-    "nice",
-    "better",
-    "great",
-    "cool",
-    "possible",
-    "grateful",
-    "prefer",
-    "wish",
-    "want",
-    "like",
-    "love",
-    "rather",
-    "hope",
-    "suppose",
-    "imagine",
-    "assume",
-    "say",
-    "think",
-    "important",
-    "necessary",
-    "what",
-    "ensure",
-    "sure",
-    "see",
-    "care",
-    "arrange",
-    "happy",
-    "glad",
-    "appreciate",
-    "thankful",
-    "need",
-    "found",
-    "find",
-    "fine",
-    "best",
-    "perfect",
-    "lovely",
-    "helpful",
-    "useful",
-    "obliged",
-    "ask",
-    "request",
-    "suggest",
-    "propose",
-    "demand",
-    "insist",
-    "desire",
-    "expect",
-    "require",
-    "picture",
-    "pretend",
-    "provided",
-    "please",
-    "pleased",
-    "said",
-    "says",
-    "seems",
-    "turns",
-    "turned",
-    "appears",
-    "reported",
-    "reports",
-    "stated",
-    "states",
-    "claims",
-    "claimed",
-    "known",
-    "true",
-    "fact",
-    "case",
-    "means",
-    "note",
-    "make",
-];
 
 /// A wish of the speaker before its object: "I want", "we'd rather have".
 fn wish(tokens: &[Token]) -> Option<usize> {
@@ -335,46 +101,14 @@ fn subordinate(tokens: &[Token]) -> Option<usize> {
     {
         return Some(comma + 1);
     }
-    leads(
-        tokens,
-        &[
-            "by the time",
-            "when",
-            "since",
-            "as",
-            "because",
-            "after",
-            "before",
-            "while",
-            "although",
-            "though",
-            "if",
-            "given that",
-            "now that",
-            "once",
-            "seeing that",
-            "even though",
-            "for the sake of",
-            "to make",
-            "in order to",
-            "considering",
-            "unlike",
-            "as soon as",
-            "in case",
-            "due to",
-            "owing to",
-            "because of",
-            "for",
-        ],
-    )?;
+    leads(tokens, &SUBORDINATE)?;
     let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma)?;
     let rest = &tokens[comma + 1..];
-    let speaks =
-        has_noun(rest) || is(rest.first(), super::words::PRONOUNS) || is(rest.first(), &["i", "we", "there"]);
+    let speaks = has_noun(rest) || is(rest.first(), &PRONOUNS) || is(rest.first(), &["i", "we", "there"]);
     // "as the bus, ..." and lists go on; a clause has a verb
     let verb = tokens[1..comma]
         .iter()
-        .any(|t| super::words::is_finite(text(t), true) || super::words::HELPERS.contains(&text(t)));
+        .any(|t| super::words::is_finite(text(t), true) || HELPERS.contains(&text(t)));
     (speaks && verb && rest.len() > 2).then_some(comma + 1)
 }
 
@@ -455,9 +189,7 @@ fn lead(tokens: &[Token]) -> Option<usize> {
     });
     let verb = super::super::rephrase::is_verb(&tokens[0])
         || super::words::is_finite(text(&tokens[0]), true)
-        || tokens[..comma]
-            .iter()
-            .any(|t| super::words::HELPERS.contains(&text(t)));
+        || tokens[..comma].iter().any(|t| HELPERS.contains(&text(t)));
     (plain && !verb && tokens.len() > comma + 3).then_some(comma + 1)
 }
 
@@ -467,7 +199,7 @@ pub fn unwrapped(mut tokens: &[Token]) -> (&[Token], Mood) {
     for _ in 0..8 {
         tokens = super::words::trimmed(tokens);
         let before = tokens.len();
-        if let Some(n) = leads(tokens, OPENERS).filter(|n| *n < tokens.len()) {
+        if let Some(n) = leads(tokens, &OPENERS).filter(|n| *n < tokens.len()) {
             tokens = &tokens[n..];
             mood.framed = true;
         } else if let Some(n) = source(tokens)
@@ -516,7 +248,7 @@ fn denial(tokens: &[Token]) -> Option<usize> {
     {
         return Some(4);
     }
-    let not = (1..3).find(|k| is(tokens.get(*k), NEGATED))?;
+    let not = (1..3).find(|k| is(tokens.get(*k), &NEGATED))?;
     let verb = (not + 1..not + 3).find(|k| is(tokens.get(*k), &["want", "like", "need", "wish", "think"]))?;
     Some(verb + 1)
 }

@@ -2,10 +2,8 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
-use super::words::{
-    ADVERBS, HELPERS, NEGATED, PRONOUNS, find, has_noun, is, is_finite, is_place, leads, longest, number,
-    text,
-};
+use super::lists::{ADVERBS, AFTERWARDS, GONE, HELPERS, IN_PLACE, NEGATED, PRONOUNS, REASONS, THERE};
+use super::words::{find, has_noun, is, is_finite, is_place, leads, longest, number, text};
 
 /// One verb phrase without its helpers.
 #[derive(Clone, Debug, Default)]
@@ -22,198 +20,6 @@ pub struct Part {
     pub helped: bool,
 }
 
-const GONE: &[&str] = &[
-    "no longer there",
-    "no longer here",
-    "not there",
-    "gone",
-    "missing",
-    "away",
-    "leave",
-    "leaves",
-    "left",
-    "leaving",
-    "depart",
-    "departs",
-    "departed",
-    "departing",
-    "disappear",
-    "disappears",
-    "disappeared",
-    "vanish",
-    "vanishes",
-    "vanished",
-    "drive off",
-    "drives off",
-    "drove off",
-    "driven off",
-    "drive away",
-    "drives away",
-    "drove away",
-    "driven away",
-    "pull away",
-    "pulls away",
-    "pulled away",
-    "pull off",
-    "pulls off",
-    "pulled off",
-    "walk away",
-    "walks away",
-    "walked away",
-    "walk off",
-    "walks off",
-    "walked off",
-    "go away",
-    "goes away",
-    "went away",
-    "go home",
-    "goes home",
-    "went home",
-    "gone home",
-    "go",
-    "goes",
-    "go off",
-    "gone off",
-    "gone away",
-    "moved on",
-    "moves on",
-    "move on",
-    "moved off",
-    "moves off",
-    "move off",
-    "moved away",
-    "rides off",
-    "rode off",
-    "ride off",
-    "ridden off",
-    "ridden away",
-    "rolled away",
-    "rolls away",
-    "towed away",
-    "towed",
-    "towed off",
-    "unnecessary",
-    "superfluous",
-    "redundant",
-    "unwanted",
-    "obsolete",
-    "surplus",
-    "out of the scene",
-    "out of the picture",
-    "off the road",
-    "off the street",
-    "out of here",
-    "history",
-    "cleared away",
-    "cleared",
-    "taken",
-    "taken away",
-    "taken out",
-    "taken off",
-    "exit",
-    "exits",
-    "exited",
-    "clear off",
-    "clears off",
-    "withdrawn",
-    "retired",
-    "scrapped",
-    "dismissed",
-    "absent",
-    "out of the way",
-    "carted off",
-    "carted away",
-    "hauled away",
-    "hauled off",
-    "removed",
-    "deleted",
-    "erased",
-    "eliminated",
-    "thrown out",
-    "gotten rid of",
-    "got rid of",
-    "cut out",
-    "dropped",
-    "omitted",
-    "out",
-    "off",
-    "driven on",
-    "drives on",
-    "drove on",
-    "run off",
-    "ran off",
-    "runs off",
-    "run away",
-    "ran away",
-    "runs away",
-    "no more",
-    "done here",
-    "finished here",
-    "set off",
-    "sped off",
-    "speeds off",
-    "speed off",
-    "cycled off",
-    "cycled away",
-    "cycles off",
-    "hurried off",
-    "hurried away",
-    "wandered off",
-    "wanders off",
-    "been removed",
-    "been taken away",
-    "dispensed with",
-    "done away with",
-    "disposed of",
-    "struck",
-    "cancelled",
-    "canceled",
-    "too much",
-    "too many",
-    "one too many",
-];
-/// What may follow one of those.
-const AFTERWARDS: &[&str] = &[
-    "from",
-    "now",
-    "already",
-    "please",
-    "too",
-    "as",
-    "again",
-    "completely",
-    "entirely",
-    "altogether",
-    "for",
-    "by",
-    "in the meantime",
-    "and",
-    "so",
-    "the scene",
-    "the road",
-    "the street",
-    "the area",
-    "the place",
-    "the picture",
-    "the image",
-    "the site",
-    "us",
-    "me",
-    "home",
-    "work",
-    "instead",
-    "then",
-    "long",
-    "because",
-    "since",
-    "after",
-    "anyway",
-    "off",
-    "at",
-    "with",
-    "for good",
-];
-
 impl Part {
     pub fn begins(&self, list: &[&str]) -> Option<usize> {
         leads(&self.main, list)
@@ -222,50 +28,10 @@ impl Part {
     /// True if it says that the subject is no more in the scene.
     pub fn is_gone(&self) -> bool {
         if self.not {
-            let there = self.main.is_empty()
-                || self
-                    .begins(&[
-                        "there",
-                        "here",
-                        "in the scene",
-                        "in the picture",
-                        "belong",
-                        "needed",
-                        "necessary",
-                        "wanted",
-                        "required",
-                        "exist",
-                        "around",
-                        "anymore",
-                        "any more",
-                        "present",
-                        "appear",
-                        "part of",
-                        "to be seen",
-                        "visible",
-                        "useful",
-                        "welcome",
-                        "of use",
-                        "in use",
-                        "interesting",
-                        "relevant",
-                        "want",
-                        "need",
-                        "on the scene",
-                        "at the scene",
-                        "in this scene",
-                        "in our scene",
-                        "to be there",
-                        "be there",
-                        "needed anymore",
-                        "show",
-                        "shown",
-                        "seen",
-                    ])
-                    .is_some();
+            let there = self.main.is_empty() || self.begins(&THERE).is_some();
             return there;
         }
-        let Some(n) = self.begins(GONE) else {
+        let Some(n) = self.begins(&GONE) else {
             return false;
         };
         let rest = &self.main[n..];
@@ -284,7 +50,7 @@ impl Part {
         let ends = !ours
             && (rest.is_empty()
                 || matches!(rest[0].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
-                || leads(rest, AFTERWARDS).is_some());
+                || leads(rest, &AFTERWARDS).is_some());
         let bare = matches!(text(&self.main[0]), "out" | "off" | "away" | "left")
             && self.main.len() > 1
             && n == 1
@@ -361,36 +127,7 @@ fn without_reasons(tokens: &[Token]) -> &[Token] {
     let mut end = tokens.len();
     for i in 1..tokens.len() {
         let rest = &tokens[i..];
-        let reason = leads(
-            rest,
-            &[
-                "because",
-                "since",
-                "so that we",
-                "so we",
-                "so that i",
-                "so i",
-                "as it",
-                "as he",
-                "as she",
-                "as they",
-                "for safety",
-                "in order to",
-                "which is",
-                "which means",
-                "so as to",
-                "to make it",
-                "or else",
-                "otherwise",
-                "to let",
-                "to avoid",
-                "for whatever",
-                "like before",
-                "as before",
-                "as usual",
-            ],
-        )
-        .is_some();
+        let reason = leads(rest, &REASONS).is_some();
         let against = (matches!(text(&tokens[i]), "not")
             || leads(
                 rest,
@@ -475,7 +212,7 @@ pub fn parts(tokens: &[Token], plural: bool) -> Vec<Part> {
                 next += 1;
             }
             // "so it is now", "and it waits there"
-            let said_again = is(tokens.get(next), PRONOUNS) && text(&tokens[i]) != "that";
+            let said_again = is(tokens.get(next), &PRONOUNS) && text(&tokens[i]) != "that";
             let begin = if said_again && !is(tokens.get(next), &["hes", "shes", "theyre"]) {
                 next + 1
             } else {
@@ -620,72 +357,7 @@ pub fn new_kind(main: &[Token]) -> Option<&[Token]> {
 
 /// True if the words name a thing that is put in the place of another: one past "in its place".
 pub fn in_place(tokens: &[Token]) -> Option<(usize, usize)> {
-    find(
-        tokens,
-        &[
-            "there instead",
-            "in its place",
-            "in their place",
-            "in his place",
-            "in her place",
-            "in the same place",
-            "in same place",
-            "in that place",
-            "in its stead",
-            "in their stead",
-            "in his stead",
-            "in its spot",
-            "in their spot",
-            "in the same spot",
-            "at the same place",
-            "at same place",
-            "at the same spot",
-            "at the same position",
-            "at the same location",
-            "in the same position",
-            "in its position",
-            "in their position",
-            "at its place",
-            "at their place",
-            "at that place",
-            "at that spot",
-            "at this place",
-            "on the same spot",
-            "on its spot",
-            "to its place",
-            "to the same place",
-            "to take its place",
-            "to take their place",
-            "takes its place",
-            "take its place",
-            "takes their place",
-            "take their place",
-            "takes his place",
-            "takes her place",
-            "as a replacement",
-            "as replacement",
-            "as a substitute",
-            "exactly there",
-            "right there",
-            "where it was",
-            "where it stood",
-            "where it is",
-            "where they were",
-            "where they stood",
-            "where he was",
-            "where she was",
-            "where he stood",
-            "where she stood",
-            "where it has been",
-            "where it had been",
-            "on the spot",
-            "into its place",
-            "into the gap",
-            "in the gap",
-            "to replace it",
-            "to replace them",
-        ],
-    )
+    find(tokens, &IN_PLACE)
 }
 
 /// True if there is anything that places the subject.

@@ -3,9 +3,8 @@
 use super::super::edit_grammar::Back;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::words::{
-    ADVERBS, HELPERS, NEGATED, PRONOUNS, first_noun, is, is_finite, is_place, led, number, text,
-};
+use super::lists::{ADVERBS, HELPERS, NEGATED, PRONOUNS};
+use super::words::{first_noun, is, is_finite, is_place, led, number, text};
 
 /// What kind of subject it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,8 +81,8 @@ fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
         }
         // "it's no longer there"
         "its"
-            if is(tokens.get(1), NEGATED)
-                || is(tokens.get(1), ADVERBS)
+            if is(tokens.get(1), &NEGATED)
+                || is(tokens.get(1), &ADVERBS)
                 || is(
                     tokens.get(1),
                     &[
@@ -98,7 +97,7 @@ fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
             Some((Back::Same, 1))
         }
         w if PRONOUNS.contains(&w) || w == "them" => Some((Back::Same, 1)),
-        "that" | "this" | "both" | "one" if is(tokens.get(1), HELPERS) || is(tokens.get(1), NEGATED) => {
+        "that" | "this" | "both" | "one" if is(tokens.get(1), &HELPERS) || is(tokens.get(1), &NEGATED) => {
             (text(first) != "one").then_some((Back::Same, 1))
         }
         _ => None,
@@ -118,7 +117,7 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
                 continue;
             }
             // "both walkers, they must change"
-            TokenKind::Comma if is(tokens.get(k + 1), PRONOUNS) => return Some(k + 2),
+            TokenKind::Comma if is(tokens.get(k + 1), &PRONOUNS) => return Some(k + 2),
             TokenKind::Comma | TokenKind::Stop => return None,
             TokenKind::Mark | TokenKind::Symbol => {
                 // "excavator -> left roadside", "parked cars: four are enough"

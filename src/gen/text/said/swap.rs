@@ -6,37 +6,9 @@ use super::super::tag::tag;
 use super::super::tokens::{Span, Token};
 use super::super::words::edits::Verb;
 use super::Talk;
+use super::lists::EXCHANGING;
 use super::words::{find, first_noun, is, text};
 
-const EXCHANGING: &[&str] = &[
-    "swap",
-    "swaps",
-    "swapped",
-    "switch",
-    "switched",
-    "switches",
-    "exchange",
-    "exchanged",
-    "exchanges",
-    "trade",
-    "traded",
-    "trades",
-    "change",
-    "changed",
-    "changes",
-    "interchange",
-    "interchanged",
-    "reverse",
-    "reversed",
-    "swop",
-    "swopped",
-    "flip",
-    "swapping",
-    "exchanging",
-    "switching",
-    "trading",
-    "changing",
-];
 const PLACES: &[&str] = &[
     "places",
     "positions",

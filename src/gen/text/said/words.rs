@@ -1,80 +1,11 @@
 //! Words by what they do in a sentence: helpers, denials, finite verbs, the head of a noun phrase.
 
-use std::collections::{HashMap, HashSet};
-use std::sync::LazyLock;
-
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::super::words::edits::VERBS;
 use super::super::words::verbs::{DOING, RELATING, forms};
-
-/// Verbs that only carry another, and adverbs that stand among them.
-pub const HELPERS: &[&str] = &[
-    "has", "have", "had", "is", "are", "was", "were", "be", "been", "being", "am", "should", "must", "shall",
-    "ought", "needs", "need", "can", "could", "may", "will", "would", "might", "gets", "get", "got", "wants",
-    "belongs", "do", "does", "did", "itll", "hell", "shell", "theyll", "better",
-];
-/// Words that may stand among helpers.
-pub const ADVERBS: &[&str] = &[
-    "to",
-    "now",
-    "just",
-    "already",
-    "also",
-    "please",
-    "then",
-    "simply",
-    "supposed",
-    "meant",
-    "both",
-    "all",
-    "completely",
-    "finally",
-    "rather",
-    "instead",
-    "suddenly",
-    "meanwhile",
-    "currently",
-    "so",
-    "really",
-    "actually",
-    "still",
-    "probably",
-    "definitely",
-    "going",
-    "required",
-    "expected",
-    "allowed",
-    "asked",
-    "told",
-    "possibly",
-    "perhaps",
-    "preferably",
-    "ideally",
-    "always",
-    "clearly",
-    "best",
-    "quickly",
-    "slowly",
-    "slightly",
-    "immediately",
-    "kindly",
-    "obliged",
-    "due",
-    "about",
-    "made",
-    "able",
-];
-/// Helpers and adverbs that turn the rest around.
-pub const NEGATED: &[&str] = &[
-    "shouldnt", "mustnt", "isnt", "arent", "wasnt", "werent", "doesnt", "dont", "didnt", "cant", "cannot",
-    "wont", "neednt", "hasnt", "havent", "hadnt", "wouldnt", "couldnt", "not", "never", "aint",
-];
-/// Subjects that point back.
-pub const PRONOUNS: &[&str] = &[
-    "it", "he", "she", "they", "hes", "shes", "theyre", "itll", "hell", "shell", "theyll", "itd", "hed",
-    "shed", "theyd",
-];
+use std::collections::{HashMap, HashSet};
+use std::sync::LazyLock;
 
 /// Finite forms: of the third person, and the base form for several and after "let".
 static FINITE: LazyLock<(HashSet<String>, HashSet<String>)> = LazyLock::new(|| {
@@ -262,6 +193,9 @@ pub fn is_place(tokens: &[Token]) -> bool {
     let Some(first) = tokens.first() else {
         return false;
     };
+    if number(first).is_some() && is(tokens.get(1), &["lane", "lanes"]) {
+        return true; // "one lane to the left"
+    }
     if number(first).is_some() && (is_unit(tokens.get(1)) || tokens.get(1..).and_then(unit_at).is_some()) {
         return true;
     }

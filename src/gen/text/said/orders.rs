@@ -1,0 +1,319 @@
+//! Imperatives that move, turn or replace what the scene has.
+
+use super::super::edit_grammar::Back;
+use super::super::tokens::{Token, TokenKind};
+use super::lists::MOVES;
+use super::predicate::parts;
+use super::subject::{Kind, Subject};
+use super::ways::split;
+use super::words::{self, find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
+use super::{Piece, Talk, acts, predicate};
+
+/// "turn the man so that his back is towards us": the end of the sentence says how.
+pub(super) fn turn_about(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    if !is(
+        inner.first(),
+        &[
+            "turn",
+            "rotate",
+            "spin",
+            "swivel",
+            "orient",
+            "orientate",
+            "position",
+            "place",
+            "put",
+        ],
+    ) {
+        return None;
+    }
+    // "turn it around"
+    if is(inner.get(1), &["it", "him", "her", "them"])
+        && inner.len() > 2
+        && !is(inner.get(2), &["into", "on", "off", "up", "down"])
+        && matches!(text(&inner[0]), "turn" | "rotate" | "spin" | "swivel")
+        && !inner.iter().any(|t| matches!(text(t), "into" | "so"))
+    {
+        let s = Subject {
+            kind: Kind::Back(if is(inner.get(1), &["him", "her"]) {
+                Back::Person
+            } else {
+                Back::Same
+            }),
+            np: inner[1..2].to_vec(),
+            noun: Vec::new(),
+            pred: 2,
+            plural: false,
+        };
+        let part = predicate::Part {
+            main: led("turn", &inner[0], &[&inner[2..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
+    let (i, n) = find(
+        inner,
+        &["so that", "such that", "in such a way that", "with", "so"],
+    )?;
+    let end = first_noun(&inner[1..]).map_or(2, |x| x.1 + 1);
+    if i < end || inner[end..i].iter().any(|t| t.kind == TokenKind::Comma) {
+        return None;
+    }
+    let mut rest = &inner[i + n..];
+    while is(
+        rest.first(),
+        &["it", "he", "she", "they", "its", "his", "her", "their", "the"],
+    ) {
+        rest = &rest[1..];
+    }
+    let about = rest.iter().any(|t| {
+        matches!(
+            text(t),
+            "back"
+                | "backs"
+                | "rear"
+                | "tail"
+                | "front"
+                | "nose"
+                | "face"
+                | "faces"
+                | "facing"
+                | "looks"
+                | "look"
+                | "points"
+                | "point"
+        )
+    });
+    if !about {
+        return None;
+    }
+    let (kind, np) = match text(&inner[1]) {
+        "it" | "them" => (Kind::Back(Back::Same), &inner[1..2]),
+        "him" | "her" => (Kind::Back(Back::Person), &inner[1..2]),
+        _ => (Kind::Known, &inner[1..end]),
+    };
+    let s = Subject {
+        kind,
+        np: np.to_vec(),
+        noun: first_noun(np).map(|n| np[n.0..n.1].to_vec()).unwrap_or_default(),
+        pred: end,
+        plural: false,
+    };
+    let part = predicate::Part {
+        main: led("turn", &inner[0], &[rest]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
+}
+
+/// "replace three of the cones with barriers"
+pub(super) fn some_replaced(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    let verb = is(
+        inner.first(),
+        &[
+            "replace",
+            "swap",
+            "exchange",
+            "change",
+            "turn",
+            "convert",
+            "substitute",
+            "transform",
+            "make",
+        ],
+    );
+    let part = number(inner.get(1)?).is_some() && is(inner.get(2), &["of"]);
+    if !(verb && part) {
+        return None;
+    }
+    let k = (3..inner.len()).find(|k| is(inner.get(*k), &["with", "by", "for", "into", "to", "against"]))?;
+    let (a, b) = first_noun(&inner[3..k])?;
+    let rest: Vec<Token> = inner[4..k]
+        .iter()
+        .filter(|t| number(t).is_none())
+        .cloned()
+        .collect();
+    let s = Subject {
+        kind: Kind::Part,
+        np: led("any", &inner[0], &[&inner[1..2], &rest]),
+        noun: inner[3 + a..3 + b].to_vec(),
+        pred: k,
+        plural: true,
+    };
+    let part = predicate::Part {
+        main: led("replaced by", &inner[0], &[&inner[k + 1..]]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
+}
+
+/// "put the car in the middle of my lane", "take it 5 m further back": what is known is moved.
+pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    let first = inner.first()?;
+    // "add him", "put him there": he is there
+    let added = matches!(text(first), "add" | "include" | "insert" | "put" | "place")
+        && is(inner.get(1), &["it", "him", "her", "them"]);
+    if added
+        && inner[2..].iter().all(|t| {
+            matches!(
+                text(t),
+                "there"
+                    | "in"
+                    | "too"
+                    | "please"
+                    | "now"
+                    | "here"
+                    | "into"
+                    | "the"
+                    | "scene"
+                    | "picture"
+                    | "to"
+            )
+        })
+    {
+        return Some(Vec::new());
+    }
+    let counts = inner
+        .iter()
+        .any(|t| matches!(text(t), "number" | "amount" | "count" | "total"));
+    let makes = matches!(text(first), "make" | "have" | "let" | "get");
+    if !MOVES.contains(&text(first)) || counts {
+        return None;
+    }
+    if makes
+        && is(inner.get(1), &["it", "that", "this"])
+        && inner
+            .get(2)
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]))
+    {
+        return None;
+    }
+    let mut from = 1;
+    while is(inner.get(from), &["over", "back", "up", "forward", "down"])
+        && inner
+            .get(from + 1)
+            .is_some_and(|t| matches!(text(t), "the" | "both" | "that" | "my" | "it" | "all"))
+    {
+        from += 1;
+    }
+    let tokens = &inner[from..];
+    let pronoun = is(tokens.first(), &["it", "him", "her", "them"]);
+    let (np_end, s) = if pronoun {
+        let back = if is(tokens.first(), &["him", "her"]) {
+            Back::Person
+        } else {
+            Back::Same
+        };
+        let s = Subject {
+            kind: Kind::Back(back),
+            np: tokens[..1].to_vec(),
+            noun: Vec::new(),
+            pred: 1,
+            plural: false,
+        };
+        (1, s)
+    } else {
+        let known = is(
+            tokens.first(),
+            &[
+                "everything",
+                "everyone",
+                "everybody",
+                "the",
+                "that",
+                "this",
+                "those",
+                "these",
+                "both",
+                "my",
+                "all",
+                "our",
+                "every",
+            ],
+        ) || tokens
+            .first()
+            .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some())
+            && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
+            || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"]);
+        if !known {
+            return None;
+        }
+        let noun = first_noun(tokens).filter(|n| n.0 < 7)?;
+        let clean = tokens[..noun.0]
+            .iter()
+            .all(|t| t.kind != TokenKind::Comma && !matches!(text(t), "and" | "rid"));
+        if !clean || is(tokens.get(noun.1), &["and"]) {
+            return None;
+        }
+        let split = split(tokens, talk)?;
+        let part = is(tokens.get(1), &["of"]) && number(&tokens[0]).is_some();
+        let np = if part {
+            led("any", first, &[&tokens[..1], &tokens[2..split]])
+        } else {
+            tokens[..split].to_vec()
+        };
+        let s = Subject {
+            kind: if part { Kind::Part } else { Kind::Known },
+            np,
+            noun: tokens[noun.0..noun.1].to_vec(),
+            pred: split,
+            plural: false,
+        };
+        (split, s)
+    };
+    let rest = trimmed(&tokens[np_end..]);
+    // "out of my lane and onto the sidewalk"
+    let goal = leads(rest, &["out of", "off", "away from", "from"])
+        .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
+    let rest = &rest[goal.unwrap_or(0)..];
+    let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
+    if s.kind == Kind::Part && out_of {
+        let part = predicate::Part {
+            main: led("gone", first, &[]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
+    if rest.is_empty() || out_of {
+        return None;
+    }
+    if !(0..rest.len()).any(|i| is_place(&rest[i..])) {
+        return None;
+    }
+    // the verb says that metres are a way to go
+    let mut main = vec![words::word("move", first)];
+    main.extend(inner[1..from].iter().cloned());
+    let mut said = parts(rest, true);
+    for p in &mut said {
+        p.helped = true;
+        p.is = false;
+        p.not = false;
+        p.perfect = false;
+    }
+    if let Some(p) = said.first_mut() {
+        let park = matches!(text(first), "park" | "stand");
+        let mut whole = if park {
+            vec![words::word(
+                if text(first) == "park" {
+                    "parked"
+                } else {
+                    "standing"
+                },
+                first,
+            )]
+        } else {
+            main
+        };
+        whole.extend(std::mem::take(&mut p.main));
+        p.main = whole;
+    }
+    acts::acts(&s, &said, true, inner, talk)
+}
+
+pub(super) fn predicate_places(rest: &[Token]) -> bool {
+    (1..rest.len()).any(|i| is_place(&rest[i..])) || has_noun(rest)
+}

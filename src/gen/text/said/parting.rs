@@ -1,0 +1,237 @@
+//! Where a sentence falls apart into clauses.
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::frame::unwrapped;
+use super::lists::{HELPERS, PRONOUNS};
+use super::predicate::in_place;
+use super::subject::{Kind, subject};
+use super::words::{self, find, first_noun, has_noun, is, is_place, leads, number, text};
+
+/// Where a sentence falls apart: after a comma, "and" or "but", where a subject with its verb or an imperative begins.
+pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
+    let mut out = Vec::new();
+    let mut from = 0;
+    let mut i = 1;
+    while i < body.len() {
+        let t = &body[i];
+        let link = matches!(t.kind, TokenKind::Comma | TokenKind::Mark)
+            && !matches!(text(t), "#" | "/" | "\"")
+            || matches!(
+                text(t),
+                "and" | "but" | "so" | "then" | "while" | "whereas" | "because"
+            );
+        if link {
+            let mut next = i + 1;
+            while body.get(next).is_some_and(|t| {
+                t.kind == TokenKind::Comma
+                    || matches!(
+                        text(t),
+                        "and" | "but" | "so" | "then" | "while" | "also" | "therefore" | "hence"
+                    )
+            }) {
+                next += 1;
+            }
+            // "all cars but one can go"
+            if text(t) == "but"
+                && body.get(next).is_some_and(|t| number(t).is_some())
+                && body[from..i].iter().any(|t| matches!(text(t), "all" | "every"))
+            {
+                i += 1;
+                continue;
+            }
+            let rest = &body[next.min(body.len())..(next + 40).min(body.len())];
+            let lead = matches!(
+                text(&body[from]),
+                "where" | "instead" | "if" | "when" | "since" | "because" | "as" | "by" | "until"
+            ) && from == 0
+                && !has_noun(&body[from..i]);
+            let styled = body[from..i]
+                .iter()
+                .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
+            let spoken = styled
+                || has_noun(&body[from..i])
+                || is(body.get(from), &PRONOUNS)
+                || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
+            // "take the barrier and put it behind me" is one
+            let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
+                && is(body.get(next + 1), &["it", "them", "him", "her"])
+                && !(from + 1..i).any(|k| is_place(&body[k..i]));
+            // "both walkers, they must change"
+            let named = is(rest.first(), &PRONOUNS)
+                && t.kind == TokenKind::Comma
+                && first_noun(&body[from..i]).is_some_and(|n| {
+                    n.0 < 5
+                        && is(
+                            body.get(from),
+                            &["the", "both", "all", "that", "those", "these", "my"],
+                        )
+                })
+                && !body[from..i]
+                    .iter()
+                    .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
+            let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            if !lead
+                && !lifts
+                && !named
+                && !therefore
+                && spoken
+                && opens(
+                    rest,
+                    &Talk {
+                        carried: text(t) == "and" && carries(&body[from..i]),
+                        last: None,
+                        ..*talk
+                    },
+                )
+                && !starts_where(&body[from..i])
+            {
+                out.push(&body[from..i]);
+                from = next;
+                i = next;
+            }
+        }
+        i += 1;
+    }
+    out.push(&body[from..]);
+    out.retain(|c| !c.is_empty());
+    out
+}
+
+/// "where the truck is, put a digger" and "instead of the van, ..." are one clause.
+pub(super) fn starts_where(tokens: &[Token]) -> bool {
+    is(
+        tokens.first(),
+        &["where", "instead", "whatever", "whichever", "rather", "unless"],
+    ) && has_noun(tokens)
+        || leads(
+            tokens,
+            &[
+                "in place of",
+                "in lieu of",
+                "by the time",
+                "apart from",
+                "except for",
+            ],
+        )
+        .is_some()
+}
+
+/// True if a clause is "put the truck in the left lane".
+pub(super) fn carries(clause: &[Token]) -> bool {
+    let (inner, _) = unwrapped(clause);
+    is(
+        inner.first(),
+        &["put", "move", "place", "set", "bring", "shift", "send"],
+    ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
+}
+
+/// True if a clause of its own begins here.
+pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
+    let (inner, mood) = unwrapped(rest);
+    let Some(first) = inner.first() else {
+        return false;
+    };
+    if mood.denied
+        || leads(
+            rest,
+            &[
+                "there is",
+                "there are",
+                "there should",
+                "there must",
+                "there shall",
+                "i dont",
+                "we dont",
+                "i would",
+                "id like",
+                "i want",
+                "i need",
+                "we need",
+            ],
+        )
+        .is_some()
+    {
+        return true;
+    }
+    let near = &inner[..inner.len().min(14)];
+    if let Some(s) = subject(
+        near,
+        talk,
+        mood.caused && leads(rest, &["let", "have", "make", "get"]).is_some(),
+    ) {
+        // "15 m ahead, two cars parked": a list goes on, and is no clause
+        return match s.kind {
+            Kind::Fresh => {
+                HELPERS.contains(&text(&near[s.pred]))
+                    || find(near, &["in"]).is_some() && text(&near[s.pred]) == "in"
+                    || in_place(near).is_some()
+            }
+            Kind::Known => {
+                is(
+                    near.first(),
+                    &[
+                        "the", "my", "that", "this", "those", "these", "both", "all", "every", "our",
+                    ],
+                ) || HELPERS.contains(&text(&near[s.pred]))
+                    || matches!(text(&near[s.pred]), "in" | "out" | "gone" | "away" | "off")
+            }
+            _ => true,
+        };
+    }
+    // "and in its place there is a roller"
+    if in_place(near).is_some_and(|p| p.0 == 0) && has_noun(&near[2..]) {
+        return true;
+    }
+    // "and a tram in its place"
+    if is(near.first(), &["a", "an", "another"])
+        && first_noun(near).is_some_and(|n| in_place(&near[n.1..]).is_some_and(|p| p.0 == 0))
+    {
+        return true;
+    }
+    // "... and the car in the right lane"
+    if is(near.first(), &["the", "that", "both", "my"])
+        && first_noun(near).is_some_and(|n| n.0 < 4 && is_place(&near[n.1..]))
+        && talk.carried
+        && !near.iter().any(|t| HELPERS.contains(&text(t)))
+    {
+        return true;
+    }
+    // "two would do"
+    if number(first).is_some()
+        && is(
+            inner.get(1),
+            &["would", "will", "is", "are", "should", "must", "may"],
+        )
+    {
+        return true;
+    }
+    let verb = super::super::rephrase::is_verb(first)
+        && !is_place(inner)
+        && !matches!(text(first), "up" | "face" | "facing" | "about");
+    verb && inner.get(1).is_some_and(|t| {
+        matches!(
+            text(t),
+            "the"
+                | "a"
+                | "an"
+                | "it"
+                | "them"
+                | "him"
+                | "her"
+                | "both"
+                | "all"
+                | "that"
+                | "this"
+                | "another"
+                | "my"
+                | "one"
+                | "two"
+                | "everything"
+                | "everyone"
+                | "nothing"
+                | "any"
+        ) || number(t).is_some()
+    })
+}

@@ -1,0 +1,90 @@
+//! Words as the clause reader wants them: "the one behind me" is something, the bus driver is the bus.
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::Token;
+use super::lists::HELPERS;
+use super::words::{self, find, is, is_place, led, text};
+
+/// "the one behind me", "what's behind me" as "the object behind me".
+pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
+    let mut out = body.to_vec();
+    // "the driver of the bus", "the bus driver": the bus
+    if let Some((i, n)) = find(
+        &out,
+        &[
+            "the driver of",
+            "the person driving",
+            "the driver in",
+            "the man driving",
+            "the woman driving",
+        ],
+    ) {
+        out.drain(i..i + n);
+    }
+    let mut i = 1;
+    while i < out.len() {
+        let vehicle =
+            matches!(look_up(text(&out[i - 1])), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle());
+        if vehicle && is(out.get(i), &["driver", "drivers"]) {
+            out.remove(i);
+        }
+        // "the car in the right one": lane
+        let side = is(
+            out.get(i - 1),
+            &["left", "right", "other", "oncoming", "opposite", "hand"],
+        );
+        let place = out[..i].iter().rev().find(|t| {
+            matches!(
+                text(t),
+                "lane" | "sidewalk" | "pavement" | "side" | "kerb" | "curb" | "roadside" | "shoulder"
+            )
+        });
+        if let (true, true, Some(place)) = (side, is(out.get(i), &["one"]), place.cloned()) {
+            out[i] = words::word(text(&place), &out[i].clone());
+        }
+        i += 1;
+    }
+    let mut i = 0;
+    while i + 1 < out.len() {
+        let the = is(out.get(i), &["the", "that", "this"]) && is(out.get(i + 1), &["one", "ones"]);
+        let more = out.get(i + 2..).unwrap_or(&[]);
+        let told = is_place(more) || is(more.first(), &["that", "which", "who"]);
+        let first = i == 0 || words::trimmed(&out[..i]).is_empty();
+        if the && told && first {
+            out[i + 1] = words::word("object", &out[i + 1].clone());
+        }
+        let what = first
+            && (is(out.get(i), &["whats"])
+                || is(out.get(i), &["what", "whatever", "whoever"])
+                    && is(out.get(i + 1), &["is", "drives", "stands", "comes"]));
+        if what {
+            let n = if text(&out[i]) == "whats" { 1 } else { 2 };
+            let later = out[i + n..].iter().any(|t| HELPERS.contains(&text(t)));
+            if later && is_place(&out[i + n..]) {
+                let the = led("the object", &out[i].clone(), &[]);
+                out.splice(i..i + n, the);
+            }
+        }
+        i += 1;
+    }
+    out
+}
+
+/// The words without "on foot" and "who is on foot".
+pub(super) fn without_feet(body: &[Token]) -> Vec<Token> {
+    let Some((i, n)) = find(
+        body,
+        &[
+            "who is on foot",
+            "who are on foot",
+            "that is on foot",
+            "that are on foot",
+            "on foot",
+        ],
+    ) else {
+        return body.to_vec();
+    };
+    let mut out = body.to_vec();
+    out.drain(i..i + n);
+    out
+}
