@@ -284,7 +284,9 @@ impl PromptPane {
         } = text::read_edit(&self.prompt, scene, self.seed);
         self.notes = notes;
         self.notes.extend(not_understood.iter().map(unread));
-        let road = text::read(&self.prompt).ok().and_then(|r| r.description.road.kind);
+        let road = text::read(&self.prompt)
+            .ok()
+            .and_then(|r| r.description.road.kind);
         if let Some(road) = road {
             let name = format!("{road:?}").to_lowercase();
             self.notes

@@ -297,7 +297,11 @@ fn area(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, off: f64, ce
             let before = from.heading().dot(center - p) > 0.0;
             let on_road = map.has(ROAD, p);
             // A vehicle stops with its front before the stripes, and not far before.
-            let (front_m, most_m) = if on_road { (from.size_m.x / 2.0, 3.5) } else { (0.0, 7.0) };
+            let (front_m, most_m) = if on_road {
+                (from.size_m.x / 2.0, 3.5)
+            } else {
+                (0.0, 7.0)
+            };
             standing && off > 0.2 + front_m && off - from.size_m.x / 2.0 <= most_m && (before || !on_road)
         }
         R::Blocking => standing && off <= 0.0,

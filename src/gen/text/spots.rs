@@ -299,13 +299,18 @@ impl Gather<'_, '_> {
         let half_m = self.size_m.x / 2.0;
         for s in &mut self.out {
             let along = DVec2::from_angle(s.yaw_rad);
-            let stripes = |t: f64| self.map.has(BevLayer::PedCrossing.bit(), s.p + along * (half_m * t));
+            let stripes = |t: f64| {
+                self.map
+                    .has(BevLayer::PedCrossing.bit(), s.p + along * (half_m * t))
+            };
             if [-1.0, -0.5, 0.0, 0.5, 1.0].into_iter().any(stripes) {
                 s.cost += 4.0;
             }
-            let in_the_way = self.map.points.iter().any(|l| {
-                l.p.distance_squared(s.p) < NEAR_M * NEAR_M && l.dir.dot(along).abs() < 0.7
-            });
+            let in_the_way = self
+                .map
+                .points
+                .iter()
+                .any(|l| l.p.distance_squared(s.p) < NEAR_M * NEAR_M && l.dir.dot(along).abs() < 0.7);
             s.cost += if in_the_way { 4.0 } else { 0.0 };
         }
     }
