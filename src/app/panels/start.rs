@@ -45,7 +45,10 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
             if settings.recent.is_empty() {
                 let text = "Scenes that you open or save appear here. Files can also be dropped on the window: \
                             .loom scenes, OpenDRIVE roads (.xodr), Occ3D labels (.npz).";
-                left.label(egui::RichText::new(text).small().color(theme::text_weak()));
+                // Columns justify what is in them; words do not want that.
+                left.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
+                    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+                });
             }
             for path in settings.recent.iter().take(6) {
                 if recent(left, path).clicked() {
