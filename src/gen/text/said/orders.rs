@@ -251,7 +251,14 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         let split = split(tokens, talk)?;
         let part = is(tokens.get(1), &["of"]) && number(&tokens[0]).is_some();
         let np = if part {
-            led("any", first, &[&tokens[..1], &tokens[2..split]])
+            // "one of the two pedestrians"
+            let rest: Vec<Token> = tokens[2..split]
+                .iter()
+                .enumerate()
+                .filter(|(i, t)| !(*i == 1 && number(t).is_some()))
+                .map(|(_, t)| t.clone())
+                .collect();
+            led("any", first, &[&tokens[..1], &rest])
         } else {
             tokens[..split].to_vec()
         };
@@ -269,6 +276,18 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     let goal = leads(rest, &["out of", "off", "away from", "from"])
         .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
     let rest = &rest[goal.unwrap_or(0)..];
+    // "out of my lane and put it on the sidewalk"
+    let put = leads(rest, &["out", "off", "away", "from", "up"]).and_then(|_| {
+        (1..rest.len()).find(|i| {
+            is(
+                rest.get(*i),
+                &[
+                    "put", "place", "set", "move", "bring", "park", "lay", "leave", "send", "stand",
+                ],
+            ) && is(rest.get(i + 1), &["it", "them", "him", "her"])
+        })
+    });
+    let rest = &rest[put.map_or(0, |k| k + 2)..];
     let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
     if s.kind == Kind::Part && out_of {
         let part = predicate::Part {
