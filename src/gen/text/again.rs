@@ -160,6 +160,7 @@ impl Parser<'_> {
         self.flush();
         let mut twin = self.mentions[last].clone();
         twin.spec.relations.clear();
+        twin.spec.attributes.retain(|a| a != "in total");
         twin.spec.count = count;
         twin.spec.span = span;
         twin.plural = count.n > 1;

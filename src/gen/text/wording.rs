@@ -100,7 +100,7 @@ pub fn without_order(tokens: &[Token]) -> Vec<Token> {
     }
 }
 
-const FACING: &str = "facing each other|facing one another|face each other|face one another|faces each other|looking at each other|looking at one another|face to face|nose to nose|head to head|front to front|nose against nose|eye to eye|opposite each other|opposite one another|turned towards each other|turned to each other|turned toward each other|turned towards one another|pointing at each other|pointing towards each other|their fronts towards each other|with their fronts towards each other|vis a vis";
+const FACING: &str = "facing each other|facing one another|face each other|face one another|faces each other|looking at each other|looking at one another|face to face|face to face with each other|face to face with one another|face to face to each other|facing one the other|each facing the other|one facing the other|nose to nose|head to head|front to front|nose against nose|eye to eye|opposite each other|opposite one another|turned towards each other|turned to each other|turned toward each other|turned towards one another|pointing at each other|pointing towards each other|their fronts towards each other|with their fronts towards each other|vis a vis";
 const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene with|a situation in which|a situation where|a scenario in which|a scenario where|a picture in which|a picture where|a setting in which|a setting where|a street on which|a moment in which|a moment when|a case in which|a case where";
 
 /// A prompt in plain words.
@@ -110,6 +110,7 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
         out.extend_from_slice(without_purpose(sentence));
     }
     let out = replaced(&out, FRAMES, "");
+    let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let mut out = faced(&out);
     // "the lane directly to our right"
     let mut i = 1;

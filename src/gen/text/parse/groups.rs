@@ -170,6 +170,7 @@ impl Parser<'_> {
         };
         part.plural = n > 1;
         part.spec.span = span;
+        part.spec.attributes.retain(|a| a != "in total");
         self.mentions.push(part);
         let index = self.mentions.len() - 1;
         self.whole = Some(parent);

@@ -215,10 +215,24 @@ impl Parser<'_> {
         if self.owned(index) {
             // "the deliveryman has parked his truck and walks": he walks
             let owner = self.head[0];
+            let left = (1..4).any(|k| {
+                self.item(self.at.wrapping_sub(k)).is_some_and(|i| {
+                    i.words.split(' ').any(|w| {
+                        matches!(
+                            w,
+                            "left" | "leaves" | "leaving" | "out" | "exited" | "abandoned" | "from"
+                        )
+                    })
+                })
+            });
             let state = self.mentions[owner].spec.state.take();
             let m = &mut self.mentions[index];
             m.spec.state = m.spec.state.or(state);
             m.host = None;
+            // "has left his van"
+            if left {
+                m.spec.state = Some(ObjectState::Parked);
+            }
             self.last = vec![index];
             self.topic = None;
             self.chain = false;

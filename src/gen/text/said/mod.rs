@@ -13,6 +13,8 @@ mod predicate;
 mod spoken;
 mod subject;
 mod swap;
+#[cfg(test)]
+mod tests;
 mod ways;
 mod worded;
 mod words;

@@ -216,6 +216,11 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         };
         (1, s)
     } else {
+        // "move one worker to the left, the other stays"
+        let one_of = talk.others
+            && first_noun(tokens).filter(|n| n.0 < 4).is_some_and(|n| {
+                number(&tokens[0]).is_some_and(|k| talk.fits(&tokens[n.0..n.1]) > k.max(0) as usize)
+            });
         let known = is(
             tokens.first(),
             &[
@@ -237,7 +242,8 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
             .first()
             .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some())
             && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
-            || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"]);
+            || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"])
+            || one_of;
         if !known {
             return None;
         }
@@ -259,11 +265,13 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
                 .map(|(_, t)| t.clone())
                 .collect();
             led("any", first, &[&tokens[..1], &rest])
+        } else if one_of {
+            led("any", first, &[&tokens[..split]])
         } else {
             tokens[..split].to_vec()
         };
         let s = Subject {
-            kind: if part { Kind::Part } else { Kind::Known },
+            kind: if part || one_of { Kind::Part } else { Kind::Known },
             np,
             noun: tokens[noun.0..noun.1].to_vec(),
             pred: split,

@@ -4,7 +4,7 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{replaced, without_order};
 use super::Talk;
 use super::lists::{MATES, STAYS};
-use super::words::{find, first_noun, has_noun, is, leads, led, number, text};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text};
 
 const WHOLE: &str =
     "the whole thing|the entire thing|this whole thing|the whole lot|the whole image|the whole situation";
@@ -26,6 +26,8 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     out = replaced(&out, DRY, "clear weather");
     out = mates(out);
     out = denied_place(out);
+    out = lifted(out);
+    out = beside_me(out);
     if let Some(new) = one_not_other(&out, talk) {
         out = new;
     }
@@ -46,7 +48,8 @@ fn mates(mut tokens: Vec<Token>) -> Vec<Token> {
                 || is(
                     tokens.get(i + 2),
                     &[
-                        "does", "doesnt", "is", "will", "wont", "goes", "walks", "stands", "keeps", "waits",
+                        "does", "doesnt", "has", "didnt", "remained", "is", "will", "wont", "goes", "walks",
+                        "stands", "keeps", "waits",
                     ],
                 ))
     });
@@ -104,6 +107,27 @@ fn denied_place(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// "cones not barriers - replace all four, same spot": one kind for the other.
 fn one_not_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let meant = leads(
+        tokens,
+        &[
+            "i meant",
+            "i mean",
+            "i said",
+            "they should be",
+            "those should be",
+            "these should be",
+            "they must be",
+            "those must be",
+            "those are",
+            "they are",
+            "these are",
+            "theyre",
+            "make them",
+            "make those",
+            "make these",
+        ],
+    );
+    let tokens = &tokens[meant.unwrap_or(0)..];
     let (a0, a1) = first_noun(tokens).filter(|n| n.0 <= 1)?;
     let not = leads(
         &tokens[a1..],
@@ -134,7 +158,7 @@ fn one_not_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     )
     .is_some();
     let number_led = a0 == 1 && number(&tokens[0]).is_some();
-    if has_noun(rest) || !swaps || talk.fits(old) == 0 || number_led {
+    if has_noun(rest) || !(swaps || meant.is_some() && rest.len() < 2) || talk.fits(old) == 0 || number_led {
         return None;
     }
     let many = matches!(
@@ -179,11 +203,21 @@ fn second_one(tokens: &[Token]) -> Option<Vec<Token>> {
         ],
     )?;
     debug_assert!(company.0 < i);
-    let mut out = led("another", &tokens[i], &[noun]);
     let rest = &tokens[i + n..];
+    let verb = rest.first().is_some_and(|t| is_finite(text(t), false));
+    let mut out = led(if verb { "another" } else { "add another" }, &tokens[i], &[noun]);
     match find(
         rest,
-        &["the first one", "the first", "the other one", "the other"],
+        &[
+            "the first one",
+            "the first",
+            "the other one",
+            "the other",
+            "him",
+            "her",
+            "it",
+            "them",
+        ],
     ) {
         Some((k, m)) => {
             out.extend_from_slice(&rest[..k]);
@@ -193,4 +227,51 @@ fn second_one(tokens: &[Token]) -> Option<Vec<Token>> {
         None => out.extend_from_slice(rest),
     }
     Some(out)
+}
+
+/// "take the man off the sidewalk and put him on the road": only where it is put counts.
+fn lifted(tokens: Vec<Token>) -> Vec<Token> {
+    let takes = is(
+        tokens.first(),
+        &[
+            "take", "get", "grab", "pick", "lift", "fetch", "pull", "remove", "bring",
+        ],
+    );
+    let noun = first_noun(&tokens).filter(|n| n.0 < 6 && takes);
+    let put = (2..tokens.len().saturating_sub(2)).find(|i| {
+        is(
+            tokens.get(*i),
+            &[
+                "put", "place", "set", "move", "bring", "park", "lay", "send", "stand",
+            ],
+        ) && is(tokens.get(i + 1), &["it", "them", "him", "her"])
+            && is(tokens.get(i - 1), &["and", "then"])
+    });
+    let (Some((_, end)), Some(put)) = (noun, put) else {
+        return tokens;
+    };
+    let off = is(tokens.get(end), &["out", "off", "away", "from", "up"]);
+    let place = is_place(&tokens[put + 2..]);
+    if !off || !place || put <= end {
+        return tokens;
+    }
+    let mut out = led("put", &tokens[0], &[&tokens[1..end]]);
+    out.extend_from_slice(&tokens[put + 2..]);
+    out
+}
+
+/// "woman to my right": a place, and no way to go, where nothing is moved.
+fn beside_me(mut tokens: Vec<Token>) -> Vec<Token> {
+    let noun = first_noun(&tokens).filter(|n| n.0 <= 2 && !super::super::rephrase::is_verb(&tokens[0]));
+    let Some((_, end)) = noun else {
+        return tokens;
+    };
+    let side = find(
+        &tokens,
+        &["to my right", "to my left", "to our right", "to our left"],
+    );
+    if let Some((i, _)) = side.filter(|s| s.0 == end) {
+        tokens[i].text = "on".to_string();
+    }
+    tokens
 }
