@@ -80,6 +80,54 @@ impl Parser<'_> {
         true
     }
 
+    /// True if the noun right here is said "in total".
+    pub(super) fn in_total(&self) -> bool {
+        let total = |k: usize| {
+            self.item(k).is_some_and(|n| {
+                matches!(
+                    n.words.as_str(),
+                    "in total"
+                        | "total"
+                        | "altogether"
+                        | "in all"
+                        | "all told"
+                        | "overall"
+                        | "all in all"
+                        | "all together"
+                        | "in sum"
+                        | "making"
+                        | "that makes"
+                        | "makes"
+                        | "together"
+                        | "sum"
+                )
+            })
+        };
+        total(self.at + 1) || (1..=4).any(|k| self.at >= k && total(self.at - k))
+    }
+
+    /// "4 cars, 2 motorbikes and a bus, 7 vehicles altogether": the sum of what was named. True if it was that.
+    pub(super) fn restates(&mut self, noun: &'static Noun, pre: &Pre) -> bool {
+        let Some(n) = pre.count.filter(|c| c.is_exact()).map(|c| c.n) else {
+            return false;
+        };
+        let sum: u32 = self
+            .mentions
+            .iter()
+            .filter(|m| !m.gone && noun.classes.contains(&m.spec.class))
+            .map(|m| m.spec.count.n)
+            .sum();
+        let same = sum == n && n > 0;
+        if same
+            && self
+                .item(self.at + 1)
+                .is_some_and(|i| i.words.contains("total") || i.words.contains("all"))
+        {
+            self.at += 1;
+        }
+        same
+    }
+
     /// "a roadblock of five barriers": only what it is made of is counted. True if it was that.
     pub(super) fn holds_others(&mut self, noun: &'static Noun, pre: &Pre) -> bool {
         let of = self.item(self.at + 1).is_some_and(|n| n.words == "of");
@@ -112,6 +160,7 @@ impl Parser<'_> {
         self.flush();
         let mut twin = self.mentions[last].clone();
         twin.spec.relations.clear();
+        twin.spec.attributes.retain(|a| a != "in total");
         twin.spec.count = count;
         twin.spec.span = span;
         twin.plural = count.n > 1;

@@ -9,7 +9,7 @@ use super::edit_command::imperatives;
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Piece, Talk, said};
+use super::said::{Piece, Talk, said, worded};
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::words::edits::Verb;
 use crate::scene::graph::{LaneRole, ObjectState};
@@ -193,7 +193,7 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let pieces = said(&self.tokens[from..end], &talk);
+        let pieces = said(&worded(&self.tokens[from..end], &talk), &talk);
         let mut out = Vec::new();
         for piece in pieces {
             match piece {

@@ -9,6 +9,87 @@ use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 /// Largest number that is tried for one mention.
 pub const MOST_OF_ONE: u32 = 400;
 
+/// "seven vehicles in total: four cars, two vans and a bus": what is named one by one is not there twice.
+fn drop_totals(mentions: &mut [Mention]) {
+    for i in 0..mentions.len() {
+        let m = &mentions[i];
+        if m.gone || !m.spec.attributes.iter().any(|a| a == "in total") {
+            continue;
+        }
+        let parts: u32 = mentions[i + 1..]
+            .iter()
+            .filter(|x| !x.gone && m.classes.contains(&x.spec.class))
+            .map(|x| x.spec.count.n)
+            .sum();
+        if parts == m.spec.count.n && parts > 0 {
+            mentions[i].gone = true;
+        }
+        mentions[i].spec.attributes.retain(|a| a != "in total");
+    }
+}
+
+/// "two diggers stand face to face": one in front of the other, and turned to it.
+fn face(mentions: &mut Vec<Mention>) {
+    let met: Vec<usize> = (0..mentions.len())
+        .filter(|i| !mentions[*i].gone && mentions[*i].spec.attributes.iter().any(|a| a == "facetoface"))
+        .collect();
+    for i in &met {
+        mentions[*i].spec.attributes.retain(|a| a != "facetoface");
+    }
+    let pair = match met.as_slice() {
+        [i] if mentions[*i].spec.count.n >= 2 && mentions[*i].spec.count.is_exact() => {
+            let n = mentions[*i].spec.count.n;
+            let mut other = mentions[*i].clone();
+            mentions[*i].spec.count = Count::exactly(n.div_ceil(2));
+            other.spec.count = Count::exactly(n / 2);
+            mentions.push(other);
+            Some((*i, mentions.len() - 1))
+        }
+        [a, b] => Some((*a, *b)),
+        _ => None,
+    };
+    let Some((a, b)) = pair else {
+        return;
+    };
+    let span = mentions[b].spec.span;
+    let gap = if mentions[a].spec.class.is_vehicle() || mentions[b].spec.class.is_vehicle() {
+        13.0
+    } else {
+        2.5
+    };
+    for (relation, distance_m) in [(RelationKind::InFrontOf, Some(gap)), (RelationKind::Facing, None)] {
+        mentions[b].spec.relations.push(Stated {
+            relation,
+            anchor: Anchor::Object(a),
+            and: None,
+            distance_m,
+            span,
+        });
+    }
+    if mentions[b].spec.state == Some(ObjectState::Moving) && mentions[b].spec.class.is_vehicle() {
+        mentions[b].spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// What has stopped on the other side of the road stands at its edge.
+fn stopped_across(mentions: &mut [Mention], prompt: &str) {
+    for m in mentions.iter_mut() {
+        let stands = m.spec.state == Some(ObjectState::Waiting) && m.spec.class.is_vehicle();
+        for r in m.spec.relations.iter_mut().filter(|_| stands) {
+            let words = r.span.of(prompt).to_lowercase();
+            let side = words.contains("side of the") || words.contains("across the");
+            if side
+                && r.relation == RelationKind::On
+                && r.anchor == Anchor::Lane(LaneRole::Oncoming)
+                && words.starts_with(['o', 'a'])
+            {
+                r.relation = RelationKind::ParkedOn;
+                r.anchor = Anchor::Lane(LaneRole::LeftRoadside);
+            }
+        }
+    }
+}
+
 fn split_sides(mentions: &mut Vec<Mention>) {
     for i in 0..mentions.len() {
         let Some(each) = mentions[i].both.take() else {
@@ -209,6 +290,9 @@ fn share_places(mentions: &mut [Mention]) {
 
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
+    drop_totals(mentions);
+    face(mentions);
+    stopped_across(mentions, prompt);
     split_sides(mentions);
     // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions

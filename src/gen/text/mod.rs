@@ -26,6 +26,7 @@ mod spots;
 pub mod tag;
 pub mod to_graph;
 pub mod tokens;
+mod wording;
 mod words;
 
 pub use description::{Description, Reading};

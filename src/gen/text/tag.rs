@@ -41,6 +41,7 @@ fn is_place_like(sense: Sense) -> bool {
 
 /// Tags all tokens.
 pub fn tag(tokens: &[Token]) -> Vec<Item> {
+    let tokens = &super::wording::without_order(tokens)[..];
     let word = |i: usize| {
         tokens
             .get(i)

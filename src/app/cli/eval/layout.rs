@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 8] = [
+const SETS: [(&str, &str); 9] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -48,6 +48,10 @@ const SETS: [(&str, &str); 8] = [
     (
         "strangers_6.jsonl",
         include_str!("../../../../tests/data/strangers_6.jsonl"),
+    ),
+    (
+        "strangers_7.jsonl",
+        include_str!("../../../../tests/data/strangers_7.jsonl"),
     ),
 ];
 

@@ -78,7 +78,17 @@ impl Parser<'_> {
             self.again(Count::exactly(1), span);
             return;
         }
-        let whole = self.whole.filter(|w| all && !self.mentions[*w].gone);
+        // "ten cones, five on the left and five on the right": of the same ten
+        let rest_of = |w: &usize| {
+            let m = &self.mentions[*w];
+            !all && !self.edits
+                && !m.gone
+                && m.spec.relations.is_empty()
+                && m.spec.count.is_exact()
+                && m.spec.count.n >= count.n
+        };
+        let open_whole = self.whole.filter(rest_of);
+        let whole = open_whole.or(self.whole.filter(|w| all && !self.mentions[*w].gone));
         let parent = whole.or_else(|| {
             (0..self.mentions.len()).rev().find(|&i| {
                 !self.mentions[i].gone
@@ -124,7 +134,7 @@ impl Parser<'_> {
         }
         // "two buses ahead, one behind", "parked cars: 3 on the left, 2 on the right"
         let other = said.starts_with("the other") || said.starts_with("other");
-        if !all && !of_them && !other && !self.edits && self.elsewhere(parent) {
+        if !all && !of_them && !other && !self.edits && open_whole.is_none() && self.elsewhere(parent) {
             self.again(count, span);
             return;
         }
@@ -160,6 +170,7 @@ impl Parser<'_> {
         };
         part.plural = n > 1;
         part.spec.span = span;
+        part.spec.attributes.retain(|a| a != "in total");
         self.mentions.push(part);
         let index = self.mentions.len() - 1;
         self.whole = Some(parent);

@@ -18,6 +18,7 @@ use super::lexicon::Sense;
 use super::mention::{Frag, Mention, Pre, Prep};
 use super::tag::{Item, Tag, tag};
 use super::tokens::{LONGEST, Span, tokens};
+use super::wording;
 use crate::scene::graph::{ObjectState, RelationKind};
 
 /// Most objects that one prompt may place; more are counted, not placed.
@@ -74,7 +75,7 @@ pub(super) struct Parser<'a> {
 
 /// Reads a prompt.
 pub fn read(prompt: &str) -> Reading {
-    let tokens = tokens(prompt);
+    let tokens = wording::prompt(&tokens(prompt));
     let items = tag(&tokens);
     let mut parser = Parser::new(prompt, &items, false);
     parser.run();

@@ -1,6 +1,7 @@
 //! Nouns: new objects, those named before, road works, what is denied.
 
 use super::super::description::{Absent, Anchor, Became, Count, Stated};
+use super::super::lexicon::Sense;
 use super::super::mention::{Frag, Mention, Pre, Prep, apply};
 use super::super::tag::Tag;
 use super::super::tokens::Span;
@@ -55,6 +56,13 @@ impl Parser<'_> {
             || self.is_that(noun, word, &pre)
         {
             return;
+        }
+        let total = !self.edits && self.pending.is_none() && self.in_total();
+        if total && self.restates(noun, &pre) {
+            return;
+        }
+        if total {
+            pre.attributes.push("in total".into());
         }
         if !self.edits
             && matches!(word, "thing" | "things" | "anything" | "everything")
@@ -204,6 +212,32 @@ impl Parser<'_> {
         if !old {
             self.mentions[index].host = host;
         }
+        if self.owned(index) {
+            // "the deliveryman has parked his truck and walks": he walks
+            let owner = self.head[0];
+            let left = (1..4).any(|k| {
+                self.item(self.at.wrapping_sub(k)).is_some_and(|i| {
+                    i.words.split(' ').any(|w| {
+                        matches!(
+                            w,
+                            "left" | "leaves" | "leaving" | "out" | "exited" | "abandoned" | "from"
+                        )
+                    })
+                })
+            });
+            let state = self.mentions[owner].spec.state.take();
+            let m = &mut self.mentions[index];
+            m.spec.state = m.spec.state.or(state);
+            m.host = None;
+            // "has left his van"
+            if left {
+                m.spec.state = Some(ObjectState::Parked);
+            }
+            self.last = vec![index];
+            self.topic = None;
+            self.chain = false;
+            return;
+        }
         if self.linked && self.chain && !self.list.is_empty() {
             // "a car, a bus and a truck ahead" speaks of three, "three cars, a bus ahead" of the bus.
             self.list.push(index);
@@ -243,6 +277,25 @@ impl Parser<'_> {
             });
         }
         self.topic = None;
+    }
+
+    /// True if this is a vehicle of the person that the clause speaks of: "his truck".
+    fn owned(&self, index: usize) -> bool {
+        let mut k = self.at;
+        while k > 0
+            && matches!(
+                self.sense(k - 1),
+                Some(Sense::Size(_) | Sense::Color(_) | Sense::Attribute(_) | Sense::State(..))
+            )
+        {
+            k -= 1;
+        }
+        let his = k
+            .checked_sub(1)
+            .and_then(|i| self.item(i))
+            .is_some_and(|i| matches!(i.words.as_str(), "his" | "her" | "their"));
+        let person = matches!(self.head.as_slice(), [h] if *h != index && self.mentions[*h].spec.class == Class::Pedestrian);
+        his && person && !self.linked && !self.edits && self.mentions[index].spec.class.is_vehicle()
     }
 
     /// A noun after the list that a fronted place was said of: the place is used up.

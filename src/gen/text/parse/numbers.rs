@@ -146,6 +146,23 @@ impl Parser<'_> {
         true
     }
 
+    /// Where the object named before this one is of the ego vehicle, if it was said with metres.
+    fn side_of_list(&self, index: usize) -> Option<RelationKind> {
+        let before = &self.mentions.get(index.checked_sub(1)?)?.spec.relations;
+        let sided = |r: &&Stated| {
+            matches!(
+                r.relation,
+                RelationKind::InFrontOf | RelationKind::Behind | RelationKind::LeftOf | RelationKind::RightOf
+            )
+        };
+        match before.as_slice() {
+            [only] if only.anchor == Anchor::Ego && only.distance_m.is_some() && !self.edits => {
+                Some(only).filter(sided).map(|r| r.relation)
+            }
+            _ => None,
+        }
+    }
+
     pub(super) fn distance_said(&mut self, metres: f64, span: Span) {
         let back = (1..=2)
             .filter_map(|k| self.sense(self.at.wrapping_sub(1 + k)))
@@ -211,6 +228,7 @@ impl Parser<'_> {
         self.pending = None;
         let targets = self.targets();
         let mut used = false;
+        let listed = targets.first().and_then(|t| self.side_of_list(*t));
         for t in targets.iter().copied() {
             let list = &mut self.mentions[t].spec.relations;
             if let Some(r) = list
@@ -221,8 +239,9 @@ impl Parser<'_> {
                 r.distance_m = Some(metres);
                 used = true;
             } else if list.is_empty() {
+                // "in front of me: a car at 10 m, a truck at 20 m": the side holds for all of the list
                 list.push(Stated {
-                    relation: RelationKind::Near,
+                    relation: listed.unwrap_or(RelationKind::Near),
                     anchor: Anchor::Ego,
                     and: None,
                     distance_m: Some(metres),

@@ -103,7 +103,7 @@ impl Parser<'_> {
                 m.spec.attributes.push(item.words.clone());
             }
         }
-        if finite && !self.relative {
+        if (finite || self.fresh && targets == self.head) && !self.relative {
             self.last = targets;
         }
         self.chain = false;

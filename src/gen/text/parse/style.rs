@@ -23,6 +23,11 @@ impl Parser<'_> {
             self.pending = None; // its own lane is the oncoming one
             return;
         }
+        // "we are on the motorway, and in the lane to our right a coach drives"
+        let of_next = self.pending.as_ref().is_some_and(|p| p.fresh && p.anded)
+            && matches!(anchor, Anchor::Lane(_))
+            && self.noun_ahead(self.at + 1);
+        self.ego_subject &= !of_next;
         if self.ego_subject && self.head.is_empty() && self.last.is_empty() && self.pending.is_some() {
             self.pending = None; // "we stand by the traffic light" sets the stage
         }

@@ -75,10 +75,36 @@ pub fn acts(
             .iter()
             .any(|p| !p.not && !p.main.is_empty() && (super::predicate::places(&p.main) || p.is_gone()))
     };
+    // "crosses over and now stands on the left sidewalk": where he ends counts
+    let crosses = |p: &Part| {
+        let over = p.begins(&[
+            "crosses over",
+            "cross over",
+            "crossed over",
+            "crosses",
+            "crossed",
+            "crosses the road",
+            "crosses the street",
+            "crossed the road",
+            "crossed the street",
+            "walks across",
+            "walked across",
+            "walks over",
+            "walked over",
+            "goes across",
+            "goes over",
+            "runs across",
+            "comes over",
+            "walks across the road",
+            "walks across the street",
+        ]);
+        over == Some(p.main.len())
+    };
     let kept: Vec<&Part> = parts
         .iter()
         .enumerate()
         .filter(|(i, p)| !(p.begins(&["lets", "let", "allows", "makes room"]).is_some() && later(*i)))
+        .filter(|(i, p)| !(crosses(p) && later(*i)))
         .filter(|(i, p)| !((p.perfect || p.is_gone() || p.not) && later(*i)))
         .map(|x| x.1)
         .collect();

@@ -70,8 +70,11 @@ lists! {
         exchanged against|replaced by|replaced with|replaced for|substituted by|substituted with|substituted for|traded for|\
         switched for|switched to|switched with|made into|upgraded to|downgraded to|succeeded by|turned out to be|turns out to be|\
         make way for|makes way for|makes room for|make room for|give place to|in fact";
+    /// Who is one of two.
+    MATES = "mate|mates|colleague|colleagues|companion|companions|partner|friend|friends|buddy|buddies|fellow|fellows|twin|pal|neighbour|\
+        neighbor|coworker|workmate|workmates|comrade|comrades|counterpart";
     /// Words of `acts.rs`.
-    STAYS = "stay|stays|stayed|remain|remains|remained|keep still|left as|left alone|left where|untouched|unchanged|kept|\
+    STAYS = "stay|stays put|stay put|stands still|stand still|remains put|stays|stayed|remain|remains|remained|keep still|left as|left alone|left where|untouched|unchanged|kept|\
         keep its place|as it is|as they are|as before|fine|ok|okay|good|right where|not touched";
     /// Words of `acts.rs`.
     TURNS = "face|faces|faced|facing|look|looks|looking|point|points|pointed|pointing|turn|turns|turned|turning|rotate|rotates|\

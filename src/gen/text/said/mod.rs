@@ -13,7 +13,10 @@ mod predicate;
 mod spoken;
 mod subject;
 mod swap;
+#[cfg(test)]
+mod tests;
 mod ways;
+mod worded;
 mod words;
 
 use super::edit_command::{parse, target_part};
@@ -37,6 +40,7 @@ use predicate::{in_place, parts};
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
 
 /// What a sentence is read with.

@@ -216,6 +216,11 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         };
         (1, s)
     } else {
+        // "move one worker to the left, the other stays"
+        let one_of = talk.others
+            && first_noun(tokens).filter(|n| n.0 < 4).is_some_and(|n| {
+                number(&tokens[0]).is_some_and(|k| talk.fits(&tokens[n.0..n.1]) > k.max(0) as usize)
+            });
         let known = is(
             tokens.first(),
             &[
@@ -237,7 +242,8 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
             .first()
             .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some())
             && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
-            || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"]);
+            || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"])
+            || one_of;
         if !known {
             return None;
         }
@@ -251,12 +257,21 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         let split = split(tokens, talk)?;
         let part = is(tokens.get(1), &["of"]) && number(&tokens[0]).is_some();
         let np = if part {
-            led("any", first, &[&tokens[..1], &tokens[2..split]])
+            // "one of the two pedestrians"
+            let rest: Vec<Token> = tokens[2..split]
+                .iter()
+                .enumerate()
+                .filter(|(i, t)| !(*i == 1 && number(t).is_some()))
+                .map(|(_, t)| t.clone())
+                .collect();
+            led("any", first, &[&tokens[..1], &rest])
+        } else if one_of {
+            led("any", first, &[&tokens[..split]])
         } else {
             tokens[..split].to_vec()
         };
         let s = Subject {
-            kind: if part { Kind::Part } else { Kind::Known },
+            kind: if part || one_of { Kind::Part } else { Kind::Known },
             np,
             noun: tokens[noun.0..noun.1].to_vec(),
             pred: split,
@@ -269,6 +284,18 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     let goal = leads(rest, &["out of", "off", "away from", "from"])
         .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
     let rest = &rest[goal.unwrap_or(0)..];
+    // "out of my lane and put it on the sidewalk"
+    let put = leads(rest, &["out", "off", "away", "from", "up"]).and_then(|_| {
+        (1..rest.len()).find(|i| {
+            is(
+                rest.get(*i),
+                &[
+                    "put", "place", "set", "move", "bring", "park", "lay", "leave", "send", "stand",
+                ],
+            ) && is(rest.get(i + 1), &["it", "them", "him", "her"])
+        })
+    });
+    let rest = &rest[put.map_or(0, |k| k + 2)..];
     let out_of = leads(rest, &["out", "away", "off", "out of", "down"]).is_some() && !predicate_places(rest);
     if s.kind == Kind::Part && out_of {
         let part = predicate::Part {

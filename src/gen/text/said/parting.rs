@@ -57,7 +57,10 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
                 && is(body.get(next + 1), &["it", "them", "him", "her"])
-                && !(from + 1..i).any(|k| is_place(&body[k..i]));
+                && !(from + 1..i).any(|k| {
+                    let off = (from + 1..=k).any(|j| is(body.get(j), &["out", "off", "away", "from"]));
+                    is_place(&body[k..i]) && !off
+                });
             // "both walkers, they must change"
             let named = is(rest.first(), &PRONOUNS)
                 && t.kind == TokenKind::Comma

@@ -346,7 +346,7 @@ pub fn alone(main: &[Token]) -> Option<Token> {
 pub fn new_kind(main: &[Token]) -> Option<&[Token]> {
     let article = matches!(text(main.first()?), "a" | "an");
     let noun = super::words::first_noun(main).filter(|n| n.0 <= 4)?;
-    let plain = main[1..noun.0].iter().all(|t| {
+    let plain = main.get(1..noun.0).unwrap_or_default().iter().all(|t| {
         !matches!(
             look_up(text(t)),
             Some(Sense::Unit(_) | Sense::Rel(_) | Sense::EgoRel(_))
