@@ -11,6 +11,7 @@ use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{Piece, Talk, said, worded};
 use super::tokens::{Span, Token, TokenKind, tokens};
+use super::wording::begins;
 use super::words::edits::Verb;
 use crate::scene::graph::{LaneRole, ObjectState};
 use crate::scene::{BoxId, Class, SceneBox};
@@ -183,6 +184,21 @@ impl<'t> Reader<'t> {
         }
         let from = self.at;
         let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
+        // "Woman to my right. Same distance." is one sentence
+        let stop = stop.map(|s| {
+            let goes_on = begins(
+                &self.tokens[s + 1..],
+                "same distance|at the same distance|the same distance",
+            )
+            .is_some();
+            if !goes_on {
+                return s;
+            }
+            self.tokens[s].kind = TokenKind::Comma;
+            (s..self.tokens.len())
+                .find(|i| self.tokens[*i].kind == TokenKind::Stop)
+                .unwrap_or(self.tokens.len() - 1)
+        });
         let end = stop.map_or(self.tokens.len(), |s| s + 1);
         self.at = end;
         let talk = Talk {

@@ -293,7 +293,16 @@ impl Parser<'_> {
                 .is_some_and(|p| matches!(p.prep, Prep::In))
                 .then_some(self.last_place)
                 .flatten();
+            // "five to the left of my car and five to the right of it": no group is "it"
+            let ego_it = item.words == "it"
+                && !self.edits
+                && self.mentions.iter().all(|m| m.gone || m.spec.count.n > 1)
+                && self
+                    .mentions
+                    .iter()
+                    .any(|m| m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego));
             match antecedent {
+                _ if ego_it => self.anchor(Anchor::Ego, item.span),
                 _ if of_front.is_some() => self.anchor(of_front.unwrap_or(Anchor::Ego), item.span),
                 _ if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
                     self.anchor(placed_in.unwrap_or(Anchor::Ego), item.span);

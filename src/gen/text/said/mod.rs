@@ -66,6 +66,16 @@ impl Talk<'_> {
         fitting(self.map, self.boxes, m, &mentions).len()
     }
 
+    /// How far the only box is that fits these words, m.
+    fn range(&self, np: &[Token]) -> Option<f64> {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let m = mentions.iter().find(|m| !m.is_anchor && !m.gone)?;
+        match fitting(self.map, self.boxes, m, &mentions).as_slice() {
+            [only] => Some(self.boxes.get(only)?.center_m.truncate().length().round()),
+            _ => None,
+        }
+    }
+
     /// A noun for a pronoun.
     fn stand_in(&self, s: &Subject) -> Option<String> {
         match s.kind {

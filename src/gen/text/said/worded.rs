@@ -28,6 +28,7 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     out = denied_place(out);
     out = lifted(out);
     out = beside_me(out);
+    out = as_far(out, talk);
     if let Some(new) = one_not_other(&out, talk) {
         out = new;
     }
@@ -251,7 +252,7 @@ fn lifted(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let off = is(tokens.get(end), &["out", "off", "away", "from", "up"]);
-    let place = is_place(&tokens[put + 2..]);
+    let place = (put + 2..tokens.len()).any(|i| is_place(&tokens[i..]));
     if !off || !place || put <= end {
         return tokens;
     }
@@ -270,8 +271,67 @@ fn beside_me(mut tokens: Vec<Token>) -> Vec<Token> {
         &tokens,
         &["to my right", "to my left", "to our right", "to our left"],
     );
+    if is(tokens.first(), &["a", "an", "another", "some"]) || number(&tokens[0]).is_some() {
+        return tokens;
+    }
     if let Some((i, _)) = side.filter(|s| s.0 == end) {
-        tokens[i].text = "on".to_string();
+        let be = led("should be on", &tokens[i], &[]);
+        tokens.splice(i..=i, be);
     }
     tokens
+}
+
+/// "on my right, same distance": as many metres as it is away now.
+fn as_far(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let same = find(
+        &tokens,
+        &[
+            "at the same distance",
+            "in the same distance",
+            "same distance",
+            "the same distance",
+            "equally far",
+        ],
+    );
+    let side = find(
+        &tokens,
+        &[
+            "on my right",
+            "on my left",
+            "to my right",
+            "to my left",
+            "on the right",
+            "on the left",
+            "behind me",
+            "ahead of me",
+            "in front of me",
+        ],
+    );
+    let noun = first_noun(&tokens).filter(|n| n.0 < 4);
+    let (Some((at, n)), Some((place, _)), Some((_, end))) = (same, side, noun) else {
+        return tokens;
+    };
+    let from = usize::from(super::super::rephrase::is_verb(&tokens[0]));
+    let Some(metres) = tokens
+        .get(from..end)
+        .and_then(|np| talk.range(np))
+        .filter(|_| place < at)
+    else {
+        return tokens;
+    };
+    let mut out = tokens[..place].to_vec();
+    out.push(Token {
+        kind: TokenKind::Number(metres),
+        text: format!("{metres}"),
+        span: tokens[place].span,
+    });
+    out.extend(led("m", &tokens[place], &[&tokens[place..at]]));
+    while out
+        .last()
+        .is_some_and(|t| t.kind == TokenKind::Comma || matches!(text(t), "and" | "but"))
+    {
+        out.pop();
+    }
+    out.extend_from_slice(&tokens[at + n..]);
+    out
 }
