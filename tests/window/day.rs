@@ -70,7 +70,7 @@ fn a_day_of_work() {
             .collect(),
         class: Class::Manmade,
     };
-    let command = sceneloom::app::Command::Apply("Paint voxels".into(), vec![wall]);
+    let command = sceneloom::app::Command::Apply("Paint voxels", vec![wall]);
     bench.app().execute(command, &ctx);
     bench.steps(2);
     assert_eq!(bench.frame().occupancy.get(150, 95, 2), Class::Manmade.id());

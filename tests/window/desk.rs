@@ -118,7 +118,7 @@ fn views_are_kept_and_gone_back_to() {
 #[test]
 fn large_edits_wait_and_say_why() {
     let mut bench = Bench::new();
-    bench.run_command(Command::Apply("Paint".into(), vec![everywhere()]));
+    bench.run_command(Command::Apply("Paint", vec![everywhere()]));
     bench.steps(4);
     assert!(bench.started.is_empty(), "nothing starts by itself");
     assert!(bench.sees("Live waits: 100 % of the map was edited") || bench.sees("Generate it"));
@@ -147,7 +147,7 @@ fn the_history_keeps_to_its_memory() {
         if let Edit::PaintBev { value, .. } = &mut edit {
             *value = i % 2 == 0;
         }
-        bench.run_command(Command::Apply("Paint".into(), vec![edit]));
+        bench.run_command(Command::Apply("Paint", vec![edit]));
     }
     let document = &bench.app().document;
     assert!(

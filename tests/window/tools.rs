@@ -35,7 +35,7 @@ impl Bench {
         };
         let ctx = self.harness.ctx.clone();
         let edits = (0..3).map(add).collect();
-        self.app().execute(Command::Apply("Add cars".into(), edits), &ctx);
+        self.app().execute(Command::Apply("Add cars", edits), &ctx);
         self.off();
         self.steps(2);
     }

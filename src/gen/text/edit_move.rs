@@ -45,7 +45,7 @@ impl Editor<'_> {
             }
             Some(Destination::Range(metres)) => {
                 let spec = range(&b, *metres, c.span);
-                self.to_place(&b, &spec, c);
+                self.move_to_place(&b, &spec, c);
             }
             Some(Destination::Times(factor)) => {
                 let p = b.center_m.truncate();
@@ -55,7 +55,7 @@ impl Editor<'_> {
                     p.x.abs()
                 };
                 let spec = range(&b, now * factor, c.span);
-                self.to_place(&b, &spec, c);
+                self.move_to_place(&b, &spec, c);
             }
             Some(Destination::Lanes(n)) => self.change_lane(&b, *n),
             Some(Destination::Place(spec)) => {
@@ -93,7 +93,7 @@ impl Editor<'_> {
                 {
                     spec.relations.iter_mut().for_each(mirrored);
                 }
-                self.to_place(&b, &spec, c);
+                self.move_to_place(&b, &spec, c);
             }
             None => self.note(format!("{:?}: where to was not understood", c.text)),
         }
@@ -196,7 +196,7 @@ impl Editor<'_> {
     }
 
     /// Where the relations hold, as near to where it was as can be.
-    fn to_place(&mut self, b: &SceneBox, spec: &ObjectSpec, c: &Command) {
+    fn move_to_place(&mut self, b: &SceneBox, spec: &ObjectSpec, c: &Command) {
         let said = c.text.to_lowercase();
         let mut spec = spec.clone();
         let aside = spec.relations.iter().any(is_aside);
@@ -416,7 +416,7 @@ impl Editor<'_> {
                     let mut spec = range(&b, 0.0, c.span);
                     spec.relations[0].relation = relation;
                     spec.relations[0].distance_m = None;
-                    self.to_place(&b, &spec, c);
+                    self.move_to_place(&b, &spec, c);
                     return;
                 }
                 let yaw = along(true);

@@ -154,14 +154,15 @@ pub fn acts(
                 .first()
                 .is_some_and(|t| number(t).is_some() || super::words::noun_at(new).is_some());
         fresh && first_noun(new).is_some_and(|x| x.0 < 5)
-            || !first.begins(&["turn into", "turns into"]).is_some() && has_noun(new)
+            || first.begins(&["turn into", "turns into"]).is_none() && has_noun(new)
     }) {
         return become_of(s, &first.main[n..], clause, talk, noun.clone());
     }
-    if first.helped && first.is || caused && first.helped {
-        if let Some(new) = new_kind(&first.main) {
-            return become_of(s, new, clause, talk, noun.clone());
-        }
+    if first.helped
+        && (first.is || caused)
+        && let Some(new) = new_kind(&first.main)
+    {
+        return become_of(s, new, clause, talk, noun.clone());
     }
     if let Some(n) = alone(&first.main).filter(|_| s.kind == Kind::Known && said.len() == 1) {
         let np: Vec<Token> = s.np.iter().filter(|t| number(t).is_none()).cloned().collect();

@@ -95,16 +95,21 @@ fn part(tokens: &[Token]) -> Part {
             p.perfect |= matches!(w, "has" | "have" | "had");
             p.is = matches!(w, "is" | "are" | "be" | "was" | "were" | "been");
             p.helped = true;
-        } else if !(ADVERBS.contains(&w) && !(w == "about" && !is(tokens.get(k + 1), &["to"]))
-            || matches!(w, "longer" | "hereby" | "like"))
-        {
-            break;
-        } else if w == "rather" && is(tokens.get(k + 1), &["than"])
-            || w == "instead" && is(tokens.get(k + 1), &["of"])
-        {
-            break;
-        } else if w == "so" && is(tokens.get(k + 1), &["that"]) {
-            break;
+        } else {
+            let next = |words: &[&str]| is(tokens.get(k + 1), words);
+            let adverb = match w {
+                "about" => next(&["to"]),
+                "longer" | "hereby" | "like" => true,
+                // These begin something else.
+                "rather" => !next(&["than"]),
+                "instead" => !next(&["of"]),
+                "so" => !next(&["that"]),
+                _ => true,
+            };
+            let known = ADVERBS.contains(&w) || matches!(w, "longer" | "hereby" | "like");
+            if !(known && adverb) {
+                break;
+            }
         }
         k += 1;
     }

@@ -340,7 +340,7 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     ) || matches!(text(first), "these" | "those" | "both" | "all")
         || tokens[..noun].iter().any(|t| number(t).is_some_and(|n| n > 1))
         || is(tokens.get(end), &["and"]);
-    let base = caused || plural || described_fresh && number(first).is_none() && caused;
+    let base = caused || plural;
     // "he who drives the car" is the car
     let from = end;
     let pred = predicate_at(tokens, from, base);
@@ -358,8 +358,6 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     let kind = if part || one_of {
         Kind::Part
     } else if known {
-        Kind::Known
-    } else if definite {
         Kind::Known
     } else {
         Kind::Fresh

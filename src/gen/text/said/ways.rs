@@ -419,7 +419,7 @@ pub fn arrived(mut main: Vec<Token>) -> Vec<Token> {
         "on the other side of the street",
     ];
     if let Some((i, n)) = find(&main, &sides)
-        && !main[i + n..].first().is_some_and(|t| text(t) == "of")
+        && main[i + n..].first().is_none_or(|t| text(t) != "of")
     {
         let over = led("across the street", &main[i], &[]);
         main.splice(i..i + n, over);

@@ -44,7 +44,7 @@ fn mates(mut tokens: Vec<Token>) -> Vec<Token> {
     let found = (0..tokens.len().saturating_sub(1)).find(|i| {
         is(tokens.get(*i), &["his", "her", "their", "its"])
             && is(tokens.get(i + 1), &MATES)
-            && tokens[i + 2..].len() > 0
+            && !tokens[i + 2..].is_empty()
             && (leads(&tokens[i + 2..], &STAYS).is_some()
                 || is(
                     tokens.get(i + 2),
