@@ -1,5 +1,5 @@
 //! Sentences that say how the scene shall be, or what has become of something in it, as commands. A sentence is taken out
-//! of what it is wrapped in ([`frame`]), parted into clauses, and of each clause the subject ([`subject`]) and what is
+//! of what it is wrapped in ([`frame`]), parted into clauses, and of each clause the subject (`subject.rs`) and what is
 //! said of it ([`predicate`]) are told apart; what follows for the scene stands in [`acts`]. Who is meant is decided by
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
