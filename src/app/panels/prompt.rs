@@ -106,6 +106,8 @@ impl PromptPane {
         // A click on what is offered takes the focus first.
         if field.has_focus() {
             let caret = output.cursor_range.map(|range| range.primary.index);
+            // Words that were taken want no other end.
+            let caret = caret.filter(|_| !self.is_sent);
             self.offered = caret.and_then(|caret| Completion::at(&self.prompt, caret.0));
         }
         field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Prompt"));
