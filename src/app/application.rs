@@ -438,7 +438,8 @@ impl SceneloomApp {
                         );
                         return;
                     }
-                    if !full {
+                    // What is drawn anew says nothing about the time of an edit.
+                    if !full && running.key.params.strength == 0.0 {
                         self.live.took(running.share, now_s - running.submitted_s);
                     }
                     if !full && running.key.rev == self.document.settled_scene().rev {

@@ -261,7 +261,7 @@ impl Live {
             _ => (Purpose::Full, [80.0; 2], 1.0),
         };
         // A source that was drawn anew has to be inverted before it can be edited.
-        self.cold = self.warm_up && purpose == Purpose::Full;
+        self.cold = self.warm_up && (purpose == Purpose::Full || key.params.strength > 0.0);
         self.asked = Some(key);
         self.paused = None;
         self.oldest_edit_s = None;

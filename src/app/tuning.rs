@@ -263,7 +263,9 @@ impl Tuning {
             self.running = None;
             self.message = Some("The measurement stopped: another edit came".into());
         }
-        let stop = self.current(&params).map(|i| self.stops.stops[i].clone());
+        // The stops were measured on edits, not on what is drawn anew.
+        let stop = self.current(&params).filter(|_| params.strength == 0.0);
+        let stop = stop.map(|i| self.stops.stops[i].clone());
         let stop = stop.as_ref();
         let region = redraw::region_of(edited.frame(), &params);
         let all = OccModels::TOKENS;

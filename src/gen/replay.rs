@@ -1,40 +1,10 @@
 //! Editing by trajectory replay: cells outside the mask follow the source's stored states, copied and
 //! never blended, cells inside are denoised anew. What comes out is again a trajectory, so an adopted
-//! edit needs no inversion.
+//! edit needs no inversion. Where a region is drawn anew (SDEdit, Meng et al. 2021, arXiv 2108.01073), the source is no
+//! inverted trajectory but [`Trajectory::noised`]: cells outside show what they showed in training.
 
 use super::inversion::Trajectory;
-use super::rng::{self, Stream};
 use super::solver::{Denoiser, Sampler, SolverError, StepView, check_finite, check_length};
-
-/// What noise the edited cells start from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RegionNoise {
-    /// 0 = the source's inverted noise (UniScene C.1), 1 = fresh noise; between, a mixture of the same
-    /// variance. More lets the region leave its old content.
-    pub strength: f64,
-    /// Fixes the fresh noise, cell by cell.
-    pub seed: u64,
-}
-
-impl RegionNoise {
-    /// The inverted noise.
-    pub const INVERTED: RegionNoise = RegionNoise {
-        strength: 0.0,
-        seed: 0,
-    };
-
-    fn start(&self, inverted: f64, cell: usize, channel: usize) -> f64 {
-        let strength = self.strength.clamp(0.0, 1.0);
-        if strength == 0.0 {
-            return inverted;
-        }
-        let fresh = rng::normal(self.seed, Stream::Region, cell as u32, channel as u32, 0);
-        if strength == 1.0 {
-            return fresh;
-        }
-        (1.0 - strength * strength).sqrt() * inverted + strength * fresh
-    }
-}
 
 /// An edited latent.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +25,6 @@ pub fn edit_with_replay<D: Denoiser + ?Sized>(
     source: &Trajectory,
     mask: &[bool],
     channels: usize,
-    noise: RegionNoise,
     model: &mut D,
     mut on_step: impl FnMut(StepView<'_>) -> Result<(), D::Error>,
 ) -> Result<Edited, D::Error> {
@@ -78,15 +47,11 @@ pub fn edit_with_replay<D: Denoiser + ?Sized>(
     let edited_cells: Vec<usize> = (0..mask.len()).filter(|c| mask[*c]).collect();
     let edited = || edited_cells.iter().flat_map(|c| c * channels..(c + 1) * channels);
 
-    let mut start = source.states[0].clone();
-    for i in edited() {
-        start[i] = noise.start(start[i], i / channels, i % channels);
-    }
-    check_finite(&start, 0, steps)?;
-    let mut states = vec![start];
+    check_finite(&source.states[0], 0, steps)?;
+    let mut states = vec![source.states[0].clone()];
     let mut stepper = sampler.stepper();
-    // O-BELM's noise is two states: where the region starts from the source's, it starts from both.
-    if sampler.states_of_noise() > 1 && noise.strength == 0.0 {
+    // O-BELM's noise is two states.
+    if sampler.states_of_noise() > 1 {
         stepper.pass(&states[0]);
         states.push(source.states[1].clone());
     }
@@ -124,7 +89,7 @@ pub fn edit_with_replay<D: Denoiser + ?Sized>(
 mod tests {
     use super::*;
     use crate::generation::inversion::{Refinement, invert};
-    use crate::generation::rng::normal_field;
+    use crate::generation::rng::{Stream, normal_field};
     use crate::generation::schedule::{Schedule, Spacing};
     use crate::generation::solver::tests::toy;
     use crate::generation::solver::{Branch, Guidance, SolverKind};
@@ -172,8 +137,8 @@ mod tests {
         }
     }
 
-    fn run(source: &Trajectory, mask: &[bool], noise: RegionNoise, model: &mut Coupled) -> Edited {
-        edit_with_replay(&sampler(), source, mask, CHANNELS, noise, model, |_| Ok(())).expect("finite")
+    fn run(source: &Trajectory, mask: &[bool], model: &mut Coupled) -> Edited {
+        edit_with_replay(&sampler(), source, mask, CHANNELS, model, |_| Ok(())).expect("finite")
     }
 
     fn assert_outside_is_source(edited: &Edited, source: &Trajectory, mask: &[bool]) {
@@ -188,19 +153,15 @@ mod tests {
     #[test]
     fn row_24_replay() {
         let source = source();
-        let fresh = RegionNoise {
-            strength: 1.0,
-            seed: u64::MAX,
-        };
         // Empty: no call, the same bits.
         let mut model = coupled();
-        let nothing = run(&source, &[false; CELLS], fresh, &mut model);
+        let nothing = run(&source, &[false; CELLS], &mut model);
         assert_eq!((model.calls, nothing.calls), (0, 0));
         assert_eq!(nothing.trajectory, source);
         assert_eq!(nothing.latent, source.latent_f32());
         // Full: plain sampling, bit for bit.
         let mut model = coupled();
-        let all = run(&source, &[true; CELLS], RegionNoise::INVERTED, &mut model);
+        let all = run(&source, &[true; CELLS], &mut model);
         assert_eq!((model.calls, all.calls), (5, 5));
         let plain = sampler()
             .sample(source.noise().to_vec(), &mut coupled(), |_| Ok(()))
@@ -214,13 +175,13 @@ mod tests {
                 calls: 0,
                 nan_outside: mask.clone(),
             };
-            let one = run(&source, &mask, fresh, &mut model);
+            let one = run(&source, &mask, &mut model);
             assert_outside_is_source(&one, &source, &mask);
             let at = cell * CHANNELS..(cell + 1) * CHANNELS;
             assert_ne!(one.latent[at.clone()], source.latent_f32()[at.clone()]);
             assert!(one.latent.iter().all(|v| v.is_finite()));
             // The new trajectory is one that the next edit can start from.
-            let again = run(&one.trajectory, &[false; CELLS], fresh, &mut coupled());
+            let again = run(&one.trajectory, &[false; CELLS], &mut coupled());
             assert_eq!(again.latent, one.latent);
         }
     }
@@ -234,13 +195,9 @@ mod tests {
         let mut b = vec![false; CELLS];
         a[100..140].fill(true);
         b[900..905].fill(true);
-        let noise = RegionNoise {
-            strength: 0.6,
-            seed: 42,
-        };
         let edit = |from: &Trajectory, mask: &[bool]| {
             let mut local = toy(|x, t| (x + 0.001 * t).sin(), |_, _| 0.0);
-            edit_with_replay(&sampler(), from, mask, CHANNELS, noise, &mut local, |_| Ok(()))
+            edit_with_replay(&sampler(), from, mask, CHANNELS, &mut local, |_| Ok(()))
                 .expect("finite")
                 .trajectory
         };
@@ -251,41 +208,13 @@ mod tests {
     }
 
     #[test]
-    fn region_noise_keeps_its_variance() {
-        let (mut mean, mut square) = (0.0, 0.0);
-        let noise = RegionNoise {
-            strength: 0.5,
-            seed: 9,
-        };
-        let inverted = normal_field(1, Stream::Start, CELLS, CHANNELS);
-        for (i, x) in inverted.iter().enumerate() {
-            let v = noise.start(*x, i / CHANNELS, i % CHANNELS);
-            mean += v / inverted.len() as f64;
-            square += v * v / inverted.len() as f64;
-        }
-        assert!(
-            mean.abs() < 0.03 && (square - 1.0).abs() < 0.05,
-            "{mean} {square}"
-        );
-        assert_eq!(RegionNoise::INVERTED.start(0.1, 3, 4), 0.1);
-    }
-
-    #[test]
     fn mismatches_are_typed_errors() {
         let source = source();
         let edit = |sampler: &Sampler, mask: &[bool], channels| {
             let mut model = coupled();
-            edit_with_replay(
-                sampler,
-                &source,
-                mask,
-                channels,
-                RegionNoise::INVERTED,
-                &mut model,
-                |_| Ok(()),
-            )
-            .map(|_| ())
-            .map_err(|e| e.to_string())
+            edit_with_replay(sampler, &source, mask, channels, &mut model, |_| Ok(()))
+                .map(|_| ())
+                .map_err(|e| e.to_string())
         };
         assert_eq!(
             edit(&sampler(), &[true; 7], CHANNELS),

@@ -131,7 +131,8 @@ struct Gen {
     /// Number of fixed-point updates per inversion step.
     #[arg(long, value_name = "N")]
     inversion_iterations: Option<u32>,
-    /// How far an edited region's noise leaves the inverted one, 0 to 1.
+    /// Draw the region anew, from fresh noise at this share of the steps, 0 to 1: 1 keeps nothing of what was there; 0, the
+    /// default, starts from the noise that its source comes from.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     strength: f64,
     /// Compute every token, not only those around an edit.

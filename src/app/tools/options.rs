@@ -22,6 +22,8 @@ use super::Choose;
 
 /// States of the scene whose selection is kept.
 const REMEMBERED_SELECTIONS: usize = 512;
+/// What is drawn anew has no inverted noise that already holds most of it.
+const FEWEST_STEPS_ANEW: u32 = 10;
 
 /// What a drag of the brush draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -214,6 +216,7 @@ impl ToolState {
         self.region_draws += 1;
         params.redraw = self.region;
         params.strength = self.region_strength;
+        params.steps = params.steps.max(FEWEST_STEPS_ANEW);
         params.seed = params.seed.wrapping_add(self.region_draws);
     }
 

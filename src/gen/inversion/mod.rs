@@ -8,6 +8,7 @@
 
 mod obelm;
 
+use super::rng::{Stream, normal_field};
 use super::schedule::Level;
 use super::solver::{
     DdimStep, Denoiser, Sampler, SolverError, SolverKind, check_finite, check_length, standard_deviation,
@@ -23,6 +24,20 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
+    /// A latent (`channels` numbers a cell, channel last) with one draw of noise, as much of it at each level as training puts
+    /// there: what a network that denoises a part of it is used to see around that part.
+    pub fn noised(clean: &[f64], levels: &[Level], channels: usize, seed: u64) -> Self {
+        let noise = normal_field(seed, Stream::Region, clean.len() / channels, channels);
+        let state = |level: &Level| {
+            let pairs = clean.iter().zip(&noise);
+            pairs.map(|(x, e)| level.alpha * x + level.sigma * e).collect()
+        };
+        Self {
+            levels: levels.to_vec(),
+            states: levels.iter().map(state).collect(),
+        }
+    }
+
     /// The noise that it starts from.
     pub fn noise(&self) -> &[f64] {
         &self.states[0]

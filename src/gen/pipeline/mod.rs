@@ -19,7 +19,7 @@ use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
 use crate::generation::params::{DitVariant, Precision};
 use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
-use crate::generation::replay::{RegionNoise, edit_with_replay};
+use crate::generation::replay::edit_with_replay;
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::{Guidance, Sampler, SolverKind};
 use crate::generation::world::draw::hash;
@@ -220,6 +220,13 @@ impl OccPipeline {
         }
     }
 
+    fn key_of_source(&self, frame: &Frame, params: &GenParams) -> SourceKey {
+        let old = &*frame.source;
+        let named = Named::default().or(&density_of_source(frame));
+        let condition = Condition::new(&old.layout, &old.boxes, named, self.ablation);
+        self.key(&old.occupancy, &condition, params)
+    }
+
     fn remember(&mut self, source: Source) {
         self.sources.retain(|s| s.key != source.key);
         self.sources.push_front(source);
@@ -251,9 +258,7 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<Source, GenError> {
         let old = &*frame.source;
-        let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::new(&old.layout, &old.boxes, named, self.ablation);
-        let key = self.key(&old.occupancy, &condition, params);
+        let key = self.key_of_source(frame, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
             self.remember(known.clone()); // used last, forgotten last
             return Ok(known);
@@ -451,20 +456,13 @@ impl OccPipeline {
             // Nothing to redraw: no network is asked.
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
-        let source = self.source(frame, params, &mut report, ctx)?;
-        if let Some(inversion) = &source.report {
-            report.noise_std = Some(inversion.std);
-            report.noise_max_abs = Some(inversion.max_abs);
-            if !inversion.moments_ok() {
-                report.notes.push(format!(
-                    "the inverted noise is unusual (std {:.2}, max {:.1})",
-                    inversion.std, inversion.max_abs
-                ));
-            }
-        }
+        let anew = params.strength > 0.0;
+        let (sampler, source) = match anew {
+            true => self.noised(frame, params, &mut report, ctx)?,
+            false => self.inverted(frame, params, &mut report, ctx)?,
+        };
         let named = params.named.or(&density_of_source(frame));
         let condition = Condition::new(&frame.layout, &frame.boxes, named, self.ablation);
-        let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent
@@ -478,19 +476,15 @@ impl OccPipeline {
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
             Some(kept) => Some(kept.clone()),
-            None => stored_for(params),
+            None => stored_for(params).filter(|_| !anew),
         };
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(&condition, local, mask, context, params)
         })?;
         network.keys_values = keys_values;
         report.tokens = network.condition.tokens();
-        let noise = RegionNoise {
-            strength: params.strength,
-            seed: params.seed,
-        };
         let preview_at = if params.quality == Quality::Final {
-            params.steps as usize / 2
+            sampler.steps() / 2
         } else {
             0
         };
@@ -500,7 +494,6 @@ impl OccPipeline {
                 &source.trajectory,
                 &region.cells,
                 CHANNELS,
-                noise,
                 &mut network,
                 |view| {
                     ctx.progress(Stage::Denoise, view.step, view.steps)?;
@@ -536,6 +529,9 @@ impl OccPipeline {
             report.ground_kept = keep_ground(frame, &region, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
+        if anew {
+            return Ok(result); // its states around the region lead nowhere: the next edit inverts it
+        }
         self.adopt(
             &result.occupancy,
             &condition,
@@ -545,6 +541,67 @@ impl OccPipeline {
             keys_values,
         );
         Ok(result)
+    }
+
+    /// What an edit starts from: the noise that the source comes from.
+    fn inverted(
+        &mut self,
+        frame: &Frame,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(Sampler, Source), GenError> {
+        let source = self.source(frame, params, report, ctx)?;
+        if let Some(inversion) = &source.report {
+            report.noise_std = Some(inversion.std);
+            report.noise_max_abs = Some(inversion.max_abs);
+            if !inversion.moments_ok() {
+                report.notes.push(format!(
+                    "the inverted noise is unusual (std {:.2}, max {:.1})",
+                    inversion.std, inversion.max_abs
+                ));
+            }
+        }
+        let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
+        Ok((sampler, source))
+    }
+
+    /// What a region is drawn anew from: its source under fresh noise, from the step on that the strength asks for.
+    fn noised(
+        &mut self,
+        frame: &Frame,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(Sampler, Source), GenError> {
+        let key = self.key_of_source(frame, params);
+        let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
+            Some(known) => known.trajectory.latent().to_vec(),
+            None => {
+                ctx.progress(Stage::Encode, 0, 1)?;
+                let latent = report
+                    .timed(Stage::Encode, |_| self.models.vae.encode(&frame.source.occupancy))
+                    .map_err(GenError::failed)?;
+                latent.into_iter().map(f64::from).collect()
+            }
+        };
+        // O-BELM samples well only what it inverted.
+        let solver = match params.solver {
+            SolverKind::OBelm => SolverKind::Ddim,
+            other => other,
+        };
+        let mut sampler = Sampler::standard(solver, params.steps as usize, params.guidance())?;
+        let steps = (params.strength * f64::from(params.steps)).round().max(1.0) as usize;
+        sampler.levels.drain(..sampler.steps() - steps);
+        let trajectory = Trajectory::noised(&clean, &sampler.levels, CHANNELS, params.seed);
+        let source = Source {
+            key,
+            solver,
+            trajectory: Arc::new(trajectory),
+            keys_values: None,
+            report: None,
+        };
+        Ok((sampler, source))
     }
 
     /// A result's own trajectory is that of the scene that adopts it: no inversion next time.

@@ -22,8 +22,9 @@ use crate::scene::{Class, Density, GridSpec, Scene, VoxelGrid, draft};
 const SUBSETS: usize = 8;
 /// Frames that are generated a second time, from another seed.
 const DIVERSITY_FRAMES: usize = 8;
-/// Side of the square that is redrawn with and without its context, columns, and the step of its places.
+/// Side of the square that is redrawn with and without its context, columns, how often, and the step of its places.
 const REDRAWN: usize = 28;
+const DRAWS: u64 = 3;
 const PLACE_STEP: usize = 12;
 
 /// Agreement with the layout over frames.
@@ -115,7 +116,7 @@ impl Eval {
                 diversity.extend(same.occupied_iou().map(|iou| 1.0 - iou));
             }
             for (shares, of) in redrawn.iter_mut().zip(redrawn_iou(pipeline, &job)?) {
-                shares.iter_mut().zip(of).for_each(|(all, one)| all.extend(one));
+                shares.iter_mut().zip(of).for_each(|(all, one)| all.push(one));
             }
         }
         let (mut report, bars) = (json!({}), bars(&found));
@@ -128,6 +129,8 @@ impl Eval {
             "redrawn_square_iou_without_context": with_interval(&redrawn[1][0]),
             "seam_iou": with_interval(&redrawn[0][1]),
             "seam_iou_without_context": with_interval(&redrawn[1][1]),
+            "redrawn_square_iou_gain_of_context": gain(&redrawn, 0),
+            "seam_iou_gain_of_context": gain(&redrawn, 1),
         });
         report["against_the_worlds"] =
             json!({ "miou": likeness.mean_iou().0, "iou": likeness.occupied_iou() });
@@ -195,8 +198,8 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
 
 /// Redraws the fullest square of a world from fresh noise, and draws a whole scene of the same layout, character and
 /// steps that sees nothing of the world. Of each, IoU of what stands in the square with the world there, and of what
-/// stands along its border with the world's columns right outside: walls and hedges should go on.
-fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[Option<f64>; 2]; 2]> {
+/// stands along its border with the world's columns right outside: walls and hedges should go on. Means of some draws.
+fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
     let frame = job.scene.frame();
     let truth = &frame.occupancy;
     let square = fullest_square(truth);
@@ -216,26 +219,44 @@ fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[Option
         ..job.clone()
     };
     let ctx = JobCtx::detached();
-    let seen = pipeline.redraw_region(&job, Region::of_columns(columns.clone()), &ctx)?;
-    job.params.region = RegionMode::Full;
-    let blind = pipeline.run(&job, &ctx)?;
-    Ok([seen, blind].map(|result| {
-        let (mut inside, mut seam) = ([0u64; 2], [0u64; 2]);
+    let region = Region::of_columns(columns.clone());
+    // What stands in the square, and right beside it against what was drawn along its border.
+    let shares = |drawn: &VoxelGrid| {
+        let [mut inside, mut seam] = [[0u64; 2]; 2];
         let count = |sums: &mut [u64; 2], a: [usize; 2], b: [usize; 2]| {
-            for (a, b) in standing(truth, a[0], a[1]).zip(standing(&result.occupancy, b[0], b[1])) {
+            for (a, b) in standing(truth, a[0], a[1]).zip(standing(drawn, b[0], b[1])) {
                 sums[0] += u64::from(a && b);
                 sums[1] += u64::from(a || b);
             }
         };
         for [x, y] in &square {
             count(&mut inside, [*x, *y], [*x, *y]);
-            // What stands right beside the square, against what was drawn along its border.
             for outside in [[x - 1, *y], [x + 1, *y], [*x, y - 1], [*x, y + 1]] {
                 if !columns[outside[0] * GridSpec::NY + outside[1]] {
                     count(&mut seam, outside, [*x, *y]);
                 }
             }
         }
-        [inside, seam].map(|[both, either]| (either > 0).then(|| both as f64 / either as f64))
-    }))
+        [inside, seam].map(|[both, either]| both as f64 / either.max(1) as f64)
+    };
+    let mut mean = [[0.0; 2]; 2];
+    for draw in 0..DRAWS {
+        job.params.seed = job.params.seed.wrapping_add(draw);
+        job.params.region = RegionMode::Auto;
+        let seen = pipeline.redraw_region(&job, region.clone(), &ctx)?;
+        job.params.region = RegionMode::Full;
+        let blind = pipeline.run(&job, &ctx)?;
+        for (mean, result) in mean.iter_mut().zip([seen, blind]) {
+            for (mean, share) in mean.iter_mut().zip(shares(&result.occupancy)) {
+                *mean += share / DRAWS as f64;
+            }
+        }
+    }
+    Ok(mean)
+}
+
+/// What context adds, frame by frame: of the square (0) or of its seam (1).
+fn gain(redrawn: &[[Vec<f64>; 2]; 2], of: usize) -> Value {
+    let pairs = redrawn[0][of].iter().zip(&redrawn[1][of]);
+    with_interval(&pairs.map(|(seen, blind)| seen - blind).collect::<Vec<_>>())
 }
