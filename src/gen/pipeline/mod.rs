@@ -3,85 +3,33 @@
 //! outside the region and a composite in label space.
 
 mod network;
+mod round_trip;
+mod source;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use crate::generation::composite::{
-    composite, label_hash, seam_change_share, untouched_hash, untouched_voxels_changed,
-};
-use crate::generation::inversion::{InversionReport, Refinement, Trajectory, invert, round_trip_error};
+use crate::generation::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
+use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
-    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
+    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
 use crate::generation::keep_objects::{keep_ground, keep_objects};
-use crate::generation::model::{DitCondition, KeysValues, OccModels, tokens_of};
-use crate::generation::params::{DitVariant, Precision};
+use crate::generation::model::{DitCondition, OccModels, tokens_of};
 use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::edit_with_replay;
 use crate::generation::rng::{Stream, normal_field};
-use crate::generation::solver::{Guidance, Sampler, SolverKind};
-use crate::generation::world::draw::hash;
-use crate::scene::{Frame, GridSpec, Scene, VoxelGrid};
-use network::{Condition, Network, StepKeysValues, density_of_source};
+use crate::generation::solver::Sampler;
+use crate::scene::{GridSpec, VoxelGrid};
+use network::{Condition, Network, density_of_source};
+use source::{Source, stored_for};
 
 pub use network::Ablation;
+pub use round_trip::RoundTrip;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
-/// Trajectories kept; each is about 2 MB at ten steps.
-const KEPT_TRAJECTORIES: usize = 24;
-/// Memory for them, but for the latest.
-const TRAJECTORY_BYTES: usize = 256 << 20;
-/// Memory for the keys and values of the latest of them.
-const KEYS_VALUES_BYTES: usize = 256 << 20;
-/// About what those of one step take.
-const STEP_BYTES: usize = 7_700_000;
-
-/// What a trajectory belongs to: labels under a layout. Which of the trajectories that lead there it is, such as
-/// what densities it was sampled with, does not matter to an edit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct SourceKey {
-    occupancy: u64,
-    layout: u64,
-    draft: u64,
-    steps: u32,
-    iterations: u32,
-    exact: bool,
-    network: DitVariant,
-    precision: Precision,
-}
-
-#[derive(Clone)]
-struct Source {
-    key: SourceKey,
-    /// What edits of it are to be sampled with: O-BELM continues only what it inverted itself.
-    solver: SolverKind,
-    trajectory: Arc<Trajectory>,
-    /// What the network made of the trajectory's states; none where memory did not allow it.
-    keys_values: Option<Arc<StepKeysValues>>,
-    report: Option<InversionReport>, // none for a trajectory that sampling made
-}
-
-/// Where keys and values go, if those of so many steps find room.
-fn stored(steps: u32) -> Option<StepKeysValues> {
-    (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
-}
-
-/// The same; blocks that are not computed at every step leave none.
-fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
-    stored(params.steps).filter(|_| params.reuse_steps <= 1)
-}
-
-/// What inverting and sampling again gave.
-#[derive(Clone, Copy, Debug)]
-pub struct RoundTrip {
-    /// Relative RMS error of the latent.
-    pub error: f64,
-    /// Standard deviation of the noise between.
-    pub noise_std: f64,
-}
 
 /// Generates occupancy. Clones share what they keep. Keeps the trajectories of recent sources, its own results among them, so
 /// that the next edit of a scene needs no inversion.
@@ -203,109 +151,6 @@ impl OccPipeline {
         })
     }
 
-    fn key(&self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams) -> SourceKey {
-        SourceKey {
-            occupancy: label_hash(occupancy),
-            layout: condition
-                .bev
-                .iter()
-                .zip(&condition.heading)
-                .fold(0, |h, (b, yaw)| hash(h ^ u64::from(*b) ^ u64::from(*yaw) << 32)),
-            draft: label_hash(&condition.draft),
-            steps: params.steps,
-            iterations: params.inversion_iterations,
-            exact: params.solver == SolverKind::OBelm,
-            network: params.network,
-            precision: params.precision,
-        }
-    }
-
-    fn key_of_source(&self, frame: &Frame, params: &GenParams) -> SourceKey {
-        let old = &*frame.source;
-        let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::new(&old.layout, &old.boxes, named, self.ablation);
-        self.key(&old.occupancy, &condition, params)
-    }
-
-    fn remember(&mut self, source: Source) {
-        self.sources.retain(|s| s.key != source.key);
-        self.sources.push_front(source);
-        self.sources.truncate(KEPT_TRAJECTORIES);
-        let mut bytes = 0;
-        let held = |s: &Source| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
-        let mut trajectory_bytes = 0;
-        let fit = self.sources.iter().take_while(|s| {
-            trajectory_bytes += held(s);
-            trajectory_bytes <= TRAJECTORY_BYTES
-        });
-        let fit = fit.count().max(1);
-        self.sources.truncate(fit);
-        for source in &mut self.sources {
-            let own = source.keys_values.iter().flat_map(|k| k.values());
-            bytes += own.map(KeysValues::bytes).sum::<usize>();
-            if bytes > KEYS_VALUES_BYTES {
-                source.keys_values = None;
-            }
-        }
-    }
-
-    /// The trajectory of a frame's source: from memory, or inverted now.
-    fn source(
-        &mut self,
-        frame: &Frame,
-        params: &GenParams,
-        report: &mut GenReport,
-        ctx: &JobCtx<'_>,
-    ) -> Result<Source, GenError> {
-        let old = &*frame.source;
-        let key = self.key_of_source(frame, params);
-        if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
-            self.remember(known.clone()); // used last, forgotten last
-            return Ok(known);
-        }
-        ctx.progress(Stage::Encode, 0, 1)?;
-        let latent = report
-            .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
-            .map_err(GenError::failed)?;
-        let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(frame, params))?;
-        network.keys_values = stored(params.steps);
-        let refinement = Refinement::damped(params.inversion_iterations as usize);
-        let mut solver = params.solver;
-        let (trajectory, inversion) = loop {
-            let sampler = Sampler::standard(solver, params.steps as usize, Guidance::NONE)?;
-            let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
-                invert(&sampler, &clean, refinement, &mut network, |k, n| {
-                    ctx.progress(Stage::Invert, k, n)
-                })
-            })?;
-            report.inversion_calls += inversion.calls;
-            if solver != SolverKind::OBelm || inversion.moments_ok() {
-                break (trajectory, inversion);
-            }
-            // Noise that no draw would give: edits from it look wrong. The plain inverse is approximate but
-            // tame, and replay needs no more.
-            report.notes.push(format!(
-                "exact inversion gave unusual noise (std {:.2}, max {:.1}): plain inversion was used",
-                inversion.std, inversion.max_abs
-            ));
-            solver = SolverKind::Ddim;
-            network.keys_values = stored(params.steps);
-        };
-        let keys_values = network.keys_values.take().map(Arc::new);
-        drop(network);
-        report.network_calls += report.inversion_calls;
-        let source = Source {
-            key,
-            solver,
-            trajectory: Arc::new(trajectory),
-            keys_values,
-            report: Some(inversion),
-        };
-        self.remember(source.clone());
-        Ok(source)
-    }
-
     /// The clean end of the trajectory that the latest job used or made: latent, 50x50x8.
     pub fn latest_latent(&self) -> Option<Vec<f32>> {
         self.sources.front().map(|s| s.trajectory.latent_f32())
@@ -316,60 +161,6 @@ impl OccPipeline {
         let mut report = GenReport::default();
         self.source(job.scene.frame(), &job.params, &mut report, ctx)?;
         Ok(report.network_calls)
-    }
-
-    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
-    pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
-        let frame = job.scene.frame();
-        let known = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
-        let mut network = self.network_of_source(frame, &job.params)?;
-        let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
-        round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
-            ctx.progress(Stage::Denoise, k, n)
-        })
-    }
-
-    /// The same with exactly the solver asked for, where an edit would fall back to another; keeps nothing.
-    pub fn round_trip_of(
-        &mut self,
-        scene: &Scene,
-        params: &GenParams,
-        ctx: &JobCtx<'_>,
-    ) -> Result<RoundTrip, GenError> {
-        let frame = scene.frame();
-        let latent = self.models.vae.encode(&frame.source.occupancy);
-        let clean: Vec<f64> = latent
-            .map_err(GenError::failed)?
-            .into_iter()
-            .map(f64::from)
-            .collect();
-        let mut network = self.network_of_source(frame, params)?;
-        let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
-        let refinement = Refinement::damped(params.inversion_iterations as usize);
-        let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {
-            ctx.progress(Stage::Invert, k, n)
-        })?;
-        let error = round_trip_error(&sampler, &trajectory, &mut network, |k, n| {
-            ctx.progress(Stage::Denoise, k, n)
-        })?;
-        Ok(RoundTrip {
-            error,
-            noise_std: inversion.std,
-        })
-    }
-
-    /// The network under the condition of a frame's source, for all tokens.
-    fn network_of_source(&mut self, frame: &Frame, params: &GenParams) -> Result<Network, GenError> {
-        let source = &*frame.source;
-        let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::new(&source.layout, &source.boxes, named, self.ablation);
-        let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
-        let params = GenParams {
-            guidance: 1.0,
-            reuse_steps: 1,
-            ..*params
-        };
-        self.network(&condition, None, mask, context, &params)
     }
 
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
@@ -541,87 +332,6 @@ impl OccPipeline {
             keys_values,
         );
         Ok(result)
-    }
-
-    /// What an edit starts from: the noise that the source comes from.
-    fn inverted(
-        &mut self,
-        frame: &Frame,
-        params: &GenParams,
-        report: &mut GenReport,
-        ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, Source), GenError> {
-        let source = self.source(frame, params, report, ctx)?;
-        if let Some(inversion) = &source.report {
-            report.noise_std = Some(inversion.std);
-            report.noise_max_abs = Some(inversion.max_abs);
-            if !inversion.moments_ok() {
-                report.notes.push(format!(
-                    "the inverted noise is unusual (std {:.2}, max {:.1})",
-                    inversion.std, inversion.max_abs
-                ));
-            }
-        }
-        let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
-        Ok((sampler, source))
-    }
-
-    /// What a region is drawn anew from: its source under fresh noise, from the step on that the strength asks for.
-    fn noised(
-        &mut self,
-        frame: &Frame,
-        params: &GenParams,
-        report: &mut GenReport,
-        ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, Source), GenError> {
-        let key = self.key_of_source(frame, params);
-        let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
-            Some(known) => known.trajectory.latent().to_vec(),
-            None => {
-                ctx.progress(Stage::Encode, 0, 1)?;
-                let latent = report
-                    .timed(Stage::Encode, |_| self.models.vae.encode(&frame.source.occupancy))
-                    .map_err(GenError::failed)?;
-                latent.into_iter().map(f64::from).collect()
-            }
-        };
-        // O-BELM samples well only what it inverted.
-        let solver = match params.solver {
-            SolverKind::OBelm => SolverKind::Ddim,
-            other => other,
-        };
-        let mut sampler = Sampler::standard(solver, params.steps as usize, params.guidance())?;
-        let steps = (params.strength * f64::from(params.steps)).round().max(1.0) as usize;
-        sampler.levels.drain(..sampler.steps() - steps);
-        let trajectory = Trajectory::noised(&clean, &sampler.levels, CHANNELS, params.seed);
-        let source = Source {
-            key,
-            solver,
-            trajectory: Arc::new(trajectory),
-            keys_values: None,
-            report: None,
-        };
-        Ok((sampler, source))
-    }
-
-    /// A result's own trajectory is that of the scene that adopts it: no inversion next time.
-    fn adopt(
-        &mut self,
-        occupancy: &VoxelGrid,
-        condition: &Condition,
-        params: &GenParams,
-        solver: SolverKind,
-        trajectory: Trajectory,
-        keys_values: Option<StepKeysValues>,
-    ) {
-        let key = self.key(occupancy, condition, params);
-        self.remember(Source {
-            key,
-            solver,
-            trajectory: Arc::new(trajectory),
-            keys_values: keys_values.map(Arc::new),
-            report: None,
-        });
     }
 
     fn finish(

@@ -1,0 +1,58 @@
+//! How well a source comes back when it is inverted and sampled again.
+
+use super::OccPipeline;
+use crate::generation::inversion::{Refinement, invert, round_trip_error};
+use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Stage};
+use crate::generation::solver::{Guidance, Sampler};
+use crate::scene::Scene;
+
+/// What inverting and sampling again gave.
+#[derive(Clone, Copy, Debug)]
+pub struct RoundTrip {
+    /// Relative RMS error of the latent.
+    pub error: f64,
+    /// Standard deviation of the noise between.
+    pub noise_std: f64,
+}
+
+impl OccPipeline {
+    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
+    pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
+        let frame = job.scene.frame();
+        let known = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
+        let mut network = self.network_of_source(frame, &job.params)?;
+        let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
+        round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })
+    }
+
+    /// The same with exactly the solver asked for, where an edit would fall back to another; keeps nothing.
+    pub fn round_trip_of(
+        &mut self,
+        scene: &Scene,
+        params: &GenParams,
+        ctx: &JobCtx<'_>,
+    ) -> Result<RoundTrip, GenError> {
+        let frame = scene.frame();
+        let latent = self.models.vae.encode(&frame.source.occupancy);
+        let clean: Vec<f64> = latent
+            .map_err(GenError::failed)?
+            .into_iter()
+            .map(f64::from)
+            .collect();
+        let mut network = self.network_of_source(frame, params)?;
+        let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
+        let refinement = Refinement::damped(params.inversion_iterations as usize);
+        let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {
+            ctx.progress(Stage::Invert, k, n)
+        })?;
+        let error = round_trip_error(&sampler, &trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })?;
+        Ok(RoundTrip {
+            error,
+            noise_std: inversion.std,
+        })
+    }
+}
