@@ -31,7 +31,6 @@ use super::keys::Hands;
 use super::live::{Advice, Bounds, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
-use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
@@ -256,6 +255,7 @@ impl SceneloomApp {
                 .dock
                 .clone()
                 .and_then(Dock::from_kept)
+                .map(|dock| dock.with_new_panes(&settings.panes_known))
                 .unwrap_or_else(|| Dock::workspace(settings.workspace)),
             keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
             palette: Palette::default(),
@@ -361,6 +361,7 @@ impl SceneloomApp {
     fn write_settings(&mut self, ctx: &egui::Context) {
         self.settings.ui_scale = ctx.zoom_factor();
         self.settings.dock = Some(self.dock.tree().clone());
+        self.settings.panes_known = Pane::CHOICES.to_vec();
         self.settings.key_preset.clone_from(&self.keymap.preset);
         self.settings.keys.clone_from(&self.keymap.own);
         let now_s = self.now_s();
@@ -642,6 +643,11 @@ impl SceneloomApp {
             bookmarks: self.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
+            shown: Pane::CHOICES
+                .into_iter()
+                .filter(|p| self.dock.is_shown(*p))
+                .collect(),
+            cameras: scene.rig.cameras.len(),
             stops: self.tuning.foretold(),
             stop: self.tuning.current(&self.live.params),
         };
@@ -687,6 +693,10 @@ impl SceneloomApp {
         self.state.hovered_pane = None;
         self.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
+        // What nobody lists is not pointed at.
+        if !self.dock.is_shown(Pane::Checks) {
+            self.state.meant = None;
+        }
         self.live.named = self.state.named;
     }
 
@@ -707,15 +717,6 @@ impl SceneloomApp {
             .show(ui, &mut self.keymap, &mut self.state.keys_open);
         settings_ui(ui, &mut self.settings, &mut self.state.settings_open);
         start_ui(ui, &mut self.settings, &mut self.state.start_open, commands);
-        if self.state.checks_open {
-            let input = ChecksInput {
-                findings: self.checking.findings().map(|f| f.as_slice()),
-                stale: self.checking.is_stale(self.document.settled_scene().rev),
-                selected: self.state.selected,
-                frame: self.document.settled_scene().frame(),
-            };
-            checks_window(ui, &input, &mut self.state.checks_open, commands);
-        }
         // Over the 3D view, where it hides no list.
         let over = match self.view3d.rect.is_positive() {
             true => self.view3d.rect,

@@ -297,6 +297,10 @@ impl Canvas {
             draw_boxes(ui, map, response, input.scene, state);
         }
         draw_unsettled(ui, map, input);
+        if let Some(meant) = &state.meant {
+            let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
+            meant.draw(&inside, map, scene.frame());
+        }
         self.draw_tool(ui, response, map, scene, state);
         draw_scale_bar(ui, map);
         super::tools::bev_draw::draw(ui, response, map, scene, state, &self.gesture);

@@ -68,7 +68,7 @@ impl SceneloomApp {
                 };
                 self.dialogs.ask(purpose, &path, ui.ctx());
             }
-            Some(Asked::Checks) => self.state.checks_open = true,
+            Some(Asked::Checks) => self.dock.open(super::state::Pane::Checks),
             None => {}
         }
         self.exporting.panel = open.then_some(panel);

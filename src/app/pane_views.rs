@@ -12,6 +12,7 @@ use super::canvas::CanvasInput;
 use super::command::Command;
 use super::compare::{CompareMode, tag, wipe_line};
 use super::panels::cameras::CamerasInput;
+use super::panels::checks::{ChecksInput, checks_ui};
 use super::panels::history::{history_title, history_ui};
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
@@ -85,6 +86,22 @@ impl SceneloomApp {
             }
             Pane::History => {
                 theme::panel_frame().show(ui, |ui| history_ui(ui, &self.document, commands));
+            }
+            Pane::Checks => {
+                let input = ChecksInput {
+                    findings: self.checking.findings().map(|f| f.as_slice()),
+                    stale: self.checking.is_stale(self.document.settled_scene().rev),
+                    selected: self.state.selected,
+                    frame: self.document.settled_scene().frame(),
+                };
+                let meant = theme::panel_frame()
+                    .show(ui, |ui| checks_ui(ui, &input, commands))
+                    .inner;
+                if self.state.meant.as_deref() != meant.as_ref() {
+                    self.state.meant = meant.map(Arc::new);
+                    // The views are drawn before this pane or after it.
+                    ui.ctx().request_repaint();
+                }
             }
             Pane::Objects => {
                 theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));

@@ -326,12 +326,19 @@ impl View3d {
             cells = input.marked[..input.marked.len().min(MARKED)].to_vec();
             brush_color = [240, 180, 60];
         }
+        let meant = state.meant.as_deref();
+        if let (true, Some(meant)) = (cells.is_empty() || !input.marked.is_empty(), meant)
+            && !meant.cells.is_empty()
+        {
+            cells = meant.cells[..meant.cells.len().min(MARKED)].to_vec();
+            brush_color = super::meant::COLOR;
+        }
         let ghost = self.ghost(input.scene, state, pointer, hit);
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
             Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
-            _ => None,
+            _ => meant.and_then(|m| m.box_id),
         };
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);

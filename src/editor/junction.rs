@@ -81,6 +81,17 @@ impl Area {
         Self(covered)
     }
 
+    /// The cells and those that touch them: lines that end here do not reach in with their width.
+    pub(super) fn around(cells: &[[usize; 2]]) -> Self {
+        let mut grown = Vec::new();
+        for &[x, y] in cells {
+            for i in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
+                grown.extend((y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1)).map(|j| [i, j]));
+            }
+        }
+        Self::new(&grown)
+    }
+
     pub(super) fn holds(&self, [x, y]: [usize; 2]) -> bool {
         self.0[x * GridSpec::NY + y]
     }

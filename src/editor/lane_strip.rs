@@ -87,7 +87,7 @@ impl LaneStrip {
         };
         let mut edits: Vec<Edit> = areas.into_iter().map(paint).collect();
         edits.push(Edit::AddPolylines {
-            lines: self.lines(&middle_m, half_m, &area),
+            lines: self.lines(&middle_m, half_m, &Area::around(&junction)),
         });
         edits
     }
