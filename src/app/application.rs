@@ -588,16 +588,16 @@ impl SceneloomApp {
         self.take_window_events(ui.ctx(), &mut commands);
         self.prepare_compare(ui);
         let scene = self.shown_scene();
-        self.bars(ui, &scene, &mut commands);
-        self.views(ui, &scene, &mut commands);
+        // What a dialog covers answers nothing, and keeps no tooltip open over it.
+        let mut below = ui.new_child(egui::UiBuilder::new().max_rect(ui.max_rect()));
+        if self.has_dialog() {
+            below.visuals_mut().disabled_alpha = 1.0;
+            below.disable();
+        }
+        self.bars(&mut below, &scene, &mut commands);
+        self.views(&mut below, &scene, &mut commands);
         // Asked before: the key that closes a dialog is no shortcut.
-        let dialog = self.unsaved.is_some()
-            || self.dialogs.is_open()
-            || self.state.keys_open
-            || self.state.start_open
-            || self.palette.open
-            || self.asks_to_recover()
-            || self.state.tools.row_open;
+        let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
         if !dialog && !self.state.holding_before {
@@ -619,6 +619,17 @@ impl SceneloomApp {
         if any && !at_once || self.passes < 3 {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// True while a dialog lies over everything.
+    fn has_dialog(&self) -> bool {
+        self.unsaved.is_some()
+            || self.dialogs.is_open()
+            || self.state.keys_open
+            || self.state.start_open
+            || self.palette.open
+            || self.asks_to_recover()
+            || self.state.tools.row_open
     }
 
     fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {

@@ -69,8 +69,8 @@ pub struct View3dInput<'a> {
     pub lidar: Option<&'a Arc<LidarSweep>>,
     /// The user drags something, anywhere.
     pub dragging: bool,
-    /// Voxels that are marked.
-    pub marked: &'a [[usize; 3]],
+    /// Voxels that are marked, by colour.
+    pub marked: &'a [BrushCells<'a>],
 }
 
 /// Voxels that are marked at most; more would only hide each other.
@@ -321,17 +321,18 @@ impl View3d {
         let size = self.size_px();
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar_colors);
-        let (mut cells, mut brush_color) = self.brush_cells(input, state, pointer, hit);
-        if cells.is_empty() && !input.marked.is_empty() {
-            cells = input.marked[..input.marked.len().min(MARKED)].to_vec();
-            brush_color = [240, 180, 60];
-        }
+        let (cells, color) = self.brush_cells(input, state, pointer, hit);
         let meant = state.meant.as_deref();
-        if let (true, Some(meant)) = (cells.is_empty() || !input.marked.is_empty(), meant)
-            && !meant.cells.is_empty()
-        {
-            cells = meant.cells[..meant.cells.len().min(MARKED)].to_vec();
-            brush_color = super::meant::COLOR;
+        let mut brush = vec![BrushCells { cells: &cells, color }];
+        if cells.is_empty() {
+            brush.extend_from_slice(input.marked);
+        }
+        if let Some(meant) = meant {
+            let (cells, color) = (&meant.cells[..], super::meant::COLOR);
+            brush.push(BrushCells { cells, color });
+        }
+        for part in &mut brush {
+            part.cells = &part.cells[..part.cells.len().min(MARKED)];
         }
         let ghost = self.ghost(input.scene, state, pointer, hit);
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
@@ -360,10 +361,7 @@ impl View3d {
             boxes: &boxes,
             selected: &selected,
             hovered,
-            brush: (!cells.is_empty()).then_some(BrushCells {
-                cells: &cells,
-                color: brush_color,
-            }),
+            brush: &brush,
             lidar,
             rig: &input.scene.rig,
             options: &options,
@@ -478,7 +476,7 @@ impl View3d {
             boxes: &boxes,
             selected: &[],
             hovered: None,
-            brush: None,
+            brush: &[],
             lidar,
             rig: &scene.rig,
             options: &options,
