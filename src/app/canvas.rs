@@ -24,7 +24,6 @@ use super::live::Bounds;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
-use super::tools::PaintShape;
 
 /// From the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -336,7 +335,7 @@ impl Canvas {
         };
         match (state.tool, &self.gesture) {
             (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_))
-                if draws_a_line(state) =>
+                if state.tools.shape.has_width() =>
             {
                 let erase = match &self.gesture {
                     Gesture::Stroke { erase, .. } => *erase,
@@ -371,11 +370,6 @@ impl Canvas {
             _ => {}
         }
     }
-}
-
-/// True if the brush has a width.
-fn draws_a_line(state: &UiState) -> bool {
-    matches!(state.tools.shape, PaintShape::Stroke | PaintShape::Line)
 }
 
 fn texture<K: PartialEq>(

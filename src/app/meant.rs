@@ -8,8 +8,8 @@ use super::canvas::ScreenMap;
 use crate::editor::checks::Finding;
 use crate::scene::{BoxId, Frame, GridSpec};
 
-/// Of the marks, in both views.
-pub(super) const COLOR: [u8; 3] = [255, 150, 30];
+/// Of the marks, in both views: no class and no layer has it.
+pub(super) const COLOR: [u8; 3] = [255, 70, 255];
 /// A mark smaller than this would be overlooked, points.
 const LEAST: f32 = 9.0;
 

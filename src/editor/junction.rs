@@ -15,7 +15,9 @@ const STEP_M: f64 = 0.1;
 /// The columns `[x, y]` among `band` that are road already, of a road that runs another way than the line `middle_m`.
 pub(super) fn crossed(layout: &BevLayout, middle_m: &[DVec2], band: &[[usize; 2]]) -> Vec<[usize; 2]> {
     let mut cells = band.to_vec();
-    cells.retain(|[x, y]| layout.has(BevLayer::DrivableArea, *x, *y));
+    // Parking strips belong to the street that they line.
+    let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+    cells.retain(|[x, y]| layout.cell(*x, *y) & road != 0);
     if cells.is_empty() {
         return cells;
     }

@@ -66,10 +66,14 @@ impl LaneStrip {
             cells.retain(|[x, y]| layout.has(layer, *x, *y));
             (layer, cells, false)
         };
-        // Cars drive where people walked.
+        let carriageway = band(half_m, -half_m);
+        let mut parked = carriageway.clone();
+        parked.retain(|[x, y]| layout.has(BevLayer::CarparkArea, *x, *y));
+        // Cars drive where people walked, or parked.
         let mut areas = vec![
-            (BevLayer::Walkway, band(half_m, -half_m), false),
-            (BevLayer::DrivableArea, band(half_m, -half_m), true),
+            (BevLayer::Walkway, carriageway.clone(), false),
+            (BevLayer::CarparkArea, parked, false),
+            (BevLayer::DrivableArea, carriageway, true),
         ];
         if walk_m > 0.0 {
             for (from_m, to_m) in [(half_m + walk_m, half_m), (-half_m, -half_m - walk_m)] {

@@ -175,7 +175,15 @@ fn row(
                     let name = format!("{}: {}", theme::sentence(finding.severity.name()), finding.text);
                     WidgetInfo::selected(Role::Button, true, chosen, name)
                 });
-                if response.on_hover_text(&finding.text).clicked() {
+                // Read already where it fits.
+                let cut = response
+                    .intrinsic_size()
+                    .is_some_and(|s| s.x > response.rect.width() + 1.0);
+                let response = match cut {
+                    true => response.on_hover_text(&finding.text),
+                    false => response,
+                };
+                if response.clicked() {
                     if finding.box_id.is_some() {
                         commands.push(Command::Select(finding.box_id));
                     }

@@ -58,7 +58,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
 }
 
 /// What the list of boxes keeps, its title included, however tall the inspector is; and the inspector, points.
-const LEAST_LIST: f32 = 150.0;
+const LEAST_LIST: f32 = 118.0;
 const LEAST_INSPECTOR: f32 = 60.0;
 
 /// How high the user wants the list to be; none: what the inspector leaves.
@@ -68,6 +68,7 @@ fn list_height_id() -> egui::Id {
 
 /// The title of the list; dragged, it parts the room between inspector and list, and a double click lets go of that.
 fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
+    ui.add_space(theme::GAP / 2.0);
     let top = ui.cursor().top();
     ui.add_space(2.0);
     section(ui, title);
