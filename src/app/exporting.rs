@@ -137,7 +137,7 @@ impl SceneloomApp {
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(_) if cancelled => {
-                let text = "Export cancelled: what was not ready was not written".to_owned();
+                let text = "Export cancelled: nothing was written".to_owned();
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(error) => {

@@ -136,6 +136,7 @@ fn versions_are_compared_and_gone_back_to() {
     assert!(bench.frame().occupancy == opened);
     // A click compares, in the wipe.
     bench.app().state.compare = CompareMode::Off;
+    bench.click("Versions");
     bench.click("As opened");
     assert_eq!(bench.app().state.compare, CompareMode::Wipe);
 }
