@@ -80,7 +80,7 @@ impl Dock {
                 let (bev, view, strip) = (
                     t.insert_pane(Pane::Bev),
                     t.insert_pane(Pane::View3d),
-                    t.insert_pane(Pane::Camera(0)),
+                    t.insert_pane(Pane::Camera(1)), // of the rigs that ship: to the front
                 );
                 let side = join(&mut t, Vertical, &[(view, 1.0), (strip, 1.0)]);
                 let center = join(&mut t, Horizontal, &[(bev, 2.0), (side, 1.0)]);
@@ -102,8 +102,8 @@ impl Dock {
                     .to_vec();
                 let sweep = t.insert_pane(Pane::Lidar);
                 let views = row(&mut t, Vertical, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
-                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.55)]);
-                join(&mut t, Horizontal, &[(cameras, 1.5), (views, 1.0)])
+                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.8)]);
+                join(&mut t, Horizontal, &[(cameras, 2.0), (views, 1.0)])
             }
             Workspace::Trade => {
                 let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);

@@ -110,6 +110,8 @@ fn variants_and_what_memory_goes_by_are_pictures() {
     bench.wait_until("the enlarged variant", |b| {
         let at = b.harness.get_by_label("Variant of seed 0").rect().center();
         b.harness.hover_at(at);
+        // It shows when the pointer rests.
+        b.steps(60);
         b.harness.query_by_label(says).is_some()
     });
 }

@@ -85,12 +85,13 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
     }
     ui.painter()
         .hline(line.x_range(), line.top(), egui::Stroke::new(1.0, color));
-    if response.drag_started() {
-        // From what is shown, which may be more than was wanted.
-        let shown = ui.max_rect().bottom() - line.top();
-        ui.data_mut(|d| d.insert_temp(list_height_id(), shown.clamp(LEAST_LIST, most)));
-    } else if response.dragged() {
-        let wanted = height - response.drag_delta().y;
+    if response.dragged() {
+        // At first from what is shown, which may be more than was wanted.
+        let from = match response.drag_started() {
+            true => ui.max_rect().bottom() - line.top(),
+            false => height,
+        };
+        let wanted = from - response.drag_delta().y;
         ui.data_mut(|d| d.insert_temp(list_height_id(), wanted.clamp(LEAST_LIST, most)));
     }
     if response.double_clicked() {
@@ -233,7 +234,9 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
                 .speed(0.5)
                 .fixed_decimals(1)
                 .suffix("°");
-            ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading")
+            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading");
+            speed(ui, b);
+            drag
         })
         .inner;
     let id = b.id;
@@ -246,21 +249,18 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
     field(&position, "Move box", edit(Some(center), None, None), commands);
     field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
     field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
-    speed(ui, b);
 }
 
+/// What cannot be set: how fast it is, and its number.
 fn speed(ui: &mut Ui, b: &SceneBox) {
-    ui.horizontal(|ui| {
-        caption(ui, "Speed");
-        let kmh = b.velocity_mps.length() * 3.6;
-        let text = if kmh < 0.5 {
-            "standing".to_owned()
-        } else {
-            format!("{kmh:.0} km/h")
-        };
-        ui.label(text);
-        ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::text_weak()));
-    });
+    let kmh = b.velocity_mps.length() * 3.6;
+    let text = if kmh < 0.5 {
+        "standing".to_owned()
+    } else {
+        format!("{kmh:.0} km/h")
+    };
+    ui.label(text).on_hover_text("Speed over ground");
+    ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
 }
 
 /// The box as it was when it was chosen: what shifts along its own axes are counted from.
