@@ -20,9 +20,10 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
     let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
     let below = wanted.unwrap_or(LEAST_LIST).clamp(LEAST_LIST, most);
+    let gap = theme::GAP / 2.0 + ui.spacing().item_spacing.y;
     egui::ScrollArea::vertical()
         .id_salt("inspector")
-        .max_height((room - below).max(LEAST_INSPECTOR))
+        .max_height((room - below - gap).max(LEAST_INSPECTOR))
         .auto_shrink([false, wanted.is_none()])
         .show(ui, |ui| {
             inferred(ui, frame, state, commands);
