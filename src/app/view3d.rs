@@ -74,7 +74,7 @@ pub struct View3dInput<'a> {
 }
 
 /// Voxels that are marked at most; more would only hide each other.
-const MARKED: usize = 20_000;
+const MARKED: usize = 40_000;
 
 /// The pointer over the view.
 #[derive(Clone, Copy, Debug)]
