@@ -46,7 +46,7 @@ fn main() {
                 boxes: &boxes,
                 selected: &[],
                 hovered: None,
-                brush: None,
+                brush: &[],
                 lidar: Some(LidarView {
                     sweep: &sweep,
                     colors: &colors,
@@ -144,7 +144,7 @@ fn main() {
                 boxes: &boxes,
                 selected: &[car.id],
                 hovered: None,
-                brush: None,
+                brush: &[],
                 lidar: Some(LidarView {
                     sweep: &sweep,
                     colors: &colors,

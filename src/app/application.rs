@@ -31,7 +31,6 @@ use super::keys::Hands;
 use super::live::{Advice, Bounds, Live, Purpose};
 use super::panels::box_views::BoxViewsPane;
 use super::panels::cameras::{CameraStrip, CamerasInput};
-use super::panels::checks::{ChecksInput, checks_window};
 use super::panels::dialogs::{self, Unsaved};
 use super::panels::lidar_sweep::SweepPane;
 use super::panels::palette::Palette;
@@ -256,6 +255,7 @@ impl SceneloomApp {
                 .dock
                 .clone()
                 .and_then(Dock::from_kept)
+                .map(|dock| dock.with_new_panes(&settings.panes_known))
                 .unwrap_or_else(|| Dock::workspace(settings.workspace)),
             keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
             palette: Palette::default(),
@@ -361,6 +361,7 @@ impl SceneloomApp {
     fn write_settings(&mut self, ctx: &egui::Context) {
         self.settings.ui_scale = ctx.zoom_factor();
         self.settings.dock = Some(self.dock.tree().clone());
+        self.settings.panes_known = Pane::CHOICES.to_vec();
         self.settings.key_preset.clone_from(&self.keymap.preset);
         self.settings.keys.clone_from(&self.keymap.own);
         let now_s = self.now_s();
@@ -587,16 +588,16 @@ impl SceneloomApp {
         self.take_window_events(ui.ctx(), &mut commands);
         self.prepare_compare(ui);
         let scene = self.shown_scene();
-        self.bars(ui, &scene, &mut commands);
-        self.views(ui, &scene, &mut commands);
+        // What a dialog covers answers nothing, and keeps no tooltip open over it.
+        let mut below = ui.new_child(egui::UiBuilder::new().max_rect(ui.max_rect()));
+        if self.has_dialog() {
+            below.visuals_mut().disabled_alpha = 1.0;
+            below.disable();
+        }
+        self.bars(&mut below, &scene, &mut commands);
+        self.views(&mut below, &scene, &mut commands);
         // Asked before: the key that closes a dialog is no shortcut.
-        let dialog = self.unsaved.is_some()
-            || self.dialogs.is_open()
-            || self.state.keys_open
-            || self.state.start_open
-            || self.palette.open
-            || self.asks_to_recover()
-            || self.state.tools.row_open;
+        let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
         if !dialog && !self.state.holding_before {
@@ -618,6 +619,17 @@ impl SceneloomApp {
         if any && !at_once || self.passes < 3 {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// True while a dialog lies over everything.
+    fn has_dialog(&self) -> bool {
+        self.unsaved.is_some()
+            || self.dialogs.is_open()
+            || self.state.keys_open
+            || self.state.start_open
+            || self.palette.open
+            || self.asks_to_recover()
+            || self.state.tools.row_open
     }
 
     fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
@@ -642,6 +654,11 @@ impl SceneloomApp {
             bookmarks: self.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
+            shown: Pane::CHOICES
+                .into_iter()
+                .filter(|p| self.dock.is_shown(*p))
+                .collect(),
+            cameras: scene.rig.cameras.len(),
             stops: self.tuning.foretold(),
             stop: self.tuning.current(&self.live.params),
         };
@@ -687,6 +704,10 @@ impl SceneloomApp {
         self.state.hovered_pane = None;
         self.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
+        // What nobody lists is not pointed at.
+        if !self.dock.is_shown(Pane::Checks) {
+            self.state.meant = None;
+        }
         self.live.named = self.state.named;
     }
 
@@ -707,15 +728,6 @@ impl SceneloomApp {
             .show(ui, &mut self.keymap, &mut self.state.keys_open);
         settings_ui(ui, &mut self.settings, &mut self.state.settings_open);
         start_ui(ui, &mut self.settings, &mut self.state.start_open, commands);
-        if self.state.checks_open {
-            let input = ChecksInput {
-                findings: self.checking.findings().map(|f| f.as_slice()),
-                stale: self.checking.is_stale(self.document.settled_scene().rev),
-                selected: self.state.selected,
-                frame: self.document.settled_scene().frame(),
-            };
-            checks_window(ui, &input, &mut self.state.checks_open, commands);
-        }
         // Over the 3D view, where it hides no list.
         let over = match self.view3d.rect.is_positive() {
             true => self.view3d.rect,

@@ -24,7 +24,6 @@ use super::live::Bounds;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
-use super::tools::PaintShape;
 
 /// From the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -297,6 +296,10 @@ impl Canvas {
             draw_boxes(ui, map, response, input.scene, state);
         }
         draw_unsettled(ui, map, input);
+        if let Some(meant) = &state.meant {
+            let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
+            meant.draw(&inside, map, scene.frame());
+        }
         self.draw_tool(ui, response, map, scene, state);
         draw_scale_bar(ui, map);
         super::tools::bev_draw::draw(ui, response, map, scene, state, &self.gesture);
@@ -332,7 +335,7 @@ impl Canvas {
         };
         match (state.tool, &self.gesture) {
             (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_))
-                if draws_a_line(state) =>
+                if state.tools.shape.has_width() =>
             {
                 let erase = match &self.gesture {
                     Gesture::Stroke { erase, .. } => *erase,
@@ -367,11 +370,6 @@ impl Canvas {
             _ => {}
         }
     }
-}
-
-/// True if the brush has a width.
-fn draws_a_line(state: &UiState) -> bool {
-    matches!(state.tools.shape, PaintShape::Stroke | PaintShape::Line)
 }
 
 fn texture<K: PartialEq>(

@@ -133,6 +133,8 @@ pub enum Command {
     SwapPanes,
     /// Brings a pane to the front, or opens it.
     ShowPane(Pane),
+    /// Brings a pane into sight, or takes it off the screen.
+    TogglePane(Pane),
     /// Shows the pane under the pointer alone, or all of them again.
     MaximizePane,
     /// Arranges the panes for one kind of work.

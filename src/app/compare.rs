@@ -15,6 +15,7 @@ use super::panels::lidar_sweep::SweepPane;
 use super::sensing::Sensing;
 use super::theme;
 use super::view3d::View3d;
+use crate::viewport::BrushCells;
 
 /// How two states are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -49,15 +50,16 @@ impl CompareMode {
 /// What differs between two grids.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Voxels that are there and were not.
-    pub added: usize,
+    /// Voxels that are there and were not, `[x, y, z]`.
+    pub added: Vec<[usize; 3]>,
     /// Voxels that were there and are not.
-    pub removed: usize,
+    pub removed: Vec<[usize; 3]>,
     /// Voxels of another class.
-    pub changed: usize,
-    /// All of them, `[x, y, z]`.
-    pub cells: Vec<[usize; 3]>,
+    pub changed: Vec<[usize; 3]>,
 }
+
+/// Colours of voxels that came, went, and are of another class.
+pub(super) const DIFFERENCE_COLORS: [[u8; 3]; 3] = [[70, 205, 110], [235, 70, 60], [240, 180, 60]];
 
 impl Difference {
     /// Between two grids; columns that share their memory are passed over.
@@ -71,30 +73,38 @@ impl Difference {
                 }
                 for z in (0..GridSpec::NZ).filter(|z| a[*z] != b[*z]) {
                     let free = crate::scene::Class::FREE;
-                    match (a[z] == free, b[z] == free) {
-                        (true, _) => out.added += 1,
-                        (_, true) => out.removed += 1,
-                        _ => out.changed += 1,
-                    }
-                    out.cells.push([x, y, z]);
+                    let of_kind = match (a[z] == free, b[z] == free) {
+                        (true, _) => &mut out.added,
+                        (_, true) => &mut out.removed,
+                        _ => &mut out.changed,
+                    };
+                    of_kind.push([x, y, z]);
                 }
             }
         }
         out
     }
 
-    /// In one line.
-    pub fn text(&self) -> String {
-        match self.cells.len() {
-            0 => "no voxel differs".into(),
-            _ => format!(
-                "{} voxels differ: {} added, {} removed, {} of another class",
-                self.cells.len(),
-                self.added,
-                self.removed,
-                self.changed
-            ),
-        }
+    /// What each colour means, and how many there are of it; nothing that is not there.
+    pub(super) fn legend(&self) -> Vec<(Color32, String)> {
+        let names = ["added", "removed", "of another class"];
+        let lists = [&self.added, &self.removed, &self.changed];
+        let parts = DIFFERENCE_COLORS.iter().zip(lists).zip(names);
+        parts
+            .filter(|((_, list), _)| !list.is_empty())
+            .map(|(([r, g, b], list), name)| {
+                (Color32::from_rgb(*r, *g, *b), format!("{} {name}", list.len()))
+            })
+            .collect()
+    }
+
+    /// The same for a picture of the voxels in space.
+    pub(super) fn marked(&self) -> [BrushCells<'_>; 3] {
+        let lists = [&self.added, &self.removed, &self.changed];
+        std::array::from_fn(|i| BrushCells {
+            cells: lists[i],
+            color: DIFFERENCE_COLORS[i],
+        })
     }
 
     /// From above: green where something came, red where something went, amber where only classes changed.
@@ -104,15 +114,17 @@ impl Difference {
             let (x, y) = column_of(i);
             let (a, b) = (before.column(x, y), after.column(x, y));
             let any = |f: &dyn Fn(u8, u8) -> bool| a.iter().zip(b).any(|(a, b)| a != b && f(*a, *b));
-            if any(&|a, b| a != free && b == free) {
-                Color32::from_rgba_unmultiplied(235, 70, 60, 200)
+            let kind = if any(&|a, b| a != free && b == free) {
+                1
             } else if any(&|a, _| a == free) {
-                Color32::from_rgba_unmultiplied(70, 205, 110, 200)
+                0
             } else if any(&|_, _| true) {
-                Color32::from_rgba_unmultiplied(240, 180, 60, 200)
+                2
             } else {
-                Color32::TRANSPARENT
-            }
+                return Color32::TRANSPARENT;
+            };
+            let [r, g, b] = DIFFERENCE_COLORS[kind];
+            Color32::from_rgba_unmultiplied(r, g, b, 200)
         };
         ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
     }
@@ -205,6 +217,36 @@ pub(super) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
     tag(ui, rect.right_top() + vec2(-8.0, 8.0), "after", true);
 }
 
+/// What the colours of a view mean, in its upper left corner.
+pub(super) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
+    const SWATCH: f32 = 10.0;
+    if entries.is_empty() {
+        return tag(ui, at, "no voxel differs", false);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter();
+    let galleys: Vec<_> = entries
+        .iter()
+        .map(|(_, text)| painter.layout_no_wrap(text.clone(), font.clone(), theme::ON_CANVAS))
+        .collect();
+    let width: f32 = galleys.iter().map(|g| g.size().x + SWATCH + 16.0).sum();
+    let height = galleys.iter().map(|g| g.size().y).fold(SWATCH, f32::max) + 6.0;
+    let rect = Rect::from_min_size(at, vec2(width + 4.0, height));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
+    let mut x = rect.left() + 8.0;
+    for (galley, (color, text)) in galleys.into_iter().zip(entries) {
+        let swatch = Rect::from_center_size(pos2(x + SWATCH / 2.0, rect.center().y), vec2(SWATCH, SWATCH));
+        painter.rect_filled(swatch, 2.0, *color);
+        let size = galley.size();
+        let left = pos2(swatch.right() + 5.0, rect.center().y - size.y / 2.0);
+        painter.galley(left, galley, theme::ON_CANVAS);
+        let entry = Rect::from_min_max(pos2(x, rect.top()), pos2(left.x + size.x, rect.bottom()));
+        let response = ui.interact(entry, ui.scope_id().with(text), Sense::hover());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
+        x = left.x + size.x + 12.0;
+    }
+}
+
 /// A word in a corner of a view.
 pub(super) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
     let font = egui::TextStyle::Small.resolve(ui.style());
@@ -236,9 +278,21 @@ mod tests {
         after.set(4, 5, 6, Class::Bus.id());
         after.set(7, 8, 9, Class::Bus.id());
         let found = Difference::between(&before, &after);
-        assert_eq!((found.added, found.removed, found.changed), (1, 1, 1));
-        assert_eq!(found.cells, [[1, 2, 3], [4, 5, 6], [7, 8, 9]]);
-        assert!(found.text().starts_with("3 voxels differ"));
+        assert_eq!(
+            (&found.added[..], &found.removed[..]),
+            (&[[7, 8, 9]][..], &[[1, 2, 3]][..])
+        );
+        assert_eq!(found.changed, [[4, 5, 6]]);
+        let legend: Vec<String> = found.legend().into_iter().map(|(_, text)| text).collect();
+        assert_eq!(legend, ["1 added", "1 removed", "1 of another class"]);
+        // A column's colour is that of its voxels in space.
+        let image = Difference::image(&before, &after);
+        let drawn = |color: [u8; 3]| {
+            let [r, g, b] = color;
+            let color = Color32::from_rgba_unmultiplied(r, g, b, 200);
+            image.pixels.iter().filter(|p| **p == color).count()
+        };
+        assert_eq!(DIFFERENCE_COLORS.map(drawn), [1, 1, 1]);
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl Dock {
                 let (bev, view, strip) = (
                     t.insert_pane(Pane::Bev),
                     t.insert_pane(Pane::View3d),
-                    t.insert_pane(Pane::Camera(0)),
+                    t.insert_pane(Pane::Camera(1)), // of the rigs that ship: to the front
                 );
                 let side = join(&mut t, Vertical, &[(view, 1.0), (strip, 1.0)]);
                 let center = join(&mut t, Horizontal, &[(bev, 2.0), (side, 1.0)]);
@@ -102,8 +102,8 @@ impl Dock {
                     .to_vec();
                 let sweep = t.insert_pane(Pane::Lidar);
                 let views = row(&mut t, Vertical, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
-                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.55)]);
-                join(&mut t, Horizontal, &[(cameras, 1.5), (views, 1.0)])
+                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.8)]);
+                join(&mut t, Horizontal, &[(cameras, 2.0), (views, 1.0)])
             }
             Workspace::Trade => {
                 let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
@@ -294,12 +294,20 @@ impl Dock {
         }
     }
 
-    /// Brings a pane to the front, or opens it below the largest view.
+    /// Brings a pane to the front, or opens it: a panel in the column of its like, a list of findings below the views, all
+    /// else below the largest view.
     pub fn open(&mut self, pane: Pane) {
         self.maximized = None;
         if self.find(pane).is_some() {
             self.tree
                 .make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));
+            return;
+        }
+        let opened = match pane {
+            Pane::Checks => self.open_below_views(pane),
+            _ => SIDE.contains(&pane) && self.open_in_column(pane),
+        };
+        if opened {
             return;
         }
         let beside = [Pane::View3d, Pane::Bev, Pane::Cameras]
@@ -308,6 +316,86 @@ impl Dock {
         if let Some(tile) = beside.or_else(|| self.all().next().map(|(id, _)| id)) {
             self.split(tile, Split::Down, pane);
         }
+    }
+
+    /// Brings a pane into sight, or takes it off the screen if it is in sight.
+    pub fn toggle(&mut self, pane: Pane) {
+        match self.find(pane).filter(|_| self.is_shown(pane)) {
+            Some(tile) => self.close(tile),
+            None => self.open(pane),
+        }
+    }
+
+    /// Adds the panels that there were not yet when this dock was kept, if it has the column for them: an arrangement of
+    /// views alone stays one.
+    pub fn with_new_panes(mut self, known: &[Pane]) -> Self {
+        // Docks of the first versions do not say what they knew.
+        let known = if known.is_empty() { &FIRST } else { known };
+        for pane in SIDE.into_iter().filter(|p| !known.contains(p)) {
+            if self.find(pane).is_none() {
+                self.open_in_column(pane);
+            }
+        }
+        self
+    }
+
+    /// In a column that holds panels of the right side already.
+    fn open_in_column(&mut self, pane: Pane) -> bool {
+        let of_column = |p: &Pane| self.find(*p).and_then(|id| self.vertical_over(id));
+        let Some((column, beside)) = SIDE.iter().rev().find_map(of_column) else {
+            return false;
+        };
+        self.insert_after(column, beside, pane, 0.22);
+        true
+    }
+
+    /// Under the row of large views, so that it hides nothing of what it speaks of.
+    fn open_below_views(&mut self, pane: Pane) -> bool {
+        let of_views = |p: &Pane| self.find(*p).and_then(|id| self.vertical_over(id));
+        let Some((column, views)) = [Pane::Bev, Pane::View3d].iter().find_map(of_views) else {
+            return false;
+        };
+        self.insert_after(column, views, pane, 0.24);
+        true
+    }
+
+    /// The nearest container above a tile that stands its children one over the other, and which of them holds the tile.
+    fn vertical_over(&self, tile: TileId) -> Option<(TileId, TileId)> {
+        let mut child = tile;
+        while let Some(parent) = self.tree.tiles.parent_of(child) {
+            if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get(parent)
+                && linear.dir == LinearDir::Vertical
+            {
+                return Some((parent, child));
+            }
+            child = parent;
+        }
+        None
+    }
+
+    /// Puts a pane under another child of a column, with that share of its height.
+    fn insert_after(&mut self, column: TileId, child: TileId, pane: Pane, share: f32) {
+        let new = self.tree.tiles.insert_pane(pane);
+        let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(column) else {
+            return;
+        };
+        let at = linear
+            .children
+            .iter()
+            .position(|c| *c == child)
+            .map_or(0, |i| i + 1);
+        let all: f32 = linear.children.iter().map(|c| linear.shares[*c]).sum();
+        linear.children.insert(at, new);
+        linear.shares.set_share(new, all * share / (1.0 - share));
+    }
+
+    /// Tiles behind or among tabs: their names stand on the tabs.
+    pub(super) fn tabbed(&self) -> HashSet<TileId> {
+        let tabs = self.tree.tiles.tiles().filter_map(|tile| match tile {
+            Tile::Container(Container::Tabs(tabs)) => Some(tabs.children.iter().copied()),
+            _ => None,
+        });
+        tabs.flatten().collect()
     }
 
     /// Shows a tile alone, or all of them again.
@@ -337,16 +425,23 @@ fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> Til
 /// Tools on the left and objects on the right of what stands in the middle.
 fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     let tools = tiles.insert_pane(Pane::Tools);
-    let column = [
-        (Pane::Objects, 1.7),
-        (Pane::Prompt, 1.65),
-        (Pane::History, 0.75),
-        (Pane::Versions, 0.9),
-    ];
-    let column = row(tiles, LinearDir::Vertical, &column);
+    let (objects, prompt) = (tiles.insert_pane(Pane::Objects), tiles.insert_pane(Pane::Prompt));
+    // One of the two at a time: the objects and the prompt need the height.
+    let past = [Pane::History, Pane::Versions].map(|pane| tiles.insert_pane(pane));
+    let past = tiles.insert_tab_tile(past.to_vec());
+    let column = join(
+        tiles,
+        LinearDir::Vertical,
+        &[(objects, 2.1), (prompt, 1.75), (past, 0.85)],
+    );
     let parts = [(tools, 232.0), (center, 1100.0), (column, 268.0)];
     join(tiles, LinearDir::Horizontal, &parts)
 }
+
+/// Panels that stand in a column of their own.
+const SIDE: [Pane; 4] = [Pane::Objects, Pane::Prompt, Pane::History, Pane::Versions];
+/// Those of them that there always were.
+const FIRST: [Pane; 3] = [Pane::Objects, Pane::Prompt, Pane::Versions];
 
 /// True if every tile is reached from the root once at most, and every child is there.
 fn is_tree(tree: &Tree<Pane>) -> bool {

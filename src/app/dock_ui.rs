@@ -1,5 +1,6 @@
 //! Draws the dock: each pane with a header that names it, moves it, divides it and puts another in its place.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use egui::{Sense, Ui, WidgetText, vec2};
@@ -34,6 +35,7 @@ pub(super) struct Panes<'a> {
     pub commands: &'a mut Vec<Command>,
     pub actions: Vec<DockAction>,
     pub maximized: bool,
+    pub tabbed: HashSet<TileId>,
 }
 
 impl Behavior<Pane> for Panes<'_> {
@@ -41,7 +43,9 @@ impl Behavior<Pane> for Panes<'_> {
         let rect = ui.max_rect();
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
         ui.spacing_mut().item_spacing.y = 0.0;
-        let dragged = self.header(ui, tile, *pane);
+        // The tab names it already, and its bar holds what the header would.
+        let on_a_tab = !self.maximized && self.tabbed.contains(&tile);
+        let dragged = !on_a_tab && self.header(ui, tile, *pane);
         ui.spacing_mut().item_spacing.y = 4.0;
         self.app.pane(ui, *pane, self.scene, self.commands);
         if dragged {
@@ -55,12 +59,29 @@ impl Behavior<Pane> for Panes<'_> {
         title(*pane, self.scene).into()
     }
 
-    fn is_tab_closable(&self, _tiles: &Tiles<Pane>, _tile: TileId) -> bool {
-        true
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<Pane>,
+        ui: &mut Ui,
+        _tile: TileId,
+        tabs: &egui_tiles::Tabs,
+        _scroll: &mut f32,
+    ) {
+        let active = tabs.active.and_then(|tile| Some((tile, *tiles.get_pane(&tile)?)));
+        if let Some((tile, pane)) = active {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.add_space(4.0);
+            self.menu(ui, tile, pane, "");
+            self.app.pane_controls(ui, pane, self.scene, self.commands);
+        }
+    }
+
+    fn tab_title_spacing(&self, _visuals: &egui::Visuals) -> f32 {
+        10.0
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
-        26.0
+        HEADER
     }
 
     fn gap_width(&self, _style: &egui::Style) -> f32 {
@@ -87,7 +108,8 @@ impl Panes<'_> {
                 ui.set_clip_rect(ui.clip_rect().intersect(rect));
                 ui.horizontal_centered(|ui| {
                     ui.spacing_mut().item_spacing.x = 4.0;
-                    self.menu(ui, tile, pane);
+                    let title = title(pane, self.scene);
+                    self.menu(ui, tile, pane, &title);
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                         self.app.pane_controls(ui, pane, self.scene, self.commands);
                     });
@@ -100,8 +122,8 @@ impl Panes<'_> {
         response.drag_started() && !self.maximized
     }
 
-    fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: Pane) {
-        let text = egui::RichText::new(format!("{}     ", title(pane, self.scene))).color(theme::text());
+    fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: Pane, name: &str) {
+        let text = egui::RichText::new(format!("{name}     ")).color(theme::text());
         let button = egui::Button::new(text).fill(egui::Color32::TRANSPARENT);
         let (opened, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_min_width(190.0);
@@ -129,6 +151,10 @@ impl Panes<'_> {
                 }
             }
         });
+        if name.is_empty() {
+            let label = format!("Menu of {}", title(pane, self.scene));
+            opened.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
+        }
         // The fonts have no small triangle.
         let tip = opened.rect.right_center() + vec2(-13.0, 2.5);
         let points = vec![tip, tip + vec2(-4.0, -5.0), tip + vec2(4.0, -5.0)];
@@ -163,6 +189,7 @@ impl SceneloomApp {
             commands,
             actions: Vec::new(),
             maximized: maximized.is_some(),
+            tabbed: dock.tabbed(),
         };
         match maximized.and_then(|tile| Some((tile, *dock.tree.tiles.get_pane(&tile)?))) {
             Some((tile, mut pane)) => drop(panes.pane_ui(ui, tile, &mut pane)),

@@ -142,12 +142,13 @@ impl SceneloomApp {
             Command::ToggleExport => self.toggle_export(),
             Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             Command::FixAll => self.fix_all(ctx),
-            Command::ToggleChecks => self.state.checks_open = !self.state.checks_open,
+            Command::ToggleChecks => self.dock.toggle(Pane::Checks),
             Command::View(preset) => self.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
             Command::SwapPanes => self.dock.swap(Pane::Bev, Pane::View3d),
             Command::ShowPane(pane) => self.dock.open(pane),
+            Command::TogglePane(pane) => self.dock.toggle(pane),
             Command::Quality(stop) => self.set_quality(stop),
             Command::Calibrate => {
                 let ctx = ctx.clone();

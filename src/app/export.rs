@@ -135,6 +135,14 @@ pub struct ExportProgress {
 }
 
 impl ExportProgress {
+    /// Begins to count what these formats take.
+    fn begin(&self, formats: &[Format], rig: &SensorRig) {
+        let of_cameras = |f: &&Format| matches!(f, Format::Semantic | Format::Depth | Format::Pictures);
+        let pictures = formats.iter().filter(of_cameras).count() * rig.cameras.len();
+        self.done.store(0, Ordering::Relaxed);
+        self.of.store(pictures, Ordering::Relaxed);
+    }
+
     /// Asks the export to stop; it does before its next picture, and writes nothing.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
@@ -167,15 +175,14 @@ impl ExportProgress {
         if rig.cameras.is_empty() {
             bail!("the rig {:?} has no camera", rig.name);
         }
-        self.of.store(rig.cameras.len(), Ordering::Relaxed);
         let mut all = Vec::new();
-        for (done, camera) in rig.cameras.iter().enumerate() {
-            self.done.store(done, Ordering::Relaxed);
+        for camera in &rig.cameras {
             self.go_on()?;
             all.extend(make(&SensorRig {
                 cameras: vec![camera.clone()],
                 ..rig.clone()
             })?);
+            self.done.fetch_add(1, Ordering::Relaxed);
         }
         Ok(all)
     }
@@ -203,8 +210,10 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
         })
 }
 
-/// Writes the current frame in several formats: one to `path` as [`export`] does, more into the folder `path`, each as a
-/// whole.
+/// Writes the current frame. One format goes to `path`: the file, or a folder for the format's usual name; formats that
+/// fill a folder make it. More go into the folder `path`. Returns the files and their sizes in bytes. Errors in one line;
+/// each file is written whole or not at all, and none before all are ready: an export that is cancelled leaves nothing
+/// behind.
 pub fn export_all(
     scene: &Scene,
     formats: &[Format],
@@ -212,31 +221,28 @@ pub fn export_all(
     path: &Path,
     progress: &ExportProgress,
 ) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    if formats.len() > 1 {
-        std::fs::create_dir_all(path).with_context(|| format!("create {}", path.display()))?;
-    }
-    let mut files = Vec::new();
-    for format in formats {
-        files.extend(export(scene, *format, options, path, progress)?);
-    }
-    Ok(files)
-}
-
-/// Writes the current frame. `path` is the file, or a folder for the format's usual name; formats that fill a folder
-/// make it. Returns the files and their sizes in bytes. Errors in one line; each file is written whole or not at all, and
-/// none before all are ready: an export that is cancelled leaves nothing behind.
-pub fn export(
-    scene: &Scene,
-    format: Format,
-    options: &ExportOptions,
-    path: &Path,
-    progress: &ExportProgress,
-) -> anyhow::Result<Vec<(PathBuf, u64)>> {
     let mut out = Files {
         scene,
         path,
+        fills_a_folder: formats.len() > 1,
         ready: Vec::new(),
     };
+    progress.begin(formats, &scene.rig);
+    for format in formats {
+        make_ready(&mut out, scene, *format, options, progress)?;
+    }
+    progress.go_on()?;
+    out.write()
+}
+
+/// Makes the files of a format.
+fn make_ready(
+    out: &mut Files<'_>,
+    scene: &Scene,
+    format: Format,
+    options: &ExportOptions,
+    progress: &ExportProgress,
+) -> anyhow::Result<()> {
     let frame = scene.frame();
     match format {
         Format::Occ3d => {
@@ -312,20 +318,22 @@ pub fn export(
             out.file(format, bytes);
         }
     }
-    progress.go_on()?;
-    out.write()
+    progress.go_on()
 }
 
 struct Files<'a> {
     scene: &'a Scene,
     path: &'a Path,
+    fills_a_folder: bool,
     ready: Vec<(PathBuf, Vec<u8>)>,
 }
 
 impl Files<'_> {
     /// The one file of a format.
     fn file(&mut self, format: Format, bytes: Vec<u8>) {
-        let is_folder = self.path.is_dir() || self.path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+        let is_folder = self.fills_a_folder
+            || self.path.is_dir()
+            || self.path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
         let path = match format.file_name().filter(|_| is_folder) {
             Some(name) => self.path.join(name),
             None => self.path.to_path_buf(),
@@ -435,5 +443,39 @@ fn label_name(label: u8) -> &'static str {
         19 => "lane_divider",
         OTHERS => "others",
         class => Class::from_id(class).map_or("unknown", Class::name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::open;
+
+    #[test]
+    fn everything_that_is_cancelled_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("out");
+        let scene = open::from_template("straight", 3).expect("a template");
+        let formats: Vec<Format> = Format::ALL.into_iter().filter(|f| *f != Format::View).collect();
+        let progress = ExportProgress::default();
+        let options = ExportOptions {
+            camera_size: [320, 180],
+            ..ExportOptions::default()
+        };
+        let written = std::thread::scope(|threads| {
+            threads.spawn(|| {
+                // The first pictures are ready: of three formats, all counted.
+                while progress.pictures().is_none_or(|(done, _)| done == 0) {
+                    std::thread::yield_now();
+                }
+                progress.cancel();
+            });
+            export_all(&scene, &formats, &options, &path, &progress)
+        });
+        assert!(written.is_err() && !path.exists(), "{written:?}");
+        assert_eq!(
+            progress.pictures().map(|p| p.1),
+            Some(3 * scene.rig.cameras.len())
+        );
     }
 }

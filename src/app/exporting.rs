@@ -68,7 +68,7 @@ impl SceneloomApp {
                 };
                 self.dialogs.ask(purpose, &path, ui.ctx());
             }
-            Some(Asked::Checks) => self.state.checks_open = true,
+            Some(Asked::Checks) => self.dock.open(super::state::Pane::Checks),
             None => {}
         }
         self.exporting.panel = open.then_some(panel);
@@ -137,7 +137,7 @@ impl SceneloomApp {
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(_) if cancelled => {
-                let text = "Export cancelled: what was not ready was not written".to_owned();
+                let text = "Export cancelled: nothing was written".to_owned();
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(error) => {

@@ -28,6 +28,7 @@ mod icons;
 pub mod keymap;
 mod keys;
 pub mod live;
+mod meant;
 mod measuring;
 pub mod memory;
 mod modelled;

@@ -10,8 +10,9 @@ use super::application::{SceneloomApp, cameras_input};
 use super::camera_views::Wanted;
 use super::canvas::CanvasInput;
 use super::command::Command;
-use super::compare::{CompareMode, tag, wipe_line};
+use super::compare::{CompareMode, legend, tag, wipe_line};
 use super::panels::cameras::CamerasInput;
+use super::panels::checks::{ChecksInput, checks_ui};
 use super::panels::history::{history_title, history_ui};
 use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
@@ -85,6 +86,22 @@ impl SceneloomApp {
             }
             Pane::History => {
                 theme::panel_frame().show(ui, |ui| history_ui(ui, &self.document, commands));
+            }
+            Pane::Checks => {
+                let input = ChecksInput {
+                    findings: self.checking.findings().map(|f| f.as_slice()),
+                    stale: self.checking.is_stale(self.document.settled_scene().rev),
+                    selected: self.state.selected,
+                    frame: self.document.settled_scene().frame(),
+                };
+                let meant = theme::panel_frame()
+                    .show(ui, |ui| checks_ui(ui, &input, commands))
+                    .inner;
+                if self.state.meant.as_deref() != meant.as_ref() {
+                    self.state.meant = meant.map(Arc::new);
+                    // The views are drawn before this pane or after it.
+                    ui.ctx().request_repaint();
+                }
             }
             Pane::Objects => {
                 theme::panel_frame().show(ui, |ui| objects_ui(ui, &self.document, &mut self.state, commands));
@@ -182,13 +199,13 @@ impl SceneloomApp {
             }
             CompareMode::Difference => {
                 if let Some((difference, texture)) = self.compare.difference(ui, scene) {
-                    let text = difference.text();
+                    let entries = difference.legend();
                     let far = glam::DVec2::splat(crate::scene::GridSpec::MAX_M[0]);
                     let grid = Rect::from_two_pos(map.to_screen(-far), map.to_screen(far));
                     let unit = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                     let painter = ui.painter_at(area);
                     painter.image(texture, grid, unit, egui::Color32::WHITE);
-                    tag(ui, area.left_top() + egui::vec2(8.0, 8.0), &text, false);
+                    legend(ui, area.left_top() + egui::vec2(8.0, 8.0), &entries);
                 }
             }
         }
@@ -199,19 +216,18 @@ impl SceneloomApp {
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
         let shows_before = self.shows_before(scene);
-        let marked = match mode {
-            CompareMode::Difference => self
-                .compare
-                .difference(ui, scene)
-                .map(|(d, _)| d.cells.as_slice()),
+        let difference = match mode {
+            CompareMode::Difference => self.compare.difference(ui, scene).map(|(d, _)| d),
             _ => None,
         };
+        let entries = difference.map(|d| d.legend());
+        let marked = difference.map(|d| d.marked());
         let input = View3dInput {
             scene,
             settled: self.document.settled_scene(),
             lidar: self.sensing.lidar(),
             dragging: self.document.is_dragging(),
-            marked: marked.unwrap_or_default(),
+            marked: marked.as_ref().map_or(&[], |m| &m[..]),
         };
         let (view, state) = (&mut self.view3d, &mut self.state);
         if shows_before {
@@ -224,6 +240,9 @@ impl SceneloomApp {
         in_rect(ui, rect, |ui| {
             view.show(ui, &input, state, commands);
         });
+        if let Some(entries) = entries {
+            legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
+        }
         let Some(before) = self.compare.before.clone() else {
             return;
         };

@@ -245,7 +245,7 @@ impl View3d {
             boxes: &boxes,
             selected: &[],
             hovered: None,
-            brush: None,
+            brush: &[],
             lidar: options.lidar.then_some(LidarView {
                 sweep: &sweep,
                 colors: &colors,

@@ -12,7 +12,7 @@ use super::memory::{layout_of, own_scenes};
 use crate::generation::model::layout::net::LayoutNet;
 use crate::generation::placement::diffuse::{self, PlacementReport, STEPS};
 use crate::generation::placement::facts::{self, RoadKind};
-use crate::generation::placement::memory::{Memory, Open, RoadRef};
+use crate::generation::placement::memory::{Entry, Memory, Open, RoadRef};
 use crate::generation::text::description::{
     Became, Count, Description, Environment, ObjectSpec, Phrase, TimeOfDay, Weather,
 };
@@ -107,6 +107,9 @@ pub struct Remembered {
     pub filled: Vec<String>,
     /// True if the road is a remembered one.
     pub road: bool,
+    /// The nearest of them, whole.
+    #[serde(skip)]
+    pub nearest: Option<Entry>,
 }
 
 /// How the diffusion went.
@@ -478,9 +481,17 @@ fn fill_in(memory: &Memory, prompt: &str, d: &mut Description, seed: u64) -> Opt
             scenes,
             filled,
             road: false,
+            nearest: proposal.from.first().map(|r| memory.entries()[r.entry].clone()),
         },
         proposal.road,
     ))
+}
+
+/// What memory would put into a description; none without its weights.
+pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Remembered> {
+    let (memory, _) = memory(&How::default()).ok()?;
+    let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed)?;
+    Some(found)
 }
 
 /// Chips for what memory put in.

@@ -41,6 +41,8 @@ pub struct Settings {
     pub quality: String,
     /// Where the panes stand.
     pub dock: Option<Tree<Pane>>,
+    /// Panes that there were when it was kept; what is new since then is added.
+    pub panes_known: Vec<Pane>,
     /// Views that were kept, by number.
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Memory that the history may take, MB.
@@ -61,6 +63,7 @@ impl Default for Settings {
             workspace: Workspace::default(),
             quality: "balanced".into(),
             dock: None,
+            panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             recent: Vec::new(),

@@ -90,11 +90,13 @@ pub enum Pane {
     History,
     /// The quality slider, its measurements, the receipt of the last edit.
     Trade,
+    /// What the quality checks found.
+    Checks,
 }
 
 impl Pane {
     /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 17] = [
+    pub const CHOICES: [Pane; 18] = [
         Pane::Bev,
         Pane::View3d,
         Pane::Cameras,
@@ -106,6 +108,7 @@ impl Pane {
         Pane::Objects,
         Pane::History,
         Pane::Trade,
+        Pane::Checks,
         Pane::Camera(0),
         Pane::Camera(1),
         Pane::Camera(2),
@@ -129,6 +132,7 @@ impl Pane {
             Pane::Objects => "Objects".into(),
             Pane::History => "History".into(),
             Pane::Trade => "Speed and accuracy".into(),
+            Pane::Checks => "Checks".into(),
         }
     }
 }
@@ -253,8 +257,8 @@ pub struct UiState {
     pub holding_before: bool,
     /// Where the line of the wipe stands, 0 to 1.
     pub wipe_at: f32,
-    /// The checks' window is open.
-    pub checks_open: bool,
+    /// What the finding means that is pointed at or chosen among the checks; shown in both large views.
+    pub meant: Option<std::sync::Arc<super::meant::Meant>>,
     /// The sensors' window is open.
     pub sensors_open: bool,
     /// The sensor chosen in it.
@@ -369,7 +373,7 @@ impl Default for UiState {
             compare: CompareMode::Off,
             holding_before: false,
             wipe_at: 0.5,
-            checks_open: false,
+            meant: None,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,

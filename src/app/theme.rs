@@ -252,6 +252,8 @@ fn visuals(v: &mut egui::Visuals) {
     widget(&mut w.noninteractive, panel(), text());
     w.noninteractive.bg_stroke = Stroke::new(1.0, colors().edge);
     widget(&mut w.inactive, field(), text());
+    // Boxes of ticks, rings of choices, rails: on a dialog they would not be seen.
+    w.inactive.bg_fill = field_active();
     widget(&mut w.hovered, field_hover(), text_strong());
     widget(&mut w.active, field_active(), text_strong());
     widget(&mut w.open, field_hover(), text_strong());

@@ -69,12 +69,12 @@ pub struct View3dInput<'a> {
     pub lidar: Option<&'a Arc<LidarSweep>>,
     /// The user drags something, anywhere.
     pub dragging: bool,
-    /// Voxels that are marked.
-    pub marked: &'a [[usize; 3]],
+    /// Voxels that are marked, by colour.
+    pub marked: &'a [BrushCells<'a>],
 }
 
 /// Voxels that are marked at most; more would only hide each other.
-const MARKED: usize = 20_000;
+const MARKED: usize = 40_000;
 
 /// The pointer over the view.
 #[derive(Clone, Copy, Debug)]
@@ -321,17 +321,25 @@ impl View3d {
         let size = self.size_px();
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar_colors);
-        let (mut cells, mut brush_color) = self.brush_cells(input, state, pointer, hit);
-        if cells.is_empty() && !input.marked.is_empty() {
-            cells = input.marked[..input.marked.len().min(MARKED)].to_vec();
-            brush_color = [240, 180, 60];
+        let (cells, color) = self.brush_cells(input, state, pointer, hit);
+        let meant = state.meant.as_deref();
+        let mut brush = vec![BrushCells { cells: &cells, color }];
+        if cells.is_empty() {
+            brush.extend_from_slice(input.marked);
+        }
+        if let Some(meant) = meant {
+            let (cells, color) = (&meant.cells[..], super::meant::COLOR);
+            brush.push(BrushCells { cells, color });
+        }
+        for part in &mut brush {
+            part.cells = &part.cells[..part.cells.len().min(MARKED)];
         }
         let ghost = self.ghost(input.scene, state, pointer, hit);
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
             Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
-            _ => None,
+            _ => meant.and_then(|m| m.box_id),
         };
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);
@@ -353,10 +361,7 @@ impl View3d {
             boxes: &boxes,
             selected: &selected,
             hovered,
-            brush: (!cells.is_empty()).then_some(BrushCells {
-                cells: &cells,
-                color: brush_color,
-            }),
+            brush: &brush,
             lidar,
             rig: &input.scene.rig,
             options: &options,
@@ -471,7 +476,7 @@ impl View3d {
             boxes: &boxes,
             selected: &[],
             hovered: None,
-            brush: None,
+            brush: &[],
             lidar,
             rig: &scene.rig,
             options: &options,

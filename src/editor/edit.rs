@@ -14,8 +14,8 @@ use crate::scene::{
 
 use super::Shape;
 use super::checks::waive;
-use super::immediate;
 use super::shape::at_least;
+use super::{immediate, junction};
 
 /// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
@@ -65,7 +65,7 @@ pub enum Edit {
         /// One of the ten object classes.
         class: Class,
     },
-    /// Sets or clears a map layer.
+    /// Sets or clears a map layer. Clearing dividers or stop lines cuts the lines behind them there.
     PaintBev {
         /// One of the eight map layers.
         layer: BevLayer,
@@ -302,6 +302,9 @@ impl Edit {
                     return Err(EditError::ObjectLayer(*layer));
                 }
                 let mut cells = shape.cells()?;
+                if !value {
+                    junction::cut_lines(&mut frame.layout, *layer, &cells);
+                }
                 cells.retain(|&[x, y]| frame.layout.has(*layer, x, y) != *value);
                 for &[x, y] in &cells {
                     frame.layout.set(*layer, x, y, *value);
@@ -409,6 +412,9 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
         }
         Edit::PaintBev { layer, shape, value } => {
             let mut cells = shape.cells()?;
+            if !value {
+                junction::cut_lines(&mut source.layout, *layer, &cells);
+            }
             cells.retain(|[x, y]| before.layout.has(*layer, *x, *y) != *value);
             for [x, y] in cells {
                 if source.layout.has(*layer, x, y) == *value {

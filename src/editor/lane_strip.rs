@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayer, Polyline, PolylineKind};
+use crate::scene::{BevLayer, BevLayout, Polyline, PolylineKind};
 
+use super::junction::{self, Area};
 use super::{Edit, Shape};
 
 /// What a street has.
@@ -41,40 +42,61 @@ impl LaneStrip {
         (self.forward + self.backward) as f64 * self.lane_m
     }
 
-    /// The edits that lay the street along the middle of its carriageway (ego frame, m): areas first, then
-    /// lines. Empty for fewer than two distinct points, or no lane.
-    pub fn edits(&self, middle_m: &[DVec2]) -> Vec<Edit> {
+    /// The edits that lay the street along the middle of its carriageway (ego frame, m) on a layout: areas first, then
+    /// lines. Where it crosses a road that is there, the two make a junction: no walkway and no divider of either lies
+    /// on it, and lane centres run through. Empty for fewer than two distinct points, or no lane.
+    pub fn edits(&self, middle_m: &[DVec2], layout: &BevLayout) -> Vec<Edit> {
         let middle_m = distinct(middle_m);
         let lanes = self.forward + self.backward;
         if middle_m.len() < 2 || lanes == 0 || !(self.lane_m.is_finite() && self.lane_m > 0.0) {
             return Vec::new();
         }
         let half_m = self.width_m() / 2.0;
+        let walk_m = self.walk_m.max(0.0);
+        // What lies beside the grid is no error of the whole street.
         let band = |from_m: f64, to_m: f64| {
             let mut points_m = offset_line(&middle_m, from_m);
             points_m.extend(offset_line(&middle_m, to_m).iter().rev());
-            Shape::Polygon { points_m }
+            Shape::Polygon { points_m }.cells().unwrap_or_default()
         };
-        // Cars drive where people walked.
-        let mut areas = vec![(BevLayer::DrivableArea, band(half_m, -half_m))];
-        let cleared = (BevLayer::Walkway, band(half_m, -half_m));
-        if self.walk_m > 0.0 {
-            areas.push((BevLayer::Walkway, band(half_m + self.walk_m, half_m)));
-            areas.push((BevLayer::Walkway, band(-half_m, -half_m - self.walk_m)));
+        let junction = junction::crossed(layout, &middle_m, &band(half_m + walk_m, -half_m - walk_m));
+        let area = Area::new(&junction);
+        let marked = |layer: BevLayer| {
+            let mut cells = junction.clone();
+            cells.retain(|[x, y]| layout.has(layer, *x, *y));
+            (layer, cells, false)
+        };
+        let carriageway = band(half_m, -half_m);
+        let mut parked = carriageway.clone();
+        parked.retain(|[x, y]| layout.has(BevLayer::CarparkArea, *x, *y));
+        // Cars drive where people walked, or parked.
+        let mut areas = vec![
+            (BevLayer::Walkway, carriageway.clone(), false),
+            (BevLayer::CarparkArea, parked, false),
+            (BevLayer::DrivableArea, carriageway, true),
+        ];
+        if walk_m > 0.0 {
+            for (from_m, to_m) in [(half_m + walk_m, half_m), (-half_m, -half_m - walk_m)] {
+                let mut cells = band(from_m, to_m);
+                cells.retain(|cell| !area.holds(*cell));
+                areas.push((BevLayer::Walkway, cells, true));
+            }
         }
-        // What lies beside the grid is no error of the whole street.
-        areas.retain(|(_, shape)| shape.cells().is_ok());
-        let paint = |value: bool| move |(layer, shape)| Edit::PaintBev { layer, shape, value };
-        let clear = Some(cleared).filter(|(_, shape)| shape.cells().is_ok());
-        let mut edits: Vec<Edit> = clear.into_iter().map(paint(false)).collect();
-        edits.extend(areas.into_iter().map(paint(true)));
+        areas.extend([BevLayer::RoadDivider, BevLayer::LaneDivider, BevLayer::StopLine].map(marked));
+        areas.retain(|(_, cells, _)| !cells.is_empty());
+        let paint = |(layer, cells, value)| Edit::PaintBev {
+            layer,
+            shape: Shape::Cells(cells),
+            value,
+        };
+        let mut edits: Vec<Edit> = areas.into_iter().map(paint).collect();
         edits.push(Edit::AddPolylines {
-            lines: self.lines(&middle_m, half_m),
+            lines: self.lines(&middle_m, half_m, &Area::around(&junction)),
         });
         edits
     }
 
-    fn lines(&self, middle_m: &[DVec2], half_m: f64) -> Vec<Polyline> {
+    fn lines(&self, middle_m: &[DVec2], half_m: f64, junction: &Area) -> Vec<Polyline> {
         let mut lines = Vec::new();
         let lanes = self.forward + self.backward;
         for i in 1..lanes {
@@ -83,10 +105,12 @@ impl LaneStrip {
                 true => PolylineKind::RoadDivider,
                 false => PolylineKind::LaneDivider,
             };
-            lines.push(Polyline {
-                kind,
-                points_m: offset_line(middle_m, half_m - i as f64 * self.lane_m),
-            });
+            let whole_m = offset_line(middle_m, half_m - i as f64 * self.lane_m);
+            let pieces = match junction.touches(&whole_m) {
+                true => junction.outside(&whole_m),
+                false => vec![whole_m],
+            };
+            lines.extend(pieces.into_iter().map(|points_m| Polyline { kind, points_m }));
         }
         for i in 0..lanes {
             let mut points_m = offset_line(middle_m, half_m - (i as f64 + 0.5) * self.lane_m);
@@ -143,11 +167,12 @@ mod tests {
             lane_m: 4.0,
             walk_m: 2.0,
         };
-        let edits = strip.edits(&[
+        let middle_m = [
             DVec2::new(-20.0, 0.0),
             DVec2::new(-20.0, 0.0),
             DVec2::new(20.0, 0.0),
-        ]);
+        ];
+        let edits = strip.edits(&middle_m, &BevLayout::default());
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
         let mut scene = Scene::single("street", frame, Arc::default(), 1);
         for edit in &edits {
@@ -176,7 +201,7 @@ mod tests {
             scene.frame_mut().layout.set(BevLayer::Walkway, 100, y, true);
         }
         let ends = [DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)];
-        for edit in &LaneStrip::default().edits(&ends) {
+        for edit in &LaneStrip::default().edits(&ends, &scene.frame().layout.clone()) {
             edit.apply(&mut scene).expect("sound");
         }
         let layout = &scene.frame().layout;
@@ -186,11 +211,84 @@ mod tests {
         }
     }
 
+    /// A scene on which streets were laid one after the other.
+    fn laid(streets: &[(LaneStrip, [DVec2; 2])]) -> Scene {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let mut scene = Scene::single("street", frame, Arc::default(), 1);
+        for (strip, ends) in streets {
+            let layout = scene.frame().layout.clone();
+            for edit in &strip.edits(ends, &layout) {
+                edit.apply(&mut scene).expect("sound");
+            }
+        }
+        scene
+    }
+
+    #[test]
+    fn streets_that_cross_make_a_junction() {
+        let strip = LaneStrip {
+            forward: 2,
+            walk_m: 2.0,
+            ..LaneStrip::default()
+        };
+        let along = [DVec2::new(-30.0, 1.0), DVec2::new(30.0, 1.0)];
+        let across = [DVec2::new(2.0, -30.0), DVec2::new(2.0, 30.0)];
+        let scene = laid(&[(strip, along), (strip, across)]);
+        let layout = &scene.frame().layout;
+        let half_m = strip.width_m() / 2.0;
+        let (mut inside, mut marked_beside) = (0, 0);
+        for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
+            let p = GridSpec::center(x, y, 0).truncate();
+            let on = [
+                (p.y - 1.0).abs() < half_m && p.x.abs() < 29.5,
+                (p.x - 2.0).abs() < half_m && p.y.abs() < 29.5,
+            ];
+            let lined = layout.has(BevLayer::RoadDivider, x, y) || layout.has(BevLayer::LaneDivider, x, y);
+            if on[0] || on[1] {
+                assert!(layout.has(BevLayer::DrivableArea, x, y), "{p} is road");
+                assert!(!layout.has(BevLayer::Walkway, x, y), "no kerb at {p}");
+            }
+            inside += usize::from(on == [true, true]);
+            assert!(on != [true, true] || !lined, "no line at {p}");
+            marked_beside += usize::from(lined);
+        }
+        assert!(inside > 500 && marked_beside > 300, "{inside} {marked_beside}");
+        // Each of the four dividers in two pieces, none within; the six lanes run through.
+        let crossing = |p: &DVec2| (p.x - 2.0).abs() < half_m - 0.5 && (p.y - 1.0).abs() < half_m - 0.5;
+        let dividers = layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind != PolylineKind::LaneCenter);
+        let dividers: Vec<_> = dividers.map(|l| &l.points_m).collect();
+        assert_eq!(dividers.len(), 8);
+        assert!(
+            dividers.iter().all(|l| l.len() == 2 && !l.iter().any(crossing)),
+            "{dividers:?}"
+        );
+        assert_eq!(layout.polylines.len(), 8 + 6);
+    }
+
+    #[test]
+    fn a_street_along_an_old_one_keeps_its_lines() {
+        let strip = LaneStrip::default();
+        let ends = [DVec2::new(-30.0, 0.0), DVec2::new(30.0, 0.0)];
+        let wide = LaneStrip {
+            forward: 2,
+            backward: 2,
+            ..strip
+        };
+        let scene = laid(&[(strip, ends), (wide, ends)]);
+        let layout = &scene.frame().layout;
+        assert!(layout.count(BevLayer::LaneDivider) >= 2 * 150);
+        assert!(layout.polylines.iter().all(|l| l.points_m.len() == 2));
+    }
+
     #[test]
     fn poor_lines_make_nothing_and_bends_keep_their_width() {
         let strip = LaneStrip::default();
-        assert!(strip.edits(&[DVec2::ONE; 3]).is_empty() && strip.edits(&[]).is_empty());
-        assert!(strip.edits(&[DVec2::NAN, DVec2::ONE]).is_empty());
+        let edits = |points_m: &[DVec2]| strip.edits(points_m, &BevLayout::default());
+        assert!(edits(&[DVec2::ONE; 3]).is_empty() && edits(&[]).is_empty());
+        assert!(edits(&[DVec2::NAN, DVec2::ONE]).is_empty());
         let bend = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::new(10.0, 10.0)];
         assert_eq!(offset_line(&bend, 1.0)[1].round(), DVec2::new(9.0, 1.0));
         let back = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::ZERO];

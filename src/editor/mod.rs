@@ -7,6 +7,7 @@ pub mod document;
 pub mod edit;
 pub mod flood;
 pub mod immediate;
+mod junction;
 pub mod lane_strip;
 pub mod lanes;
 pub mod measure;

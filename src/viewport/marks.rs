@@ -54,7 +54,7 @@ impl Marks {
                 marks.scene_box(&lowered, selected, scene.hovered == Some(b.id));
             }
         }
-        if let Some(brush) = scene.brush {
+        for brush in scene.brush {
             marks.cells(brush.cells, brush.color);
         }
         marks

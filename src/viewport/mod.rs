@@ -163,7 +163,7 @@ pub struct LidarView<'a> {
     pub colors: &'a [[u8; 4]],
 }
 
-/// Voxels under the brush or the pointer.
+/// Voxels under the brush or the pointer, or marked.
 #[derive(Clone, Copy, Debug)]
 pub struct BrushCells<'a> {
     /// Voxel indices x, y, z; those outside of the grid are ignored.
@@ -185,8 +185,8 @@ pub struct ViewScene<'a> {
     pub selected: &'a [BoxId],
     /// Box under the pointer.
     pub hovered: Option<BoxId>,
-    /// Voxels under the brush.
-    pub brush: Option<BrushCells<'a>>,
+    /// Voxels under the brush, or marked: one list for each colour.
+    pub brush: &'a [BrushCells<'a>],
     /// LiDAR returns.
     pub lidar: Option<LidarView<'a>>,
     /// Sensors and ego vehicle.

@@ -45,7 +45,7 @@ fn pictures_of_a_street() {
         boxes: &[],
         selected: &[],
         hovered: None,
-        brush: None,
+        brush: &[],
         lidar: None,
         rig: &rig,
         options: &options,
@@ -63,15 +63,15 @@ fn pictures_of_a_street() {
         selected: &[street.boxes[0].id],
         hovered: Some(street.boxes[8].id),
         lidar: Some(lidar),
-        brush: Some(BrushCells {
+        brush: &[BrushCells {
             cells: &cells,
             color: [120, 220, 255],
-        }),
+        }],
         ..base
     };
     let only_boxes = ViewScene {
         lidar: None,
-        brush: None,
+        brush: &[],
         ..all
     };
     let frusta = ViewOptions {

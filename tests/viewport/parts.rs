@@ -58,10 +58,10 @@ fn a_part_drawn_again_gives_the_same_picture_as_all_of_it() {
             boxes: &refs,
             selected: &selected,
             hovered: None,
-            brush: Some(BrushCells {
+            brush: &[BrushCells {
                 cells: &brush,
                 color: [120, 220, 255],
-            }),
+            }],
             lidar: Some(LidarView {
                 sweep: &sweep,
                 colors: &colors[..sweep.points.len()],

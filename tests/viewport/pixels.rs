@@ -59,7 +59,7 @@ fn scene_of<'a>(grid: &'a VoxelGrid, rig: &'a SensorRig, options: &'a ViewOption
         boxes: &[],
         selected: &[],
         hovered: None,
-        brush: None,
+        brush: &[],
         lidar: None,
         rig,
         options,
@@ -444,10 +444,10 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
         boxes: &[&b],
         bev: &[1, 2, 3],
         selected: &[BoxId(9)],
-        brush: Some(sceneloom::viewport::BrushCells {
+        brush: &[sceneloom::viewport::BrushCells {
             cells: &[[usize::MAX; 3], [0; 3]],
             color: [1; 3],
-        }),
+        }],
         lidar: Some(sceneloom::viewport::LidarView {
             sweep: &sweep,
             colors: &[],

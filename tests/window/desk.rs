@@ -6,6 +6,7 @@ use egui::{Key, Modifiers, Rect, Shape};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use sceneloom::app::Command;
+use sceneloom::app::state::Pane;
 use sceneloom::editor::{Edit, Shape as Area};
 use sceneloom::formats::project;
 use sceneloom::generation::job::RegionMode;
@@ -252,7 +253,7 @@ fn the_status_bar_says_what_the_buttons_do() {
 fn a_finding_is_waived_with_a_reason_and_taken_back() {
     let mut bench = Bench::new();
     bench.off();
-    bench.app().state.checks_open = true;
+    bench.run_command(Command::ShowPane(Pane::Checks));
     bench.checked();
     let finding = "car 7 faces against its lane, 180 degrees from it";
     bench.click(&format!("Waive: {finding}"));

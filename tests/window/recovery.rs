@@ -6,6 +6,9 @@ use sceneloom::app::recovery::Recovery;
 use sceneloom::formats::project;
 use sceneloom::scene::{BoxId, Class};
 
+use sceneloom::app::Command;
+use sceneloom::app::state::Pane;
+
 use super::bench::Bench;
 
 #[test]
@@ -47,7 +50,8 @@ fn work_is_offered_after_a_crash_and_comes_back_unsaved() {
 fn findings_lead_to_their_place_and_are_fixed() {
     let mut bench = Bench::new();
     bench.off();
-    bench.app().state.checks_open = true;
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(Command::ShowPane(Pane::Checks), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
         !b.app().checking.is_stale(rev)

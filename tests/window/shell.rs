@@ -79,6 +79,8 @@ fn keys_are_changed_in_the_sheet() {
     bench.off();
     bench.key(Modifiers::NONE, Key::Questionmark);
     bench.click("M");
+    // A keyboard sends the modifier first.
+    bench.key(Modifiers::CTRL, Key::ControlLeft);
     bench.key(Modifiers::CTRL, Key::G);
     assert_eq!(bench.app().keymap.text("measure_tool"), "Ctrl+G");
     bench.key(Modifiers::NONE, Key::Escape);
@@ -118,6 +120,12 @@ fn versions_are_compared_and_gone_back_to() {
         bench.key(Modifiers::SHIFT, Key::Backslash);
         assert_eq!(bench.app().state.compare, mode);
         bench.steps(4);
+        // In the bird's-eye view and in the 3D view.
+        let explained = bench
+            .harness
+            .query_all_by_label_contains(" of another class")
+            .count();
+        assert_eq!(explained, if mode == CompareMode::Difference { 2 } else { 0 });
     }
     bench.key(Modifiers::CTRL, Key::OpenBracket);
     assert!(bench.frame().occupancy == opened);
@@ -128,6 +136,7 @@ fn versions_are_compared_and_gone_back_to() {
     assert!(bench.frame().occupancy == opened);
     // A click compares, in the wipe.
     bench.app().state.compare = CompareMode::Off;
+    bench.click("Versions");
     bench.click("As opened");
     assert_eq!(bench.app().state.compare, CompareMode::Wipe);
 }
@@ -153,4 +162,43 @@ fn settings_are_kept() {
     again.app().settings.look = Look::Dark; // the colours of a theme are the process's
     again.steps(3);
     assert_eq!(again.app().state.hovered_pane, None::<Pane>);
+}
+
+#[test]
+fn no_tooltip_shows_through_a_dialog() {
+    let mut bench = Bench::new();
+    bench.off();
+    let brush = bench.harness.get_by_label("Brush").rect().center();
+    bench.harness.hover_at(brush);
+    bench.steps(60);
+    let tips = |b: &Bench| b.harness.query_all_by_label("Brush").count();
+    assert_eq!(tips(&bench), 2, "the button and its tooltip");
+    bench.key(Modifiers::CTRL, Key::K);
+    bench.steps(20);
+    assert_eq!(tips(&bench), 1, "the button alone");
+}
+
+#[test]
+fn the_list_of_boxes_keeps_its_height_and_is_made_higher() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.harness.set_size(vec2(1280.0, 800.0));
+    bench.steps(4);
+    bench.click("Box 7 car");
+    let list = |b: &Bench| {
+        let title = b.harness.get_by_label("Height of the list of boxes").rect();
+        // The pane below begins where the list ends.
+        let prompt = b.harness.get_by_label("Prompt").rect();
+        (title, prompt.top() - title.bottom())
+    };
+    let (title, height) = list(&bench);
+    assert!(height > 110.0, "{height}");
+    assert!(bench.harness.get_by_label("Heading").rect().bottom() < title.top());
+    let way = [title.center(), title.center() - vec2(0.0, 60.0)];
+    bench.drag(&way, Modifiers::NONE);
+    assert!(
+        (list(&bench).1 - height - 60.0).abs() < 8.0,
+        "{} {height}",
+        list(&bench).1
+    );
 }

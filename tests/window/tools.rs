@@ -287,6 +287,45 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
 }
 
 #[test]
+fn a_street_across_a_street_makes_a_junction_in_one_step() {
+    let mut bench = Bench::new();
+    bench.off();
+    let before = bench.frame();
+    bench.key(Modifiers::NONE, Key::B);
+    bench.ask(ToolCommand::Shape(PaintShape::Street));
+    bench.app().state.tools.street.walk_m = 2.0;
+    for [x, y] in [[10.0, -35.0], [10.0, 35.0]] {
+        bench.click_at(x, y, Modifiers::NONE);
+        bench.steps(30);
+    }
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "Lay street"]);
+    let laid = bench.frame();
+    let (mut crossed, mut markings) = (0, 0);
+    for x in 0..200 {
+        for y in 0..200 {
+            let was_road = before.layout.has(BevLayer::DrivableArea, x, y);
+            let p = sceneloom::scene::GridSpec::center(x, y, 0);
+            if !was_road {
+                continue;
+            }
+            if (p.x - 10.0).abs() < 5.4 {
+                assert!(!laid.layout.has(BevLayer::Walkway, x, y), "a kerb at {p}");
+            }
+            if (p.x - 10.0).abs() < 3.4 {
+                crossed += 1;
+                let lined = [BevLayer::RoadDivider, BevLayer::LaneDivider];
+                assert!(!lined.iter().any(|l| laid.layout.has(*l, x, y)), "a line at {p}");
+                markings += usize::from(before.layout.has(BevLayer::RoadDivider, x, y));
+            }
+        }
+    }
+    assert!(crossed > 200 && markings > 10, "{crossed} {markings}");
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(bench.frame(), before);
+}
+
+#[test]
 fn locked_layers_are_not_painted_and_one_can_be_shown_alone() {
     let mut bench = Bench::new();
     bench.off();

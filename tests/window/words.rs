@@ -78,3 +78,40 @@ fn a_scene_of_words_can_be_undone() {
     bench.app().document.jump_to(0);
     assert_eq!(bench.frame().boxes.len(), before);
 }
+
+#[test]
+fn variants_and_what_memory_goes_by_are_pictures() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.harness.get_by_label("Prompt").click();
+    bench.steps(2);
+    bench
+        .harness
+        .get_by_label("Prompt")
+        .type_text("two cars ahead at a junction");
+    bench.steps(3);
+    bench.click("Memory");
+    bench.wait_until("the remembered scene", |b| {
+        b.harness.query_by_label_contains("Remembered scene: ").is_some()
+    });
+    assert!(bench.harness.query_by_label_contains("similarity 0.").is_some());
+    bench.harness.get_by_label("Variants").scroll_to_me();
+    bench.steps(30);
+    bench.click("Variants");
+    bench.steps(3);
+    let first = bench.harness.get_by_label("Variant of seed 0").rect();
+    assert!(
+        first.width() > 100.0 && (first.width() - first.height()).abs() < 0.5,
+        "{first:?}"
+    );
+    bench.harness.get_by_label("Variant of seed 0").scroll_to_me();
+    bench.steps(30);
+    let says = "A click makes this scene";
+    bench.wait_until("the enlarged variant", |b| {
+        let at = b.harness.get_by_label("Variant of seed 0").rect().center();
+        b.harness.hover_at(at);
+        // It shows when the pointer rests.
+        b.steps(60);
+        b.harness.query_by_label(says).is_some()
+    });
+}

@@ -2,7 +2,7 @@
 //! dragged.
 
 use egui::accesskit::Role;
-use egui::{Color32, CursorIcon, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, CursorIcon, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use glam::DVec3;
 
 use crate::app::command::Command;
@@ -66,7 +66,7 @@ pub struct BoxViewsPane {
 }
 
 impl BoxViewsPane {
-    /// Draws the three views side by side.
+    /// Draws the three views side by side, in a narrow pane one over the other.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -82,10 +82,15 @@ impl BoxViewsPane {
             hint(ui, all, "Choose a box to see it from three sides.");
             return;
         };
-        let width = (all.width() - 2.0) / 3.0;
+        let along = if all.height() > all.width() {
+            Vec2::Y
+        } else {
+            Vec2::X
+        };
+        let across = Vec2::splat(1.0) - along;
+        let size = (all.size() - 2.0 * along) * (along / 3.0 + across);
         for (i, view) in VIEWS.iter().enumerate() {
-            let left = all.left() + i as f32 * (width + 1.0);
-            let rect = Rect::from_min_size(pos2(left, all.top()), vec2(width, all.height()));
+            let rect = Rect::from_min_size(all.min + (size + Vec2::splat(1.0)) * along * i as f32, size);
             self.view(ui, rect, i, view, b, scene, sweep, commands);
         }
     }

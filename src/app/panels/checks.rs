@@ -1,9 +1,10 @@
 //! The list of what the quality checks found: a click leads there, a button repairs it.
 
 use egui::accesskit::Role;
-use egui::{Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Sense, Ui, WidgetInfo, vec2};
 
 use crate::app::command::Command;
+use crate::app::meant::Meant;
 use crate::app::theme;
 use crate::editor::Edit;
 use crate::editor::checks::{Finding, Severity, waive};
@@ -25,18 +26,32 @@ pub struct ChecksInput<'a> {
 const WAIVED_TITLE: f32 = 30.0;
 const WAIVED_LIST: f32 = 94.0;
 
-/// Draws the panel in a window of its own.
-pub fn checks_window(ui: &Ui, input: &ChecksInput<'_>, open: &mut bool, commands: &mut Vec<Command>) {
-    egui::Window::new("Checks")
-        .id(egui::Id::unique("checks"))
-        .open(open)
-        .default_pos(pos2(360.0, 160.0))
-        .default_size(vec2(640.0, 320.0))
-        .show(ui.ctx(), |ui| checks_ui(ui, input, commands));
+/// Draws the panel. What the finding means that is under the pointer, else that was clicked last.
+pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<Meant> {
+    let mut pointed = Pointed {
+        clicked: ui.data(|d| d.get_temp(clicked_id())).unwrap_or_default(),
+        hovered: None,
+    };
+    list_ui(ui, input, &mut pointed, commands);
+    let clicked = |f: &&Finding| Some(key(f)) == pointed.clicked;
+    let meant = pointed
+        .hovered
+        .or_else(|| input.findings?.iter().find(clicked).map(Meant::by));
+    ui.data_mut(|d| d.insert_temp(clicked_id(), pointed.clicked));
+    meant
 }
 
-/// Draws the panel.
-pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) {
+/// Which finding the user points at.
+struct Pointed {
+    clicked: Option<String>,
+    hovered: Option<Meant>,
+}
+
+fn clicked_id() -> egui::Id {
+    egui::Id::unique("finding clicked last")
+}
+
+fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands: &mut Vec<Command>) {
     let Some(findings) = input.findings else {
         ui.horizontal(|ui| {
             ui.spinner();
@@ -92,7 +107,7 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
         .max_height(height)
         .show_rows(ui, row_height, open.len(), |ui, range| {
             for (i, finding) in range.clone().zip(&open[range]) {
-                ui.push_id(i, |ui| row(ui, finding, input, commands));
+                ui.push_id(i, |ui| row(ui, finding, input, pointed, commands));
             }
         });
     waived_ui(ui, &waived, input, commands);
@@ -110,7 +125,17 @@ pub fn summary<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
     }
 }
 
-fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut Vec<Command>) {
+fn row(
+    ui: &mut Ui,
+    finding: &Finding,
+    input: &ChecksInput<'_>,
+    pointed: &mut Pointed,
+    commands: &mut Vec<Command>,
+) {
+    let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
+    if ui.rect_contains_pointer(line) {
+        pointed.hovered = Some(Meant::by(finding));
+    }
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), theme::ROW),
         egui::Layout::right_to_left(egui::Align::Center),
@@ -141,7 +166,8 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 sign(ui, finding.severity);
-                let chosen = finding.box_id.is_some() && finding.box_id == input.selected;
+                let of_box = finding.box_id.is_some() && finding.box_id == input.selected;
+                let chosen = of_box || pointed.clicked.as_ref() == Some(&key(finding));
                 let text = egui::RichText::new(&finding.text);
                 let label = egui::Button::selectable(chosen, text).truncate();
                 let response = ui.add(label);
@@ -149,11 +175,20 @@ fn row(ui: &mut Ui, finding: &Finding, input: &ChecksInput<'_>, commands: &mut V
                     let name = format!("{}: {}", theme::sentence(finding.severity.name()), finding.text);
                     WidgetInfo::selected(Role::Button, true, chosen, name)
                 });
-                if response.on_hover_text(&finding.text).clicked() {
+                // Read already where it fits.
+                let cut = response
+                    .intrinsic_size()
+                    .is_some_and(|s| s.x > response.rect.width() + 1.0);
+                let response = match cut {
+                    true => response.on_hover_text(&finding.text),
+                    false => response,
+                };
+                if response.clicked() {
                     if finding.box_id.is_some() {
                         commands.push(Command::Select(finding.box_id));
                     }
                     commands.push(Command::FrameAt(finding.where_m));
+                    pointed.clicked = Some(key(finding));
                 }
             });
         },
@@ -310,6 +345,7 @@ mod tests {
             severity,
             where_m: glam::DVec3::ZERO,
             box_id: None,
+            cells: Vec::new(),
             text: "x".into(),
             fixes: Vec::new(),
         };

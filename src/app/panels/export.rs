@@ -149,7 +149,7 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     let stop = !progress.is_cancelled();
     if ui
         .add_enabled(stop, egui::Button::new("Cancel export"))
-        .on_hover_text("Stops before the next picture; files of what is not ready are not written")
+        .on_hover_text("Stops before the next picture; nothing is written")
         .clicked()
     {
         progress.cancel();
@@ -157,7 +157,7 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     match (stop, progress.pictures()) {
         (true, Some((done, of))) => {
             let bar = egui::ProgressBar::new(done as f32 / of as f32).desired_width(150.0);
-            ui.add(bar.text(format!("Picture {} of {of}", done + 1)))
+            ui.add(bar.text(format!("Picture {} of {of}", (done + 1).min(of))))
                 .accessible_name("Export progress");
             // Nobody else wakes the window while a picture is made.
             ui.ctx()

@@ -8,7 +8,7 @@ use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::app::theme;
-use crate::app::tools::panel as tools;
+use crate::app::tools::{PaintShape, panel as tools};
 use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
@@ -87,11 +87,18 @@ pub fn caption(ui: &mut Ui, text: &str) {
 fn brush_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     section(ui, "Brush");
     tools::brush(ui, state, commands);
+    // A street is laid, a layer is picked: neither is erased.
+    if matches!(state.tools.shape, PaintShape::Street | PaintShape::Pick) {
+        return;
+    }
     icons::segments(
         ui,
         &mut state.erase,
         &[(false, "Paint", ""), (true, "Erase", "E, or hold Shift")],
     );
+    if !state.tools.shape.has_width() {
+        return;
+    }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(egui::RichText::new("Size").color(theme::text_weak()));

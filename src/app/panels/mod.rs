@@ -21,6 +21,7 @@ mod phrases;
 pub mod prompt;
 mod prompt_graph;
 pub mod prompt_plan;
+pub mod recalled;
 pub mod recovery;
 pub mod sensors;
 pub mod settings;

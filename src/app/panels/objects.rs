@@ -16,21 +16,31 @@ use crate::scene::{BoxId, Class, Frame, SceneBox};
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
     let frame = document.scene().frame();
-    inferred(ui, frame, state, commands);
-    section(ui, "Inspector");
-    match state.selected.and_then(|id| frame.boxes.get(&id)) {
-        Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
-        Some(b) => inspector(ui, b, state, commands),
-        None => {
-            ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
-        }
-    }
-    ui.add_space(theme::GAP);
+    let room = ui.available_height();
+    let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
+    let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
+    let below = wanted.unwrap_or(LEAST_LIST).clamp(LEAST_LIST, most);
+    let gap = theme::GAP / 2.0 + ui.spacing().item_spacing.y;
+    egui::ScrollArea::vertical()
+        .id_salt("inspector")
+        .max_height((room - below - gap).max(LEAST_INSPECTOR))
+        .auto_shrink([false, wanted.is_none()])
+        .show(ui, |ui| {
+            inferred(ui, frame, state, commands);
+            section(ui, "Inspector");
+            match state.selected.and_then(|id| frame.boxes.get(&id)) {
+                Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
+                Some(b) => inspector(ui, b, state, commands),
+                None => {
+                    ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
+                }
+            }
+        });
     let title = match frame.boxes.len() {
         1 => "1 box".to_owned(),
         n => format!("{n} boxes"),
     };
-    section(ui, &title);
+    divide(ui, &title, below, most);
     let list_height = ui.available_height().max(80.0);
     let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
     boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
@@ -46,6 +56,48 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             box_row(ui, b, guess, state.is_chosen(b.id), commands);
         }
     });
+}
+
+/// What the list of boxes keeps, its title included, however tall the inspector is; and the inspector, points.
+const LEAST_LIST: f32 = 118.0;
+const LEAST_INSPECTOR: f32 = 60.0;
+
+/// How high the user wants the list to be; none: what the inspector leaves.
+fn list_height_id() -> egui::Id {
+    egui::Id::unique("height of the list of boxes")
+}
+
+/// The title of the list; dragged, it parts the room between inspector and list, and a double click lets go of that.
+fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
+    ui.add_space(theme::GAP / 2.0);
+    let top = ui.cursor().top();
+    ui.add_space(2.0);
+    section(ui, title);
+    let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=ui.cursor().top());
+    let response = ui.interact(line, ui.scope_id().with("divide"), egui::Sense::click_and_drag());
+    let name = "Height of the list of boxes";
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Splitter, true, name));
+    let color = match response.dragged() || response.hovered() {
+        true => theme::accent(),
+        false => theme::field_hover(),
+    };
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(egui::CursorIcon::ResizeVertical);
+    }
+    ui.painter()
+        .hline(line.x_range(), line.top(), egui::Stroke::new(1.0, color));
+    if response.dragged() {
+        // At first from what is shown, which may be more than was wanted.
+        let from = match response.drag_started() {
+            true => ui.max_rect().bottom() - line.top(),
+            false => height,
+        };
+        let wanted = from - response.drag_delta().y;
+        ui.data_mut(|d| d.insert_temp(list_height_id(), wanted.clamp(LEAST_LIST, most)));
+    }
+    if response.double_clicked() {
+        ui.data_mut(|d| d.remove_temp::<f32>(list_height_id()));
+    }
 }
 
 /// Scrolls to the chosen box, once, when another one was chosen elsewhere.
@@ -183,7 +235,9 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
                 .speed(0.5)
                 .fixed_decimals(1)
                 .suffix("°");
-            ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading")
+            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading");
+            speed(ui, b);
+            drag
         })
         .inner;
     let id = b.id;
@@ -196,21 +250,18 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
     field(&position, "Move box", edit(Some(center), None, None), commands);
     field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
     field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
-    speed(ui, b);
 }
 
+/// What cannot be set: how fast it is, and its number.
 fn speed(ui: &mut Ui, b: &SceneBox) {
-    ui.horizontal(|ui| {
-        caption(ui, "Speed");
-        let kmh = b.velocity_mps.length() * 3.6;
-        let text = if kmh < 0.5 {
-            "standing".to_owned()
-        } else {
-            format!("{kmh:.0} km/h")
-        };
-        ui.label(text);
-        ui.label(egui::RichText::new(format!("  #{}", b.id.0)).color(theme::text_weak()));
-    });
+    let kmh = b.velocity_mps.length() * 3.6;
+    let text = if kmh < 0.5 {
+        "standing".to_owned()
+    } else {
+        format!("{kmh:.0} km/h")
+    };
+    ui.label(text).on_hover_text("Speed over ground");
+    ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
 }
 
 /// The box as it was when it was chosen: what shifts along its own axes are counted from.

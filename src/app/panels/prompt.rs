@@ -147,22 +147,22 @@ impl PromptPane {
             let hint = "Ctrl+Enter: road, objects and style are made from the words";
             make |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
         });
-        ui.horizontal(|ui| {
+        // In one flow: what they take is missed by the history and the examples below.
+        ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
-            ui.scope(|ui| {
-                let dice = ui
-                    .button("Re-roll")
-                    .on_hover_text("Another scene of the same words");
-                if some && dice.clicked() {
-                    self.seed = self.seed.wrapping_add(1) % 100_000;
-                    make = true;
-                }
-                let seed = egui::DragValue::new(&mut self.seed)
-                    .range(0..=99_999)
-                    .prefix("seed ");
-                ui.add(seed)
-                    .on_hover_text("The same words and seed give the same scene");
-            });
+            let dice = ui
+                .button("Re-roll")
+                .on_hover_text("Another scene of the same words");
+            if some && dice.clicked() {
+                self.seed = self.seed.wrapping_add(1) % 100_000;
+                make = true;
+            }
+            let seed = egui::DragValue::new(&mut self.seed)
+                .range(0..=99_999)
+                .prefix("seed ");
+            ui.add(seed)
+                .on_hover_text("The same words and seed give the same scene");
+            self.plan.switches(ui);
         });
         if change || make {
             self.sent(ui.ctx());
@@ -173,7 +173,6 @@ impl PromptPane {
             self.remember();
             self.make(self.seed, scene, commands);
         }
-        self.plan.switches(ui);
     }
 
     fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
@@ -197,6 +196,7 @@ impl PromptPane {
         }
         let read = reading.description.clone();
         let ask = self.plan.ask(&self.prompt, &read, self.seed, scene);
+        self.plan.recalled(ui, &ask);
         let chosen = self.plan.variants(ui, &ask);
         self.plan.origin(ui);
         let place = self.plan.graph(ui, &ask.description, self.seed, scene, commands);

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
+use super::recalled::{Recall, Recalled};
 use super::{prompt_graph, thumbnail};
 use crate::app::command::Command;
 use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
@@ -26,15 +27,24 @@ const VARIANTS: u64 = 4;
 pub struct Told(Arc<Mutex<Option<WhatWasTold>>>);
 
 /// What memory filled in, what the network placed, what fell short.
-type WhatWasTold = (Option<Remembered>, Option<Diffused>, Vec<String>);
+type WhatWasTold = (
+    Option<(Remembered, Option<Recalled>)>,
+    Option<Diffused>,
+    Vec<String>,
+);
 
 impl Told {
     /// Tells how a layout came about.
     pub fn tell(&self, laid: &Laid) {
         let mut notes = laid.notes.clone();
         notes.extend(crate::app::text::shortfalls(laid));
+        let recalled = |found: Remembered| {
+            let picture = Recalled::of(&found);
+            (found, picture)
+        };
+        let remembered = laid.remembered.clone().map(recalled);
         if let Ok(mut told) = self.0.lock() {
-            *told = Some((laid.remembered.clone(), laid.diffused.clone(), notes));
+            *told = Some((remembered, laid.diffused.clone(), notes));
         }
     }
 
@@ -48,11 +58,12 @@ impl Told {
         let weak = |ui: &mut Ui, text: String| {
             ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         };
-        if let Some(found) = remembered {
-            let best = found.scenes.first().map_or("", |s| s.0.as_str());
+        if let Some((found, picture)) = remembered {
             let road = if found.road { ", its road" } else { "" };
             weak(ui, format!("From memory{road}: {}", found.filled.join(", ")));
-            weak(ui, format!("Nearest remembered scene: {best}"));
+            if let Some(picture) = picture {
+                picture.show(ui, "This scene was filled in from");
+            }
         }
         if let Some(d) = diffused {
             weak(
@@ -95,6 +106,7 @@ pub struct Plan {
     made: Option<(String, u64)>, // the words and the seed that the open scene was made of
     rolls: u64,
     variants: Option<Variants>,
+    recall: Recall,
     told: Told,
 }
 
@@ -165,35 +177,45 @@ impl Plan {
 
     /// Placer, memory, and what of the open scene stays.
     pub fn switches(&mut self, ui: &mut Ui) {
-        ui.horizontal_wrapped(|ui| {
-            let mut diffusion = self.placer == Placer::Diffusion;
-            let said = "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly";
-            if ui.checkbox(&mut diffusion, "Diffusion").on_hover_text(said).changed() {
-                self.placer = if diffusion { Placer::Diffusion } else { Placer::Rules };
-                self.variants = None;
-            }
-            let said = "What the words leave open comes from the nearest remembered scenes";
-            if ui.checkbox(&mut self.memory, "Memory").on_hover_text(said).changed() {
-                self.variants = None;
-            }
-            let name = |s: Stays| match s {
-                Stays::Nothing => "keep nothing",
-                Stays::Road => "keep the road",
-                Stays::Objects => "keep the objects",
+        let mut diffusion = self.placer == Placer::Diffusion;
+        let said = "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly";
+        if ui
+            .checkbox(&mut diffusion, "Diffusion")
+            .on_hover_text(said)
+            .changed()
+        {
+            self.placer = if diffusion {
+                Placer::Diffusion
+            } else {
+                Placer::Rules
             };
-            let combo = egui::ComboBox::from_id_salt("what stays")
-                .selected_text(name(self.stays))
-                .show_ui(ui, |ui| {
-                    for s in [Stays::Nothing, Stays::Road, Stays::Objects] {
-                        if ui.selectable_value(&mut self.stays, s, name(s)).changed() {
-                            self.variants = None;
-                        }
+            self.variants = None;
+        }
+        let said = "What the words leave open comes from the nearest remembered scenes";
+        if ui
+            .checkbox(&mut self.memory, "Memory")
+            .on_hover_text(said)
+            .changed()
+        {
+            self.variants = None;
+        }
+        let name = |s: Stays| match s {
+            Stays::Nothing => "keep nothing",
+            Stays::Road => "keep the road",
+            Stays::Objects => "keep the objects",
+        };
+        let combo = egui::ComboBox::from_id_salt("what stays")
+            .selected_text(name(self.stays))
+            .show_ui(ui, |ui| {
+                for s in [Stays::Nothing, Stays::Road, Stays::Objects] {
+                    if ui.selectable_value(&mut self.stays, s, name(s)).changed() {
+                        self.variants = None;
                     }
-                });
-            combo
-                .response
-                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "What of this scene a new one keeps"));
-        });
+                }
+            });
+        combo
+            .response
+            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "What of this scene a new one keeps"));
     }
 
     /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene. The number that
@@ -362,13 +384,14 @@ impl Plan {
         while let Ok((seed, laid)) = variants.coming.try_recv() {
             variants.found.insert(seed, laid);
         }
-        let width = ((ui.available_width() - 8.0) / 2.0).clamp(80.0, 190.0);
+        // Square, as the map is.
+        let width = ((ui.available_width() - 8.0) / 2.0).clamp(80.0, 260.0);
         let first = variants.of.seed;
         for pair in 0..VARIANTS / 2 {
             ui.horizontal(|ui| {
                 for k in [2 * pair, 2 * pair + 1] {
                     let seed = first.wrapping_add(k);
-                    let (rect, response) = ui.allocate_exact_size(vec2(width, width * 0.62), Sense::click());
+                    let (rect, response) = ui.allocate_exact_size(vec2(width, width), Sense::click());
                     let name = format!("Variant of seed {seed}");
                     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                     let fill = if response.hovered() {
@@ -397,13 +420,24 @@ impl Plan {
                         theme::text_weak(),
                     );
                     crate::app::icons::focus_ring(ui, &response, rect);
-                    if response.on_hover_text("A click makes this scene").clicked() {
+                    if let Some(laid) = variants.found.get(&seed) {
+                        let boxes = &laid.placement.boxes;
+                        thumbnail::enlarged(&response, &laid.road.layout, boxes, "A click makes this scene");
+                    }
+                    if response.clicked() {
                         chosen = Some(seed);
                     }
                 }
             });
         }
         chosen
+    }
+
+    /// The remembered scene that is nearest to the words, while memory is on.
+    pub fn recalled(&mut self, ui: &mut Ui, ask: &Ask) {
+        if self.memory {
+            self.recall.show(ui, ask);
+        }
     }
 
     /// How the last scene came about.

@@ -20,6 +20,21 @@ const FIXED: [(&str, &str); 9] = [
     ("Double click on a header", "Maximize the pane"),
 ];
 
+/// True for keys that come before the one that a chord is named by.
+fn is_modifier(key: Key) -> bool {
+    matches!(
+        key,
+        Key::ShiftLeft
+            | Key::ShiftRight
+            | Key::ControlLeft
+            | Key::ControlRight
+            | Key::AltLeft
+            | Key::AltRight
+            | Key::SuperLeft
+            | Key::SuperRight
+    )
+}
+
 /// What is typed, and the action whose chord is awaited.
 #[derive(Clone, Debug, Default)]
 pub struct Shortcuts {
@@ -170,10 +185,9 @@ impl Shortcuts {
     fn take_chord(&mut self, ui: &Ui, keymap: &mut Keymap) {
         let Some(id) = self.awaiting else { return };
         let pressed = ui.input_mut(|i| {
-            let at = i
-                .events
-                .iter()
-                .position(|e| matches!(e, egui::Event::Key { pressed: true, .. }))?;
+            let at = i.events.iter().position(
+                |e| matches!(e, egui::Event::Key { pressed: true, key, .. } if !is_modifier(*key)),
+            )?;
             match i.events.remove(at) {
                 egui::Event::Key { key, modifiers, .. } => Some((key, modifiers)),
                 _ => None,

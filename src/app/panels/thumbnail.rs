@@ -17,6 +17,20 @@ pub fn road(ui: &Ui, rect: Rect, layout: &BevLayout) {
     scene(ui, rect, layout, &[]);
 }
 
+/// Side of an enlarged map, points.
+const LARGE: f32 = 380.0;
+
+/// The same large, beside what the pointer rests on, over a line that says what a click does.
+pub fn enlarged(over: &egui::Response, layout: &BevLayout, boxes: &[SceneBox], says: &str) {
+    let tip = egui::Tooltip::for_enabled(over).width(LARGE);
+    tip.show(|ui| {
+        let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(LARGE), egui::Sense::hover());
+        ui.painter().rect_filled(rect, theme::RADIUS, theme::well());
+        scene(ui, rect, layout, boxes);
+        ui.label(says);
+    });
+}
+
 /// The road, what stands on it, and the ego vehicle.
 pub fn scene(ui: &Ui, rect: Rect, layout: &BevLayout, boxes: &[SceneBox]) {
     let painter = ui.painter().with_clip_rect(rect);

@@ -35,6 +35,10 @@ pub struct ToolbarInput<'a> {
     pub bookmarks: Vec<u8>,
     /// Voxels that the user painted.
     pub has_paint: bool,
+    /// Panes on screen.
+    pub shown: Vec<Pane>,
+    /// Cameras of the rig.
+    pub cameras: usize,
     /// The workspace chosen last.
     pub workspace: Workspace,
     /// Stops of the quality slider, and what they are foretold to cost.
@@ -194,7 +198,12 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         ui.separator();
         ui.menu_button("Panes", |ui| {
             for pane in Pane::CHOICES {
-                on(item(ui, &pane.name(), "", true), Command::ShowPane(pane));
+                if matches!(pane, Pane::Camera(i) if i >= input.cameras) {
+                    continue;
+                }
+                let mut shown = input.shown.contains(&pane);
+                let tick = ui.checkbox(&mut shown, pane.name());
+                on(tick.changed(), Command::TogglePane(pane));
             }
         });
         ui.menu_button("Kept views", |ui| {
@@ -212,7 +221,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
         on(item(ui, "Grid", "G", true), Command::ToggleGrid);
         on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
-        on(item(ui, "Checks…", "", true), Command::ToggleChecks);
+        on(item(ui, "Checks", "", true), Command::ToggleChecks);
         on(item(ui, "Log", "", true), Command::ToggleLog);
         on(item(ui, "Performance", "F10", true), Command::TogglePerformance);
     });

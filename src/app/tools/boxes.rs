@@ -216,18 +216,18 @@ impl SceneloomApp {
     fn close_points(&mut self) {
         let street = self.state.tools.shape == PaintShape::Street;
         if street {
-            let edits = self.state.tools.street.edits(&self.state.tools.points_m);
+            let layout = &self.document.settled_scene().frame().layout;
+            let edits = self.state.tools.street.edits(&self.state.tools.points_m, layout);
             // What was drawn stays until the layer is unlocked.
             if self.state.locked_layer(&edits).is_some() {
                 return self.apply("Lay street", &edits);
             }
+            self.state.tools.points_m.clear();
+            return self.apply_some("Lay street", edits);
         }
         let points_m = std::mem::take(&mut self.state.tools.points_m);
         let value = !self.state.erase;
-        if street {
-            let edits = self.state.tools.street.edits(&points_m);
-            self.apply_some("Lay street", edits);
-        } else if points_m.len() >= 3 {
+        if points_m.len() >= 3 {
             let layer = self.state.layer;
             let shape = Shape::Polygon { points_m };
             let label = if value { "Paint polygon" } else { "Erase polygon" };

@@ -46,6 +46,11 @@ pub enum PaintShape {
 }
 
 impl PaintShape {
+    /// True for strokes, whose width the brush has.
+    pub fn has_width(self) -> bool {
+        matches!(self, PaintShape::Stroke | PaintShape::Line)
+    }
+
     /// Every shape with its name and key.
     pub const ALL: [(PaintShape, &'static str, &'static str); 7] = [
         (PaintShape::Stroke, "Freehand", "B; straight with Ctrl held"),

@@ -53,6 +53,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity: Severity::Warning,
             where_m: b.center_m,
             box_id: Some(b.id),
+            cells: Vec::new(),
             text: format!("{} {how}, {angle:.0} degrees from it", name_of(b)),
             fixes: vec![Fix {
                 label: "Turn to the lane's heading",

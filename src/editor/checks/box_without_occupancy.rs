@@ -26,6 +26,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity: Severity::Error,
             where_m: b.center_m,
             box_id: Some(b.id),
+            cells: Vec::new(),
             text: format!("{} has no voxel of its class", name_of(b)),
             fixes: vec![
                 Fix {

@@ -50,6 +50,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity: Severity::Warning,
             where_m: middle(&group),
             box_id: None,
+            cells: group.clone(),
             text,
             // A crown misses its stem; anything else is more likely to be too much.
             fixes: match class == Class::Vegetation && group.len() >= CROWN {
@@ -70,6 +71,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity: Severity::Warning,
             where_m,
             box_id: None,
+            cells: cells.clone(),
             text: format!("{count} smaller groups float, {} voxels", cells.len()),
             fixes: vec![remove(cells)],
         });

@@ -62,6 +62,8 @@ pub struct Finding {
     pub where_m: DVec3,
     /// The box it is about, if it is about one.
     pub box_id: Option<BoxId>,
+    /// The voxels it is about, if it is about voxels.
+    pub cells: Vec<[usize; 3]>,
     /// One line for a person.
     pub text: String,
     /// Ways to repair it, the best first; none where a person has to decide.

@@ -41,6 +41,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
                 severity: Severity::Warning,
                 where_m: middle(&group),
                 box_id: None,
+                cells: group.clone(),
                 text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
                 fixes: vec![
                     Fix {

@@ -38,6 +38,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity: Severity::Warning,
             where_m: b.center_m,
             box_id: Some(b.id),
+            cells: Vec::new(),
             text,
             fixes: onto_lane(context, b).into_iter().collect(),
         });

@@ -28,6 +28,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             severity,
             where_m: b.center_m,
             box_id: Some(b.id),
+            cells: Vec::new(),
             text: format!("{} {problem}", name_of(b)),
             fixes: fixes.into_iter().collect(),
         });

@@ -52,6 +52,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
                 severity: if wrong { Severity::Error } else { Severity::Warning },
                 where_m: (a.center_m + b.center_m) / 2.0,
                 box_id: Some(b.id),
+                cells: Vec::new(),
                 text: format!(
                     "{} and {} overlap by {:.0} % of the smaller one",
                     name_of(a),

@@ -41,6 +41,7 @@ fn unseen(
                 severity: Severity::Warning,
                 where_m: b.center_m,
                 box_id: Some(b.id),
+                cells: Vec::new(),
                 text: format!("{} {problem}", name_of(b)),
                 fixes: Vec::new(),
             });

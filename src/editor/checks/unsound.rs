@@ -79,6 +79,7 @@ fn error(at_m: DVec3, id: Option<BoxId>, text: String, fixes: Vec<(&'static str,
         severity: Severity::Error,
         where_m: if at_m.is_finite() { at_m } else { DVec3::ZERO },
         box_id: id,
+        cells: Vec::new(),
         text,
         fixes: fixes.collect(),
     }

@@ -1,0 +1,78 @@
+//! What a finding of the checks means: its voxels, its box or its place, marked in the large views while it is pointed
+//! at or chosen in the list.
+
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind};
+use glam::{DVec2, DVec3};
+
+use super::canvas::ScreenMap;
+use crate::editor::checks::Finding;
+use crate::scene::{BoxId, Frame, GridSpec};
+
+/// Of the marks, in both views: no class and no layer has it.
+pub(super) const COLOR: [u8; 3] = [255, 70, 255];
+/// A mark smaller than this would be overlooked, points.
+const LEAST: f32 = 9.0;
+
+/// What is marked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meant {
+    /// Voxels.
+    pub cells: Vec<[usize; 3]>,
+    /// A box.
+    pub box_id: Option<BoxId>,
+    /// The middle of it, ego frame, m.
+    pub where_m: DVec3,
+}
+
+impl Meant {
+    /// By a finding.
+    pub fn by(finding: &Finding) -> Self {
+        Self {
+            cells: finding.cells.clone(),
+            box_id: finding.box_id,
+            where_m: finding.where_m,
+        }
+    }
+
+    /// Draws it on the bird's-eye view: columns filled, and a frame around all of it, never too small to be seen.
+    pub(super) fn draw(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
+        let color = Color32::from_rgb(COLOR[0], COLOR[1], COLOR[2]);
+        let mut around = Rect::NOTHING;
+        let mut columns: Vec<[usize; 2]> = self.cells.iter().map(|[x, y, _]| [*x, *y]).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+        for [x, y] in columns {
+            let middle = GridSpec::center(x, y, 0).truncate();
+            let cell = map.rect_of(middle - half, middle + half);
+            painter.rect_filled(cell, 0.0, color.gamma_multiply(0.8));
+            around = around.union(cell);
+        }
+        if let Some(b) = self
+            .box_id
+            .and_then(|id| frame.boxes.get(&id))
+            .filter(|b| b.problem().is_none())
+        {
+            let corners: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
+            corners.iter().for_each(|p| around.extend_with(*p));
+            painter.add(Shape::convex_polygon(
+                corners,
+                color.gamma_multiply(0.35),
+                Stroke::new(2.0, color),
+            ));
+        }
+        if !around.is_positive() {
+            around = Rect::from_center_size(map.to_screen(self.where_m.truncate()), egui::Vec2::splat(2.0));
+        }
+        let grown = egui::Vec2::splat(LEAST).max(around.size() / 2.0 + egui::Vec2::splat(5.0));
+        let ring = Rect::from_center_size(around.center(), 2.0 * grown);
+        // Dark below, or it would vanish on bright layers.
+        painter.rect_stroke(
+            ring,
+            3.0,
+            Stroke::new(4.0, Color32::from_black_alpha(130)),
+            StrokeKind::Middle,
+        );
+        painter.rect_stroke(ring, 3.0, Stroke::new(2.0, color), StrokeKind::Middle);
+    }
+}

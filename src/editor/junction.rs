@@ -1,0 +1,169 @@
+//! Where a new street crosses an old one: the columns that belong to both, and lines cut where they pass through them.
+
+use glam::DVec2;
+
+use crate::scene::distance::nearest_source;
+use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, raster};
+
+/// From this angle between two streets on they cross; below it one is drawn along the other, to widen or renew it.
+const CROSSES_RAD: f64 = 0.44;
+/// How far from its lines a carriageway reaches at most, m. Without lines nearby nobody knows which way it runs.
+const REACH_M: f64 = 8.0;
+/// Lines are looked at in steps of this length, m: a quarter of a cell.
+const STEP_M: f64 = 0.1;
+
+/// The columns `[x, y]` among `band` that are road already, of a road that runs another way than the line `middle_m`.
+pub(super) fn crossed(layout: &BevLayout, middle_m: &[DVec2], band: &[[usize; 2]]) -> Vec<[usize; 2]> {
+    let mut cells = band.to_vec();
+    // Parking strips belong to the street that they line.
+    let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+    cells.retain(|[x, y]| layout.cell(*x, *y) & road != 0);
+    if cells.is_empty() {
+        return cells;
+    }
+    let lengthwise = |l: &&Polyline| {
+        matches!(
+            l.kind,
+            PolylineKind::LaneCenter | PolylineKind::RoadDivider | PolylineKind::LaneDivider
+        )
+    };
+    let old = layout.polylines.iter().filter(lengthwise);
+    let (Some(old), Some(new)) = (
+        Ways::of(old.map(|l| &l.points_m[..])),
+        Ways::of(std::iter::once(middle_m)),
+    ) else {
+        return Vec::new();
+    };
+    cells.retain(|&[x, y]| {
+        let [old, new] = [old.at(x, y), new.at(x, y)];
+        let near = old.0 <= REACH_M;
+        near && old.1.dot(new.1).abs() < CROSSES_RAD.cos()
+    });
+    cells
+}
+
+/// For every column the direction of the nearest of some lines.
+struct Ways {
+    directions: Vec<DVec2>,
+    nearest: Vec<u32>,
+}
+
+impl Ways {
+    /// `None` if no line touches the grid.
+    fn of<'a>(lines: impl Iterator<Item = &'a [DVec2]>) -> Option<Self> {
+        let mut directions = vec![DVec2::ZERO; GridSpec::COLUMNS];
+        for pair in lines.flat_map(|l| l.windows(2)) {
+            let direction = (pair[1] - pair[0]).normalize_or_zero();
+            raster::line_cells(pair, GridSpec::VOXEL_M, |x, y| {
+                directions[x * GridSpec::NY + y] = direction;
+            });
+        }
+        let nearest = nearest_source(|c| directions[c] != DVec2::ZERO)?;
+        Some(Self { directions, nearest })
+    }
+
+    /// Distance to the nearest line, m, and its direction there.
+    fn at(&self, x: usize, y: usize) -> (f64, DVec2) {
+        let nearest = self.nearest[x * GridSpec::NY + y] as usize;
+        let [i, j] = [nearest / GridSpec::NY, nearest % GridSpec::NY];
+        let apart = GridSpec::center(x, y, 0).distance(GridSpec::center(i, j, 0));
+        (apart, self.directions[nearest])
+    }
+}
+
+/// Cells as a set that is asked often.
+pub(super) struct Area(Vec<bool>);
+
+impl Area {
+    pub(super) fn new(cells: &[[usize; 2]]) -> Self {
+        let mut covered = vec![false; GridSpec::COLUMNS];
+        for &[x, y] in cells {
+            covered[x * GridSpec::NY + y] = true;
+        }
+        Self(covered)
+    }
+
+    /// The cells and those that touch them: lines that end here do not reach in with their width.
+    pub(super) fn around(cells: &[[usize; 2]]) -> Self {
+        let mut grown = Vec::new();
+        for &[x, y] in cells {
+            for i in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
+                grown.extend((y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1)).map(|j| [i, j]));
+            }
+        }
+        Self::new(&grown)
+    }
+
+    pub(super) fn holds(&self, [x, y]: [usize; 2]) -> bool {
+        self.0[x * GridSpec::NY + y]
+    }
+
+    fn has(&self, p_m: DVec2) -> bool {
+        GridSpec::column_at(p_m.x, p_m.y).is_some_and(|cell| self.holds(cell))
+    }
+
+    /// True if a line passes through.
+    pub(super) fn touches(&self, points_m: &[DVec2]) -> bool {
+        points_m.windows(2).any(|pair| {
+            let n = steps(pair);
+            (0..=n).any(|i| self.has(pair[0].lerp(pair[1], i as f64 / n as f64)))
+        })
+    }
+
+    /// What of a line lies outside, in its order.
+    pub(super) fn outside(&self, points_m: &[DVec2]) -> Vec<Vec<DVec2>> {
+        let mut pieces: Vec<Vec<DVec2>> = Vec::new();
+        let mut piece: Vec<DVec2> = Vec::new();
+        // Within a straight stretch only its ends are kept.
+        let mut replaceable = false;
+        for (k, pair) in points_m.windows(2).enumerate() {
+            let n = steps(pair);
+            for i in usize::from(k > 0)..=n {
+                let p_m = pair[0].lerp(pair[1], i as f64 / n as f64);
+                if self.has(p_m) {
+                    pieces.push(std::mem::take(&mut piece));
+                    replaceable = false;
+                    continue;
+                }
+                if replaceable {
+                    piece.pop();
+                }
+                replaceable = !piece.is_empty() && i < n;
+                piece.push(p_m);
+            }
+        }
+        pieces.push(piece);
+        pieces.retain(|p| p.len() > 1 && p.windows(2).any(|w| w[0].distance(w[1]) > 2.0 * STEP_M));
+        pieces
+    }
+}
+
+fn steps(pair: &[DVec2]) -> usize {
+    // Points lie within 1000 m; what is not finite counts as one step.
+    ((pair[0].distance(pair[1]) / STEP_M).ceil().min(1e5) as usize).max(1)
+}
+
+/// Takes the lines of a layer away where they pass through the cells; crossings are outlines and stay.
+pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
+    let kind = match layer {
+        BevLayer::RoadDivider => PolylineKind::RoadDivider,
+        BevLayer::LaneDivider => PolylineKind::LaneDivider,
+        BevLayer::StopLine => PolylineKind::StopLine,
+        _ => return,
+    };
+    let area = Area::new(cells);
+    let is_cut = |l: &Polyline| l.kind == kind && area.touches(&l.points_m);
+    if !layout.polylines.iter().any(is_cut) {
+        return;
+    }
+    let mut kept = Vec::new();
+    for line in layout.polylines.iter() {
+        if is_cut(line) {
+            let pieces = area.outside(&line.points_m).into_iter();
+            kept.extend(pieces.map(|points_m| Polyline { kind, points_m }));
+        } else {
+            kept.push(line.clone());
+        }
+    }
+    layout.polylines = kept.into();
+}
