@@ -246,8 +246,8 @@ pub fn round_trip_error<D: Denoiser + ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::rng::{Stream, normal_field};
-    use crate::generation::schedule::Schedule;
+    use crate::generation::rng::Stream;
+    use crate::generation::schedule::{Schedule, Spacing};
     use crate::generation::solver::Guidance;
     use crate::generation::solver::tests::toy;
 
@@ -294,6 +294,22 @@ mod tests {
 
     /// Row 19 of the extremes table: plain inversion is approximate; its error is printed, finite, and
     /// shrinks with the number of steps at guidance 1.
+    #[test]
+    fn a_noised_source_has_the_noise_of_its_levels() {
+        let levels = Schedule::standard().levels(10, Spacing::Trailing).expect("valid");
+        let clean = normal_field(5, Stream::Encoder, 2500, 8);
+        let noised = Trajectory::noised(&clean, &levels, 8, 6);
+        assert_eq!(noised.states.len(), levels.len());
+        assert_eq!(noised.latent(), clean, "the last state is the latent itself");
+        for (state, level) in noised.states.iter().zip(&levels) {
+            // Of data and noise with the same spread each mixture has it, too, and as much of the data as its level says.
+            assert!((standard_deviation(state) - 1.0).abs() < 0.02);
+            let share = state.iter().zip(&clean).map(|(a, b)| a * b).sum::<f64>() / clean.len() as f64;
+            assert!((share - level.alpha).abs() < 0.03, "{share} {}", level.alpha);
+        }
+        assert_ne!(noised, Trajectory::noised(&clean, &levels, 8, 7));
+    }
+
     #[test]
     fn row_19_plain_inverse_is_approximate() {
         for weight in [1.0, 3.0, 7.0] {
