@@ -116,6 +116,23 @@ fn split_sides(mentions: &mut Vec<Mention>) {
             add_side(spec, is_left, class, state, span);
         }
         mentions.push(other);
+        // "two buses on both sides, and behind them two cars": one behind each
+        let twin = mentions.len() - 1;
+        let by_each = |m: &Mention| {
+            !m.gone && m.spec.count == total && m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+        };
+        for j in (0..twin).filter(|j| *j != i && !each).collect::<Vec<_>>() {
+            if !by_each(&mentions[j]) {
+                continue;
+            }
+            let mut second = mentions[j].clone();
+            mentions[j].spec.count = part(left);
+            second.spec.count = part(right);
+            for r in second.spec.relations.iter_mut().filter(|r| r.anchor == Anchor::Object(i)) {
+                r.anchor = Anchor::Object(twin);
+            }
+            mentions.push(second);
+        }
     }
 }
 
@@ -311,6 +328,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         }
     }
     share_places(mentions);
+    super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;
     for (i, m) in mentions.iter().enumerate() {
