@@ -6,15 +6,20 @@
 mod acts;
 mod forms;
 mod frame;
+mod gaps;
+mod idioms;
 mod lists;
 mod orders;
 mod parting;
+mod passive;
 mod predicate;
+mod skies;
 mod spoken;
 mod subject;
 mod swap;
 #[cfg(test)]
 mod tests;
+mod untouched;
 mod ways;
 mod worded;
 mod words;

@@ -20,7 +20,16 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.is_empty() {
         return sentence.to_vec();
     }
-    let mut out = without_order(body);
+    let mut out = super::untouched::cut(body);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
+    out = super::skies::plain(&out);
+    out = super::gaps::filled(out);
+    if let Some(new) = super::idioms::plain(&out, talk).or_else(|| super::passive::added(&out, talk)) {
+        out = new;
+    }
+    out = without_order(&out);
     out = replaced(&out, WHOLE, "the scene");
     out = replaced(&out, ON_FOOT, "all pedestrians");
     out = replaced(&out, DRY, "clear weather");
