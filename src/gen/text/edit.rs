@@ -442,6 +442,10 @@ impl Editor<'_> {
                 }
             }
         }
+        for spared in &c.except {
+            let ids = super::select::fitting(&self.map, &self.boxes, spared, &c.except);
+            all.retain(|id| !ids.contains(id));
+        }
         all.sort_unstable();
         all.dedup();
         if !all.is_empty() {

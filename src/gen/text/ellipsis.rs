@@ -172,11 +172,13 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
     let prep = |t: &Token| matches!(t.text.as_str(), "on" | "at" | "along" | "by" | "from");
     let mut strip: Option<(Token, Token, Token)> = None; // preposition, side, strip
     let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
+    let (mut i, mut named) = (0, 0);
     while i < sentence.len() {
         let t = &sentence[i];
         out.push(t.clone());
         i += 1;
+        // "on the right kerb, two cars on the left": of the cars nothing was left out
+        named += usize::from(is_noun(t));
         let led = out.len() > 2 && prep(&out[out.len() - 3]) && matches!(out[out.len() - 2].text.as_str(), "the" | "my" | "our");
         if !side(t) || !led {
             continue;
@@ -185,9 +187,11 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
         let hand = usize::from(sentence.get(i).is_some_and(|t| t.text == "hand"));
         if let Some(place) = sentence.get(i + hand).filter(|t| is_strip(&t.text)) {
             strip = Some((lead, t.clone(), place.clone()));
+            named = 0;
         } else if let Some((first, other, place)) = &strip
             && first.text == lead.text
             && other.text != t.text
+            && named == 0
             && (ends(sentence.get(i)) || sentence.get(i).is_some_and(|t| matches!(t.text.as_str(), "and" | "one" | "too" | "as")))
         {
             i += usize::from(sentence.get(i).is_some_and(|t| t.text == "one"));

@@ -53,6 +53,7 @@ fn is_lane(a: Anchor) -> bool {
 pub fn infer(mentions: &mut [Mention]) {
     for i in 0..mentions.len() {
         blocked_at(&mut mentions[i]);
+        stranded(&mut mentions[i]);
         let along: Vec<(Stated, usize)> = mentions[i]
             .spec
             .relations
@@ -107,6 +108,20 @@ fn blocked_at(m: &mut Mention) {
         if !ahead {
             m.spec.relations.push(stated);
         }
+    }
+}
+
+/// What broke down where the traffic goes is not parked: it stands there.
+fn stranded(m: &mut Mention) {
+    let there = m.spec.relations.iter().any(|r| {
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Junction | Anchor::Crossing | Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+    });
+    if there && m.spec.state == Some(ObjectState::Parked) {
+        m.spec.state = Some(ObjectState::Waiting);
     }
 }
 

@@ -319,8 +319,20 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
             )
         })?;
         let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
-        np.push(word("the", first));
-        np.push(word(if people { "person" } else { "object" }, first));
+        // "whatever is behind me, delete it": all of it
+        let removed = body[cut + 1..].iter().take(3).any(|t| {
+            matches!(t.text.as_str(), "remove" | "delete" | "erase" | "drop" | "clear" | "lose" | "bin" | "rid" | "scrap")
+        });
+        np.push(word(if removed { "all" } else { "the" }, first));
+        np.push(word(
+            match (people, removed) {
+                (true, true) => "people",
+                (true, false) => "person",
+                (false, true) => "objects",
+                (false, false) => "object",
+            },
+            first,
+        ));
         np.extend_from_slice(&body[is + 1..cut]);
     } else {
         np.extend_from_slice(&body[..cut]);

@@ -14,7 +14,8 @@ use super::subject::{Kind, Subject};
 use super::ways::{arrived, settled, step, times, turned, with_named};
 use super::words::{find, first_noun, has_noun, is, led, number, text};
 use super::{Piece, Talk};
-use crate::scene::graph::RelationKind;
+use super::super::lexicon::look_up;
+use crate::scene::graph::{ObjectState, RelationKind};
 
 fn span_of(tokens: &[Token]) -> Span {
     tokens.iter().fold(tokens[0].span, |s, t| s.to(t.span))
@@ -73,7 +74,7 @@ pub fn acts(
     let later = |i: usize| {
         parts[i + 1..]
             .iter()
-            .any(|p| !p.not && !p.main.is_empty() && (super::predicate::places(&p.main) || p.is_gone()))
+            .any(|p| !p.not && !p.main.is_empty() && !only_points(&p.main) && (super::predicate::places(&p.main) || p.is_gone()))
     };
     // "crosses over and now stands on the left sidewalk": where he ends counts
     let crosses = |p: &Part| {
@@ -216,9 +217,16 @@ pub fn acts(
     if let Some(turn) = turned(&main, &said) {
         let mut c = about(Verb::Turn, s, clause, talk);
         c.turn = Some(turn);
+        let drives = |w: &str| matches!(look_up(w), Some(Sense::State(ObjectState::Moving, _)));
+        c.state = said.iter().any(|p| p.main.iter().any(|t| drives(text(t)))).then_some(ObjectState::Moving);
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "blocks it": a verb of something that was named before.
+fn only_points(main: &[Token]) -> bool {
+    main.len() == 2 && is(main.get(1), &["it", "them", "him", "her"])
 }
 
 /// Metres that are no step: "behind us", "ahead of the bus".

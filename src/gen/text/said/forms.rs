@@ -221,7 +221,9 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
             "remove" | "delete" | "take" | "erase" | "drop" | "clear" | "lose" | "scrap" | "bin"
         );
     let end = i + n + first_noun(&inner[i + n..])?.1;
-    let goes = i == 0
+    // (half of them stay where half of them go)
+    let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
+    let goes = keeps || i == 0
         && inner[end..].iter().any(|t| {
             matches!(
                 text(t),
@@ -431,7 +433,9 @@ pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) 
                 || look_up(text(&rest[*k]))
                     .is_some_and(|s| matches!(s, Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_)))
         })
-        .last()?;
+        .last()
+        // "on its place comes motorbike"
+        .or((a == 0 || !is(rest.get(a - 1), &["the", "that", "this", "my", "both", "those", "these"])).then_some(a))?;
     let np = &rest[lead..b];
     let span = inner.iter().fold(inner[0].span, |s: Span, t| s.to(t.span));
     let mut c = Command::new(Verb::Add, talk.text, span);

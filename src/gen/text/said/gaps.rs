@@ -30,7 +30,7 @@ const RIDERS: &[(&str, &[&str])] = &[
 pub fn filled(tokens: Vec<Token>) -> Vec<Token> {
     let out = people(tokens);
     let out = rider(out);
-    let out = existing(out);
+    let out = one_who(existing(out));
     let out = more_of_it(out);
     place_last(out)
 }
@@ -80,6 +80,11 @@ fn rider(mut tokens: Vec<Token>) -> Vec<Token> {
     let end = i + n + article;
     let rides = RIDERS.iter().find(|r| is(tokens.get(end), r.1));
     let foot = is(tokens.get(end), &["foot"]);
+    if foot && is(tokens.get(i), &["whoever"]) {
+        let all = led("all pedestrians", &tokens[i], &[]);
+        tokens.splice(i..=end, all);
+        return tokens;
+    }
     if let Some(name) = rides.map(|r| r.0).or(foot.then_some("pedestrian")) {
         let the = led(&format!("the {name}"), &tokens[i], &[]);
         tokens.splice(i..=end, the);
@@ -111,6 +116,35 @@ fn existing(mut tokens: Vec<Token>) -> Vec<Token> {
         let the = led("the", &tokens[i], &[&noun]);
         tokens.splice(i..i + n, the);
     }
+    tokens
+}
+
+/// "let the one on the left walk across": what walks is a person.
+fn one_who(mut tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["the one", "the ones"]) else {
+        return tokens;
+    };
+    if first_noun(&tokens[..i]).is_some() || !is_place(&tokens[i + n..]) && !is(tokens.get(i + n), &["who", "that", "which", "whos", "thats"]) {
+        return tokens;
+    }
+    let many = is(tokens.get(i + 1), &["ones"]);
+    let does = |list: &[&str]| tokens.iter().any(|t| list.contains(&text(t)));
+    let name = if does(&["walk", "walks", "walking", "cross", "crosses", "stroll", "strolls", "jog", "jogs", "who", "whos"]) {
+        "person"
+    } else if does(&["drive", "drives", "driving", "park", "parks", "parked", "brake", "overtake"]) {
+        "vehicle"
+    } else if is(tokens.first(), &["let", "have", "make"]) {
+        "object"
+    } else {
+        return tokens;
+    };
+    let name = match (name, many) {
+        ("person", true) => "people".to_string(),
+        (name, true) => format!("{name}s"),
+        (name, false) => name.to_string(),
+    };
+    let the = led(&format!("the {name}"), &tokens[i], &[]);
+    tokens.splice(i..i + n, the);
     tokens
 }
 

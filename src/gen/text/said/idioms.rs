@@ -16,15 +16,114 @@ const WISHES: &[&str] = &[
 /// The sentence in plain words, if it is one of them.
 pub fn plain(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let tokens = trimmed(tokens);
+    let about = changed_mind(tokens);
+    let tokens = about.unwrap_or(tokens);
+    if let Some(new) = intention(tokens).or_else(|| stands_in(tokens)) {
+        return Some(new);
+    }
     of_them(tokens, talk)
         .or_else(|| for_each(tokens))
         .or_else(|| all_except(tokens))
         .or_else(|| not_but(tokens))
         .or_else(|| instead_of_number(tokens))
         .or_else(|| out_and_in(tokens))
-        .or_else(|| too_many(tokens))
+        .or_else(|| too_many(tokens, talk))
         .or_else(|| besides(tokens))
         .or_else(|| let_it_be(tokens, talk))
+        .or_else(|| nobody_but(tokens))
+        .or_else(|| about.map(<[Token]>::to_vec))
+}
+
+/// "I've changed my mind about the bus, make it a van": of the bus.
+fn changed_mind(tokens: &[Token]) -> Option<&[Token]> {
+    let n = leads(
+        tokens,
+        &[
+            "ive changed my mind about", "i have changed my mind about", "i changed my mind about", "as for", "as regards",
+            "regarding", "concerning", "when it comes to", "with regard to", "as to", "about", "a word about", "what about",
+            "second thoughts about", "on second thought about", "ive had second thoughts about",
+        ],
+    )?;
+    let known = is(tokens.get(n), &["the", "that", "those", "these", "both", "my"]);
+    let (_, end) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
+    let parted = tokens[n + end..].iter().any(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Mark));
+    (known && parted).then(|| &tokens[n..])
+}
+
+/// "the driver of the van wants to take a break, so park his vehicle": what somebody is after changes nothing; what is asked for does.
+fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
+    let tokens = &super::spoken::with_ones(tokens)[..];
+    let (_, end) = first_noun(tokens).filter(|x| x.0 < 6)?;
+    let wants = end
+        + leads(
+            &tokens[end..],
+            &[
+                "wants to", "want to", "needs to", "need to", "is about to", "are about to", "would like to", "plans to", "plan to",
+                "intends to", "intend to", "is going to", "are going to", "hopes to", "has to", "wants a", "needs a",
+            ],
+        )?;
+    let cut = (wants..tokens.len()).find(|k| {
+        matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Mark) || is(tokens.get(*k), &["so", "therefore"])
+    })?;
+    let mut from = cut;
+    while tokens.get(from).is_some_and(|t| t.kind != TokenKind::Word || matches!(text(t), "so" | "therefore" | "then" | "please" | "and" | "hence")) {
+        from += 1;
+    }
+    let rest = tokens.get(from..)?;
+    let aim = &tokens[wants..cut];
+    let who = &tokens[..end];
+    let definite = is(who.first(), &["the", "all", "both", "my", "that", "those", "these"]);
+    if !definite || !super::super::rephrase::is_verb(rest.first()?) {
+        return None;
+    }
+    let at = (1..rest.len()).find(|k| is(rest.get(*k), &["it", "him", "her", "them", "his", "their", "its"]))?;
+    let own = is(rest.get(at), &["his", "her", "their", "its"])
+        || is(rest.get(at), &["her"]) && is(rest.get(at + 1), &["vehicle", "car"]);
+    let thing = usize::from(is(rest.get(at + 1), &["vehicle", "car", "machine", "ride"]));
+    if own && thing == 0 {
+        return None;
+    }
+    let mut out = rest[..at].to_vec();
+    out.extend_from_slice(who);
+    // "are about to board the bus: bring them near it"
+    let other = first_noun(aim).map(|n| led("the", &tokens[0], &[&aim[n.0..n.1]]));
+    for t in &rest[at + 1 + if own { thing } else { 0 }..] {
+        match &other {
+            Some(other) if text(t) == "it" => out.extend(other.iter().cloned()),
+            _ => out.push(t.clone()),
+        }
+    }
+    Some(out)
+}
+
+/// "in place of the digger there is now a roller, and it ...": the digger is replaced, and the rest is said of what replaces it.
+fn stands_in(tokens: &[Token]) -> Option<Vec<Token>> {
+    let n = leads(tokens, &["in place of", "instead of", "in the place of", "in lieu of", "in exchange for"])?;
+    let known = is(tokens.get(n), &["the", "that", "both", "my", "all", "those"]);
+    let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 5)?;
+    let rest = trimmed(&tokens[n + b..]);
+    let mut k = leads(rest, WISHES).or_else(|| leads(rest, &["there is", "there comes", "there stands", "comes", "stands", "there are", "we have", "we now have", "we see"]))?;
+    while is(rest.get(k), &["now", "then", "to", "see", "just"]) {
+        k += 1;
+    }
+    let fresh = is(rest.get(k), &["a", "an", "another"]) || number(rest.get(k)?).is_some();
+    let (_, e) = first_noun(&rest[k..]).filter(|x| x.0 < 4)?;
+    let more = rest.get(k + e..).filter(|m| m.first().is_some_and(|t| t.kind == TokenKind::Comma || text(t) == "and") && m.len() > 3)?;
+    let with = led("with", &tokens[0], &[&rest[k..k + e], more]);
+    (known && fresh).then(|| led("replace", &tokens[0], &[&tokens[n..n + b], &with]))
+}
+
+/// "there shouldn't be anybody here, just the cars": what is to be there is there.
+fn nobody_but(tokens: &[Token]) -> Option<Vec<Token>> {
+    let denied = tokens.iter().take(6).any(|t| NEGATED.contains(&text(t)) || matches!(text(t), "nobody" | "no" | "nothing"));
+    let comma = (2..tokens.len()).find(|k| {
+        tokens[*k].kind == TokenKind::Comma
+            && is(tokens.get(k + 1), &["just", "only", "but", "except"])
+            && is(tokens.get(k + 2), &["the", "for", "those", "these", "my"])
+    })?;
+    let people = tokens[..comma].iter().any(|t| matches!(text(t), "anybody" | "anyone" | "nobody" | "people" | "person" | "pedestrians" | "persons"));
+    let (_, e) = first_noun(&tokens[comma..]).filter(|x| x.0 < 6)?;
+    (denied && people).then(|| [&tokens[..comma], &tokens[comma + e..]].concat())
 }
 
 fn goes(tokens: &[Token]) -> bool {
@@ -182,14 +281,15 @@ fn out_and_in(tokens: &[Token]) -> Option<Vec<Token>> {
 }
 
 /// "two cyclists are one too many, so take one away".
-fn too_many(tokens: &[Token]) -> Option<Vec<Token>> {
+fn too_many(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let (i, n) = find(tokens, &["too many", "too much"])?;
     let be = (1..i).rev().find(|k| is(tokens.get(*k), &["is", "are"]))?;
     let many = tokens.get(be + 1).filter(|t| number(t).is_some() && be + 2 == i)?;
-    let (a, b) = first_noun(&tokens[..be]).filter(|x| x.0 < 4)?;
+    let (a, _) = first_noun(&tokens[..be]).filter(|x| x.0 < 4)?;
     let rest = trimmed(tokens.get(i + n..)?);
     let takes = rest.is_empty() || removes(rest.first()) || leads(rest, &["get rid", "one", "so"]).is_some();
-    takes.then(|| led("remove", &tokens[0], &[std::slice::from_ref(many), &tokens[a..b.max(a + 1)], &tokens[b..be]]))
+    let left = talk.fits(&tokens[a..be]).checked_sub(number(many)?.max(0) as usize)?;
+    takes.then(|| led("keep exactly", &tokens[0], &[&[digits(left, many)], &tokens[a..be]]))
 }
 
 /// "in addition to the cars that are coming I want four more".

@@ -4,6 +4,7 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod exception;
 mod forms;
 mod frame;
 mod gaps;
@@ -45,6 +46,7 @@ use predicate::{in_place, parts};
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use exception::except;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
 
@@ -133,7 +135,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     let body = &with_ones(&without_feet(body))[..];
     let mut out: Vec<Piece> = Vec::new();
     let mut understood = false;
-    let others = find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
+    let others = talk.others || find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
     let parted = clauses(body, talk);
     let mut lead: Option<Token> = None;
@@ -253,6 +255,25 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     Some(out)
 }
 
+/// What nobody wants of a kind goes, where it was said.
+fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
+    let any = is(inner.first(), &["any", "a", "an", "more", "some"]);
+    let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
+    let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
+    let mut rest = &inner[b..];
+    for late in ["any more", "anymore", "any longer", "at all", "no more", "now"] {
+        let n = late.split(' ').count();
+        if let Some(cut) = rest.len().checked_sub(n).filter(|k| find(&rest[*k..], &[late]).is_some()) {
+            rest = &rest[..cut];
+        }
+    }
+    let told = rest.first().is_some_and(|t| is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to");
+    let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
+    (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
+        vec![Piece::Plain(led("remove all the", first, &[&inner[a..b], &rest[2 * verb..]]))]
+    })
+}
+
 /// A command that does nothing but say what "it" will mean.
 fn remembered(np: &[Token], talk: &Talk<'_>) -> Piece {
     let span = np.iter().fold(np[0].span, |s: Span, t| s.to(t.span));
@@ -354,6 +375,10 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     if let Some(found) = imperative(inner, talk) {
+        return Some(found);
+    }
+    // "I don't want any cars behind me any more"
+    if mood.denied && let Some(found) = unwanted(inner, first) {
         return Some(found);
     }
     if mood.denied

@@ -183,6 +183,23 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     if !MOVES.contains(&text(first)) || counts {
         return None;
     }
+    // "the bus: make it a van"
+    let one = first_noun(inner).filter(|n| n.0 > 2 && n.0 < 6 && n.1 == inner.len());
+    if text(first) == "make" && is(inner.get(1), &["it", "that"]) && is(inner.get(2), &["a", "an"]) && one.is_some() && talk.last.is_some() {
+        let s = Subject {
+            kind: Kind::Back(Back::Same),
+            np: inner[1..2].to_vec(),
+            noun: Vec::new(),
+            pred: 2,
+            plural: false,
+        };
+        let part = predicate::Part {
+            main: led("become", first, &[&inner[2..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
     if makes
         && is(inner.get(1), &["it", "that", "this"])
         && inner
@@ -283,6 +300,12 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     // "out of my lane and onto the sidewalk"
     let goal = leads(rest, &["out of", "off", "away from", "from"])
         .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
+    // "out of the left lane and behind the truck"
+    let goal = goal.or_else(|| {
+        leads(rest, &["out of", "off", "away from", "from"])
+            .and_then(|_| (1..rest.len()).find(|i| text(&rest[*i]) == "and" && is_place(&rest[i + 1..])))
+            .map(|i| i + 1)
+    });
     let rest = &rest[goal.unwrap_or(0)..];
     // "out of my lane and put it on the sidewalk"
     let put = leads(rest, &["out", "off", "away", "from", "up"]).and_then(|_| {

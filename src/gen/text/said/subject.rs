@@ -256,6 +256,11 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     {
         return None;
     }
+    // "add four cars parked on the right"
+    let orders = matches!(text(first), "add" | "insert" | "include" | "create" | "show" | "remove" | "delete" | "erase" | "replace");
+    if orders && tokens.get(1).is_some_and(|t| number(t).is_some() || matches!(text(t), "a" | "an" | "another" | "some" | "the" | "all" | "both")) {
+        return None;
+    }
     let who = matches!(
         text(first),
         "whoever" | "everyone" | "everybody" | "anyone" | "anybody" | "whoevers"
