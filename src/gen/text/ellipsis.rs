@@ -138,6 +138,7 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
     let has = sentence[lane..]
         .iter()
         .find(|t| matches!(t.text.as_str(), "has" | "holds" | "contains" | "carries"));
+    let sentence = &replaced(sentence, "holds a|contains a|carries a", "has a")[..];
     let mut out = sentence[..lane].to_vec();
     let mut i = lane;
     while i < sentence.len() {
@@ -156,8 +157,8 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
         let fresh = sentence
             .get(i)
             .is_some_and(|t| matches!(t.text.as_str(), "a" | "an" | "another") || number(t).is_some());
-        if let (true, Some(has)) = (fresh, has) {
-            out.push(word(&has.text, &sentence[i]));
+        if fresh && has.is_some() {
+            out.push(word("has", &sentence[i]));
             if let Some(t) = out.get_mut(at.saturating_sub(1)).filter(|t| t.kind == TokenKind::Comma) {
                 t.kind = TokenKind::Stop;
             }

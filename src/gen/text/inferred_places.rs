@@ -68,6 +68,9 @@ pub fn infer(mentions: &mut [Mention]) {
                 continue;
             };
             if let Some(more) = same_strip(&mentions[i], &other).or_else(|| same_way(&mentions[i], &other)) {
+                if more.relation == R::ParkedOn {
+                    mentions[i].spec.state = Some(ObjectState::Parked);
+                }
                 mentions[i].spec.relations.push(Stated { span: r.span, ..more });
             }
             drawn(&mut mentions[i], &other, k);
@@ -127,7 +130,9 @@ fn stranded(m: &mut Mention) {
 
 /// The strip in which something parked before or behind this stands.
 fn same_strip(m: &Mention, other: &Mention) -> Option<Stated> {
-    let parked = m.spec.state == Some(ObjectState::Parked) && other.spec.state == Some(ObjectState::Parked);
+    // ("behind that a second one": alike in this, too)
+    let alike = m.spec.state.is_none() && m.spec.class == other.spec.class && m.spec.relations.len() == 1;
+    let parked = (alike || m.spec.state == Some(ObjectState::Parked)) && other.spec.state == Some(ObjectState::Parked);
     let placed = m.spec.relations.iter().any(|r| matches!(r.relation, R::On | R::ParkedOn) && is_lane(r.anchor));
     let strip = other.spec.relations.iter().find(|r| {
         matches!(r.relation, R::On | R::ParkedOn)

@@ -8,7 +8,8 @@ use super::wording::{begins, replaced, word};
 
 /// A prompt in plain order.
 pub fn ordered(tokens: &[Token]) -> Vec<Token> {
-    let out = pointing_back(tokens);
+    let out = replaced(tokens, "around is|about is|present is|in sight is|to be seen is", "is");
+    let out = pointing_back(&out);
     let out = participle_first(&out);
     let out = crossed_over(&out);
     let out = beyond(&out);

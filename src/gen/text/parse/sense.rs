@@ -99,13 +99,30 @@ impl<'a> Parser<'a> {
                     }
                     // "... obstructs the crossing; four people wait there"
                     "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
+                    // "on both pavements stand three people each"
+                    "each" if self.ends(self.at + 1) && self.last.iter().any(|i| self.mentions[*i].both.is_some()) => {
+                        for i in self.last.clone() {
+                            self.mentions[i].both = self.mentions[i].both.map(|_| true);
+                        }
+                    }
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
                         self.head = self.before.clone();
                         self.last = self.before.clone();
                         self.chain = false;
                     }
-                    "where" => self.end_clause(),
+                    // "a car park where six cars stand"
+                    "where" => {
+                        let place = self.topic.take().filter(|(a, _)| {
+                            matches!(a, Anchor::Crossing | Anchor::Junction)
+                                || matches!(a, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Ego))
+                        });
+                        self.end_clause();
+                        if let Some((place, at)) = place.filter(|_| self.noun_ahead(self.at + 1)) {
+                            self.begin(Prep::In, at);
+                            self.anchor(place, at);
+                        }
+                    }
                     _ => {}
                 }
                 return true;

@@ -31,7 +31,46 @@ pub fn plain(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .or_else(|| besides(tokens))
         .or_else(|| let_it_be(tokens, talk))
         .or_else(|| nobody_but(tokens))
+        .or_else(|| only_of(tokens))
+        .or_else(|| step_with(tokens))
+        .or_else(|| none_there(tokens))
         .or_else(|| about.map(<[Token]>::to_vec))
+}
+
+/// "only one of the two cars should stay".
+fn only_of(tokens: &[Token]) -> Option<Vec<Token>> {
+    let n = leads(tokens, &["only", "just", "no more than", "exactly", "not more than"])?;
+    number(tokens.get(n)?)?;
+    let of = leads(&tokens[n + 1..], &["of the", "of these", "of those", "of my"])?;
+    let rest = &tokens[n + 1 + of..];
+    let (_, b) = first_noun(rest).filter(|x| x.0 < 5)?;
+    let stays = rest[b..].iter().any(|t| matches!(text(t), "stay" | "stays" | "remain" | "remains" | "left" | "kept" | "needed"));
+    let end = (b..rest.len()).find(|k| HELPERS.contains(&text(&rest[*k])) || is_finite(text(&rest[*k]), true)).unwrap_or(b);
+    stays.then(|| led("keep exactly", &tokens[0], &[&tokens[n..=n], &bare_np(&rest[..end])]))
+}
+
+/// "ten metres further ahead with the bus": a step, and of what.
+fn step_with(tokens: &[Token]) -> Option<Vec<Token>> {
+    let k = (1..tokens.len()).rev().find(|k| text(&tokens[*k]) == "with")?;
+    let np = trimmed(&tokens[k + 1..]);
+    let known = is(np.first(), &["the", "that", "my", "both", "this"]);
+    let (_, b) = first_noun(np).filter(|x| x.0 < 4)?;
+    let step = trimmed(&tokens[..k]);
+    let way = step.iter().any(|t| matches!(text(t), "further" | "farther" | "closer" | "nearer" | "back" | "forward" | "left" | "right" | "ahead" | "behind" | "away" | "lane"));
+    let plain = first_noun(step).is_none() && !step.iter().any(|t| HELPERS.contains(&text(t))) && !super::super::rephrase::is_verb(step.first()?);
+    let bare = !is(step.first(), &["out", "away", "off", "down", "up"]);
+    (known && b == np.len() && way && plain && bare).then(|| led("move", &tokens[0], &[np, step]))
+}
+
+/// "no pedestrians on the left any more".
+fn none_there(tokens: &[Token]) -> Option<Vec<Token>> {
+    let n = leads(tokens, &["no more", "no"])?;
+    let (a, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 3)?;
+    let rest = trimmed(&tokens[n + b..]);
+    let end = find(rest, &["any more", "anymore", "any longer", "please", "now"]).map_or(rest.len(), |x| x.0);
+    let place = trimmed(&rest[..end]);
+    let placed = super::words::is_place(place) && !place.iter().any(|t| t.kind == TokenKind::Comma) && first_noun(place).is_none();
+    (placed && !is(place.first(), &["to", "by", "up", "out", "off"])).then(|| led("remove all the", &tokens[0], &[&tokens[n + a..n + b], place]))
 }
 
 /// "I've changed my mind about the bus, make it a van": of the bus.
@@ -50,6 +89,13 @@ fn changed_mind(tokens: &[Token]) -> Option<&[Token]> {
     (known && parted).then(|| &tokens[n..])
 }
 
+/// "has done its job, so remove it": a reason for what is asked. How many tokens its verb takes.
+fn reason(rest: &[Token]) -> Option<usize> {
+    let (so, n) = find(rest, &["so", "therefore", "hence", "thats why", "that is why"]).filter(|x| x.0 > 1)?;
+    let gone = removes(rest.get(so + n)) || leads(&rest[so + n..], &["get rid of", "do away with"]).is_some();
+    (gone && HELPERS.contains(&text(&rest[0]))).then_some(1)
+}
+
 /// "the driver of the van wants to take a break, so park his vehicle": what somebody is after changes nothing; what is asked for does.
 fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
     let tokens = &super::spoken::with_ones(tokens)[..];
@@ -61,7 +107,8 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
                 "wants to", "want to", "needs to", "need to", "is about to", "are about to", "would like to", "plans to", "plan to",
                 "intends to", "intend to", "is going to", "are going to", "hopes to", "has to", "wants a", "needs a",
             ],
-        )?;
+        )
+        .or_else(|| reason(&tokens[end..]))?;
     let cut = (wants..tokens.len()).find(|k| {
         matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Mark) || is(tokens.get(*k), &["so", "therefore"])
     })?;
@@ -160,8 +207,12 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     if !is(tokens.get(n), &["the", "my", "these", "those", "all", "our"]) {
         return None;
     }
-    let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma)?;
-    let np = tokens.get(n..comma).filter(|np| first_noun(np).is_some())?;
+    // "from the parked cars take one away"
+    let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma).or_else(|| {
+        (n + 2..tokens.len()).find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"])).map(|k| k - 1).filter(|k| first_noun(&tokens[n..=*k]).is_some())
+    })?;
+    let end = comma + usize::from(tokens[comma].kind != TokenKind::Comma);
+    let np = tokens.get(n..end).filter(|np| first_noun(np).is_some())?;
     let rest = trimmed(&tokens[comma + 1..]);
     if first_noun(rest).is_some() {
         return None;
@@ -245,6 +296,8 @@ fn not_but(tokens: &[Token]) -> Option<Vec<Token>> {
     let old = &tokens[not + old.0..not + old.1];
     let what = leads(subject, &["what is", "whats", "whatever is", "what", "the thing that is", "the thing", "the one that is"]);
     let who = match what {
+        // "that isn't a bus but a truck"
+        None if subject.len() == 1 && is(subject.first(), &["that", "it", "this"]) => led("the", &tokens[0], &[old]),
         Some(n) => led("the", &tokens[0], &[old, &subject[n..]]),
         None => subject.to_vec(),
     };

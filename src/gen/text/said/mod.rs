@@ -257,7 +257,7 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 
 /// What nobody wants of a kind goes, where it was said.
 fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
-    let any = is(inner.first(), &["any", "a", "an", "more", "some"]);
+    let any = is(inner.first(), &["any", "a", "an", "more", "some", "anybody", "anyone"]);
     let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
     let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
     let mut rest = &inner[b..];
@@ -270,7 +270,9 @@ fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
     let told = rest.first().is_some_and(|t| is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to");
     let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
     (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
-        vec![Piece::Plain(led("remove all the", first, &[&inner[a..b], &rest[2 * verb..]]))]
+        let body = is(inner.get(a), &["anybody", "anyone"]);
+        let np = if body { led("people", first, &[]) } else { inner[a..b].to_vec() };
+        vec![Piece::Plain(led("remove all the", first, &[&np, &rest[2 * verb..]]))]
     })
 }
 

@@ -33,6 +33,11 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             }) {
                 next += 1;
             }
+            // "everything but the bus"
+            if text(t) == "but" && is(body.get(i.wrapping_sub(1)), &["everything", "everyone", "everybody", "all", "nothing", "anything", "nobody"]) {
+                i += 1;
+                continue;
+            }
             // "all cars but one can go"
             if text(t) == "but"
                 && body.get(next).is_some_and(|t| number(t).is_some())

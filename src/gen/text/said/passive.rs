@@ -31,10 +31,26 @@ fn known<'t>(tokens: &'t [Token], talk: &Talk<'_>) -> Option<&'t [Token]> {
     (definite && first_noun(np).is_some() && talk.fits(np) > 0).then_some(np)
 }
 
+/// "the bus gets another bus behind it": add it, where "it" is the bus.
+fn gets(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let (i, n) = find(tokens, &["gets", "should get", "receives", "shall get", "must get", "is given", "should have", "needs"]).filter(|x| x.0 > 1)?;
+    let new = &tokens[i + n..];
+    let (_, end) = first_noun(new).filter(|x| x.0 < 4)?;
+    let it = (end + 1..new.len()).find(|k| is(new.get(*k), &["it", "him", "her", "them"]))?;
+    let placed = it <= end + 4 && super::words::is_place(&new[end..]);
+    let np = known(&tokens[..i], talk).filter(|_| placed && is_fresh(new.first()))?;
+    Some(led("add", &tokens[0], &[&new[..it], np, &new[it + 1..]]))
+}
+
 /// The command to add it.
 pub fn added(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let by = BY.iter().find_map(|(relation, list)| find(tokens, list).map(|(i, n)| (*relation, i, n)));
     let tows = || find(tokens, TOWS).filter(|(i, n)| *i > 1 && first_noun(&tokens[i + n..]).is_some_and(|x| x.0 < 4 && is(tokens.get(i + n + x.0), &["trailer", "caravan", "boat", "horsebox"]))).map(|(i, n)| ("behind", i, n));
+    if by.is_none()
+        && let Some(found) = gets(tokens, talk)
+    {
+        return Some(found);
+    }
     let (relation, i, n) = by.or_else(tows)?;
     let new = &tokens[i + n..];
     if !is_fresh(new.first()) || first_noun(new).is_none_or(|x| x.0 > 4) {

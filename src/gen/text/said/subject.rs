@@ -33,7 +33,7 @@ pub struct Subject {
     pub plural: bool,
 }
 
-fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
+pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
     let first = tokens.first()?;
     let others = [
         "the other ones",

@@ -49,6 +49,12 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     out = replaced(&out, APPEARS, "should be");
     out = replaced(&out, COMES_UP, "goes to");
     out = so_that(&out);
+    for i in 1..out.len() {
+        let noun = first_noun(&out[i + 1..]).is_some_and(|n| n.0 == 0);
+        if text(&out[i]) == "each" && noun && super::super::rephrase::is_verb(&out[0]) {
+            out[i].text = "every".into();
+        }
+    }
     out = super::gaps::filled(out);
     if let Some(new) = super::idioms::plain(&out, talk).or_else(|| super::passive::added(&out, talk)) {
         out = new;
