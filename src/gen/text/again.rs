@@ -325,7 +325,11 @@ impl Parser<'_> {
 
     /// "and all three come towards us": those named last, if they are so many. True if it was that.
     pub(super) fn all_of_them(&mut self, count: Count) -> bool {
-        if self.edits || self.pending.is_some() || self.pre.pick != Some(Pick::All) || self.noun_ahead(self.at + 1) {
+        if self.edits
+            || self.pending.is_some()
+            || self.pre.pick != Some(Pick::All)
+            || self.noun_ahead(self.at + 1)
+        {
             return false;
         }
         let mut sum = 0;
@@ -340,7 +344,10 @@ impl Parser<'_> {
         if sum != count.n || !count.is_exact() {
             return false;
         }
-        if self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom")) {
+        if self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom"))
+        {
             self.at += 1;
         }
         found.reverse();

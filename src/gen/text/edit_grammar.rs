@@ -235,7 +235,11 @@ impl<'t> Reader<'t> {
         if let Some((_, np)) = cut {
             let mut spared = Command::new(Verb::Note, self.text, np[0].span);
             target_part(self.text, &tag(&np), &mut spared);
-            for c in out.iter_mut().filter(|c| c.targets.iter().any(|t| t.plural)).take(1) {
+            for c in out
+                .iter_mut()
+                .filter(|c| c.targets.iter().any(|t| t.plural))
+                .take(1)
+            {
                 c.except.clone_from(&spared.targets);
             }
         }

@@ -63,15 +63,19 @@ impl Editor<'_> {
                 let said = c.text.to_lowercase();
                 // "the opposite kerb" is the one that it does not stand at
                 let opposite = ["opposite", "other", "far"].iter().any(|w| {
-                    ["kerb", "curb", "pavement", "sidewalk", "side", "roadside", "footpath", "edge", "verge"]
-                        .iter()
-                        .any(|s| said.contains(&format!("{w} {s}")))
+                    [
+                        "kerb", "curb", "pavement", "sidewalk", "side", "roadside", "footpath", "edge",
+                        "verge",
+                    ]
+                    .iter()
+                    .any(|s| said.contains(&format!("{w} {s}")))
                 });
                 // What stands at the edge of the road stands at the other edge there.
                 let over = ["other side", "opposite side", "far side", "across the"]
                     .iter()
                     .any(|w| said.contains(w));
-                let aside = b.class.is_vehicle() && super::select::state_of(&self.map, &b, ObjectState::Parked)
+                let aside = b.class.is_vehicle()
+                    && super::select::state_of(&self.map, &b, ObjectState::Parked)
                     || matches!(
                         role_of(&self.map, &b),
                         Some(LaneRole::LeftRoadside | LaneRole::RightRoadside)

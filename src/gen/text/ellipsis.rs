@@ -57,7 +57,10 @@ fn is_unit(t: &Token) -> bool {
 fn is_strip(word: &str) -> bool {
     matches!(
         look_up(word),
-        Some(Sense::Place(Anchor::Lane(LaneRole::Roadside | LaneRole::Sidewalk), _))
+        Some(Sense::Place(
+            Anchor::Lane(LaneRole::Roadside | LaneRole::Sidewalk),
+            _
+        ))
     )
 }
 
@@ -89,7 +92,9 @@ fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
             (Some(n), Some(metres)) => {
                 out.extend(metres);
                 i += n;
-                i += begins(&sentence[i..], "away from|from|away").filter(|_| ends(sentence.get(i + 1))).unwrap_or(0);
+                i += begins(&sentence[i..], "away from|from|away")
+                    .filter(|_| ends(sentence.get(i + 1)))
+                    .unwrap_or(0);
             }
             _ => {
                 out.push(sentence[i].clone());
@@ -111,9 +116,15 @@ fn same_side(sentence: &[Token], before: &[Token]) -> Vec<Token> {
             .chain(before)
             .rev()
             .find(|t| matches!(t.text.as_str(), "left" | "right"))
-            .or_else(|| before.iter().rev().find(|t| matches!(t.text.as_str(), "left" | "right")))
+            .or_else(|| {
+                before
+                    .iter()
+                    .rev()
+                    .find(|t| matches!(t.text.as_str(), "left" | "right"))
+            })
             .map(|t| t.text.clone());
-        let own = |n: usize| begins(&sentence[i + n..], "of me|of us|of it|of the bus|of my car|as").is_none();
+        let own =
+            |n: usize| begins(&sentence[i + n..], "of me|of us|of it|of the bus|of my car|as").is_none();
         match (begins(&sentence[i..], SAME).filter(|n| own(*n)), side) {
             (Some(n), Some(side)) => {
                 out.extend(["on", "the", &side].map(|w| word(w, &sentence[i])));
@@ -142,7 +153,8 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
     let mut out = sentence[..lane].to_vec();
     let mut i = lane;
     while i < sentence.len() {
-        let one = begins(&sentence[i..], "the one|that").filter(|n| begins(&sentence[i + n..], SIDES).is_some());
+        let one =
+            begins(&sentence[i..], "the one|that").filter(|n| begins(&sentence[i + n..], SIDES).is_some());
         let Some(n) = one else {
             out.push(sentence[i].clone());
             i += 1;
@@ -159,7 +171,10 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
             .is_some_and(|t| matches!(t.text.as_str(), "a" | "an" | "another") || number(t).is_some());
         if fresh && has.is_some() {
             out.push(word("has", &sentence[i]));
-            if let Some(t) = out.get_mut(at.saturating_sub(1)).filter(|t| t.kind == TokenKind::Comma) {
+            if let Some(t) = out
+                .get_mut(at.saturating_sub(1))
+                .filter(|t| t.kind == TokenKind::Comma)
+            {
                 t.kind = TokenKind::Stop;
             }
         }
@@ -180,7 +195,9 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
         i += 1;
         // "on the right kerb, two cars on the left": of the cars nothing was left out
         named += usize::from(is_noun(t));
-        let led = out.len() > 2 && prep(&out[out.len() - 3]) && matches!(out[out.len() - 2].text.as_str(), "the" | "my" | "our");
+        let led = out.len() > 2
+            && prep(&out[out.len() - 3])
+            && matches!(out[out.len() - 2].text.as_str(), "the" | "my" | "our");
         if !side(t) || !led {
             continue;
         }
@@ -193,7 +210,10 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
             && first.text == lead.text
             && other.text != t.text
             && named == 0
-            && (ends(sentence.get(i)) || sentence.get(i).is_some_and(|t| matches!(t.text.as_str(), "and" | "one" | "too" | "as")))
+            && (ends(sentence.get(i))
+                || sentence
+                    .get(i)
+                    .is_some_and(|t| matches!(t.text.as_str(), "and" | "one" | "too" | "as")))
         {
             i += usize::from(sentence.get(i).is_some_and(|t| t.text == "one"));
             out.push(Token {
@@ -239,9 +259,9 @@ fn more_groups(sentence: &[Token]) -> Vec<Token> {
             "dozen" => Some(12),
             _ => number(t).filter(|k| *k > 1),
         });
-        let noun = sentence.get(i + n + 1..).is_some_and(|rest| {
-            begins(rest, "of").is_some() || rest.iter().take(2).any(is_noun)
-        });
+        let noun = sentence
+            .get(i + n + 1..)
+            .is_some_and(|rest| begins(rest, "of").is_some() || rest.iter().take(2).any(is_noun));
         match many.filter(|_| n > 0 && !noun) {
             Some(k) => {
                 out.push(digits(k, &sentence[i]));
@@ -277,11 +297,15 @@ fn one_a_side(sentence: &[Token]) -> Vec<Token> {
     let Some(i) = (1..sentence.len()).find(|i| begins(&sentence[*i..], EACH).is_some()) else {
         return sentence.to_vec();
     };
-    let two = sentence[..i]
-        .windows(3)
-        .any(|w| (number(&w[0]) == Some(2) || matches!(w[0].text.as_str(), "pair" | "couple")) && w[1..].iter().any(is_noun));
+    let two = sentence[..i].windows(3).any(|w| {
+        (number(&w[0]) == Some(2) || matches!(w[0].text.as_str(), "pair" | "couple"))
+            && w[1..].iter().any(is_noun)
+    });
     let n = begins(&sentence[i..], EACH).unwrap_or(0);
-    let Some(place) = sentence.get(i + n).filter(|t| two && (t.text == "side" || is_strip(&t.text))) else {
+    let Some(place) = sentence
+        .get(i + n)
+        .filter(|t| two && (t.text == "side" || is_strip(&t.text)))
+    else {
         return sentence.to_vec();
     };
     let mut out = sentence[..i].to_vec();
@@ -302,16 +326,22 @@ fn each_has_one(sentence: &[Token]) -> Vec<Token> {
             sentence[i - 1].text.as_str(),
             "behind" | "beside" | "of" | "to" | "near" | "before" | "on" | "following"
         );
-        led && begins(&sentence[*i..], EACH).is_some_and(|n| !sentence.get(i + n).is_some_and(|t| is_noun(t) || is_strip(&t.text) || t.text == "side" || t.text == "other"))
+        led && begins(&sentence[*i..], EACH).is_some_and(|n| {
+            !sentence
+                .get(i + n)
+                .is_some_and(|t| is_noun(t) || is_strip(&t.text) || t.text == "side" || t.text == "other")
+        })
     }) else {
         return sentence.to_vec();
     };
     let n = begins(&sentence[i..], EACH).unwrap_or(1);
     let many = (0..i).rev().find_map(|k| {
-        let group = sentence[k + 1..i].iter().take(3).any(is_noun) && !sentence.get(k + 1).is_some_and(is_unit);
+        let group =
+            sentence[k + 1..i].iter().take(3).any(is_noun) && !sentence.get(k + 1).is_some_and(is_unit);
         number(&sentence[k]).filter(|c| group && (2..=12).contains(c))
     });
-    let one = (i + n..sentence.len().min(i + n + 4)).find(|k| matches!(sentence[*k].text.as_str(), "a" | "an" | "one"));
+    let one = (i + n..sentence.len().min(i + n + 4))
+        .find(|k| matches!(sentence[*k].text.as_str(), "a" | "an" | "one"));
     let (Some(many), Some(one)) = (many, one) else {
         return sentence.to_vec();
     };
@@ -358,7 +388,14 @@ fn all_but(tokens: &[Token]) -> Vec<Token> {
             continue;
         };
         if let Some((k, noun)) = own {
-            out.extend([digits(k, &tokens[i]), noun.clone(), Token { kind: TokenKind::Comma, ..word(",", noun) }]);
+            out.extend([
+                digits(k, &tokens[i]),
+                noun.clone(),
+                Token {
+                    kind: TokenKind::Comma,
+                    ..word(",", noun)
+                },
+            ]);
             next += of + 2;
         } else {
             next += begins(&rest[next..], "of them").unwrap_or(0);

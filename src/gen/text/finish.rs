@@ -128,7 +128,12 @@ fn split_sides(mentions: &mut Vec<Mention>) {
             let mut second = mentions[j].clone();
             mentions[j].spec.count = part(left);
             second.spec.count = part(right);
-            for r in second.spec.relations.iter_mut().filter(|r| r.anchor == Anchor::Object(i)) {
+            for r in second
+                .spec
+                .relations
+                .iter_mut()
+                .filter(|r| r.anchor == Anchor::Object(i))
+            {
                 r.anchor = Anchor::Object(twin);
             }
             mentions.push(second);

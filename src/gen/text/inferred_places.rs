@@ -32,15 +32,27 @@ fn is_ahead(m: &Mention) -> bool {
 /// What is behind something ahead of us is ahead, too: between it and us. The span to note it with.
 fn ahead_too(m: &Mention, all: &[Mention], relation: R, of: usize) -> Option<super::tokens::Span> {
     let by = |k: usize| {
-        all.get(k)?.spec.relations.iter().find_map(|r| match (r.relation, r.anchor) {
-            (R::NextTo, Anchor::Object(j)) => all.get(j),
-            _ => None,
-        })
+        all.get(k)?
+            .spec
+            .relations
+            .iter()
+            .find_map(|r| match (r.relation, r.anchor) {
+                (R::NextTo, Anchor::Object(j)) => all.get(j),
+                _ => None,
+            })
     };
     let other = all.get(of)?;
     let ahead = is_ahead(other) || by(of).is_some_and(is_ahead);
-    let told = m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego || is_lane(r.anchor));
-    let near = other.spec.relations.iter().any(|r| r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d < 14.0));
+    let told = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Ego || is_lane(r.anchor));
+    let near = other
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d < 14.0));
     let still = m.spec.state == Some(ObjectState::Parked);
     (relation == R::Behind && ahead && !told && !near && !still && m.spec.count.n <= 2).then_some(m.spec.span)
 }
@@ -86,7 +98,9 @@ pub fn infer(mentions: &mut [Mention]) {
             let room = mentions[i].spec.class == Class::Trailer || is_ahead(&mentions[i]);
             let room_m = room_m(other.spec.class, mentions[i].spec.class);
             let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
-            if let (Some(far), true, R::Behind | R::Following) = (far, room && other.spec.count.n == 1, r.relation) {
+            if let (Some(far), true, R::Behind | R::Following) =
+                (far, room && other.spec.count.n == 1, r.relation)
+            {
                 far.distance_m = far.distance_m.or(Some(room_m));
             }
         }
@@ -95,7 +109,11 @@ pub fn infer(mentions: &mut [Mention]) {
 
 /// "a barrier blocks our lane 25 m out": so far ahead.
 fn blocked_at(m: &mut Mention) {
-    let ahead = m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
+    let ahead = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
     let far = m
         .spec
         .relations
@@ -120,7 +138,9 @@ fn stranded(m: &mut Mention) {
         r.relation == R::On
             && matches!(
                 r.anchor,
-                Anchor::Junction | Anchor::Crossing | Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+                Anchor::Junction
+                    | Anchor::Crossing
+                    | Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
             )
     });
     if there && m.spec.state == Some(ObjectState::Parked) {
@@ -132,13 +152,20 @@ fn stranded(m: &mut Mention) {
 fn same_strip(m: &Mention, other: &Mention) -> Option<Stated> {
     // ("behind that a second one": alike in this, too)
     let alike = m.spec.state.is_none() && m.spec.class == other.spec.class && m.spec.relations.len() == 1;
-    let parked = (alike || m.spec.state == Some(ObjectState::Parked)) && other.spec.state == Some(ObjectState::Parked);
-    let placed = m.spec.relations.iter().any(|r| matches!(r.relation, R::On | R::ParkedOn) && is_lane(r.anchor));
+    let parked =
+        (alike || m.spec.state == Some(ObjectState::Parked)) && other.spec.state == Some(ObjectState::Parked);
+    let placed = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| matches!(r.relation, R::On | R::ParkedOn) && is_lane(r.anchor));
     let strip = other.spec.relations.iter().find(|r| {
         matches!(r.relation, R::On | R::ParkedOn)
             && matches!(
                 r.anchor,
-                Anchor::Lane(LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Roadside | LaneRole::Carpark)
+                Anchor::Lane(
+                    LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Roadside | LaneRole::Carpark
+                )
             )
     })?;
     (parked && !placed && m.spec.class.is_vehicle()).then_some(Stated {
@@ -150,10 +177,16 @@ fn same_strip(m: &Mention, other: &Mention) -> Option<Stated> {
 
 /// The way that something oncoming before or behind this goes.
 fn same_way(m: &Mention, other: &Mention) -> Option<Stated> {
-    let drives = |m: &Mention| m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
-    let ways = |r: &&Stated| matches!(r.relation, R::OppositeDirection | R::SameDirection) && r.anchor == Anchor::Ego;
+    let drives =
+        |m: &Mention| m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let ways = |r: &&Stated| {
+        matches!(r.relation, R::OppositeDirection | R::SameDirection) && r.anchor == Anchor::Ego
+    };
     let told = m.spec.relations.iter().any(|r| {
-        ways(&r) || r.anchor == Anchor::Ego && matches!(r.relation, R::Facing | R::FacingAway | R::InFrontOf | R::Behind) || is_lane(r.anchor)
+        ways(&r)
+            || r.anchor == Anchor::Ego
+                && matches!(r.relation, R::Facing | R::FacingAway | R::InFrontOf | R::Behind)
+            || is_lane(r.anchor)
     });
     let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
     let way = other.spec.relations.iter().find(ways)?;

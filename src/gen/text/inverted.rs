@@ -8,7 +8,11 @@ use super::wording::{begins, replaced, word};
 
 /// A prompt in plain order.
 pub fn ordered(tokens: &[Token]) -> Vec<Token> {
-    let out = replaced(tokens, "around is|about is|present is|in sight is|to be seen is", "is");
+    let out = replaced(
+        tokens,
+        "around is|about is|present is|in sight is|to be seen is",
+        "is",
+    );
     let out = pointing_back(&out);
     let out = participle_first(&out);
     let out = crossed_over(&out);
@@ -19,7 +23,11 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
-    let out = replaced(&out, "namely|to wit|viz|that is to say|specifically|to be exact", "which is");
+    let out = replaced(
+        &out,
+        "namely|to wit|viz|that is to say|specifically|to be exact",
+        "which is",
+    );
     let out = replaced(
         &out,
         "nothing else on wheels|nothing on wheels|nothing else that moves|no other traffic|nothing else drives|nothing else on the road",
@@ -34,7 +42,10 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
 
 fn opens(tokens: &[Token], i: usize) -> bool {
     i == 0
-        || matches!(tokens[i - 1].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
+        || matches!(
+            tokens[i - 1].kind,
+            TokenKind::Comma | TokenKind::Stop | TokenKind::Mark
+        )
         || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but")
 }
 
@@ -47,9 +58,17 @@ fn pointing_back(tokens: &[Token]) -> Vec<Token> {
     let mut out = tokens.to_vec();
     for i in 1..tokens.len() {
         let that = matches!(tokens[i].text.as_str(), "that" | "this");
-        let led = matches!(tokens[i - 1].text.as_str(), "behind" | "of" | "beside" | "after" | "before" | "to" | "near" | "following");
+        let led = matches!(
+            tokens[i - 1].text.as_str(),
+            "behind" | "of" | "beside" | "after" | "before" | "to" | "near" | "following"
+        );
         let next = tokens.get(i + 1).is_none_or(|t| {
-            t.kind != TokenKind::Word || is_fresh(t) || matches!(t.text.as_str(), "is" | "are" | "there" | "stands" | "comes" | "and" | "again" | "waits")
+            t.kind != TokenKind::Word
+                || is_fresh(t)
+                || matches!(
+                    t.text.as_str(),
+                    "is" | "are" | "there" | "stands" | "comes" | "and" | "again" | "waits"
+                )
         });
         if that && led && next {
             out[i].text = "it".into();
@@ -65,11 +84,22 @@ fn crossed_over(tokens: &[Token]) -> Vec<Token> {
     for (i, t) in tokens.iter().enumerate() {
         out.push(t.clone());
         let over = matches!(t.text.as_str(), "over" | "across")
-            && tokens.get(i + 1).is_none_or(|n| matches!(n.kind, TokenKind::Comma | TokenKind::Stop));
+            && tokens
+                .get(i + 1)
+                .is_none_or(|n| matches!(n.kind, TokenKind::Comma | TokenKind::Stop));
         let walks = i > 0
             && matches!(
                 tokens[i - 1].text.as_str(),
-                "walking" | "walks" | "walk" | "going" | "goes" | "running" | "runs" | "hurrying" | "hurries" | "strolling"
+                "walking"
+                    | "walks"
+                    | "walk"
+                    | "going"
+                    | "goes"
+                    | "running"
+                    | "runs"
+                    | "hurrying"
+                    | "hurries"
+                    | "strolling"
             );
         if over && walks && tokens[..i].iter().any(zebra) {
             out.pop();
@@ -99,7 +129,10 @@ fn beyond(tokens: &[Token]) -> Vec<Token> {
 fn participle_first(tokens: &[Token]) -> Vec<Token> {
     let mut out = tokens.to_vec();
     for i in 0..tokens.len() {
-        let state = matches!(tokens[i].text.as_str(), "parked" | "standing" | "waiting" | "stopped" | "sitting" | "walking");
+        let state = matches!(
+            tokens[i].text.as_str(),
+            "parked" | "standing" | "waiting" | "stopped" | "sitting" | "walking"
+        );
         let placed = tokens.get(i + 1).and_then(|_| {
             (1..=5.min(tokens.len() - i - 1)).rev().find_map(|n| {
                 let words: Vec<&str> = tokens[i + 1..=i + n].iter().map(|t| t.text.as_str()).collect();
@@ -127,14 +160,18 @@ fn participle_first(tokens: &[Token]) -> Vec<Token> {
 
 /// "the children it is waiting for are walking over": a clause without a pronoun of its own says nothing of where they are.
 fn without_contact_clause(tokens: &[Token]) -> Vec<Token> {
-    let be = |t: Option<&Token>| t.is_some_and(|t| matches!(t.text.as_str(), "is" | "are" | "was" | "were" | "has" | "have"));
+    let be = |t: Option<&Token>| {
+        t.is_some_and(|t| matches!(t.text.as_str(), "is" | "are" | "was" | "were" | "has" | "have"))
+    };
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
         let subject = matches!(tokens[i].text.as_str(), "it" | "he" | "she" | "they");
         let led = out.last().is_some_and(is_noun);
         let doing = be(tokens.get(i + 1)) && tokens.get(i + 2).is_some_and(|t| t.text.ends_with("ing"));
-        let prep = tokens.get(i + 3).is_some_and(|t| matches!(t.text.as_str(), "for" | "to" | "at" | "on" | "with" | "behind"));
+        let prep = tokens
+            .get(i + 3)
+            .is_some_and(|t| matches!(t.text.as_str(), "for" | "to" | "at" | "on" | "with" | "behind"));
         if subject && led && doing && prep && be(tokens.get(i + 4)) {
             i += 4;
             continue;
@@ -151,7 +188,8 @@ fn way_of_another(tokens: &[Token]) -> Vec<Token> {
     for (i, t) in tokens.iter().enumerate() {
         let lane = i > 0 && matches!(tokens[i - 1].text.as_str(), "lane" | "road" | "way" | "street");
         let of = begins(&tokens[i..], "ahead of|in front of").filter(|_| lane);
-        let mine = of.is_some_and(|n| begins(&tokens[i + n..], "me|us|my|our|the ego|ego|the host").is_some());
+        let mine =
+            of.is_some_and(|n| begins(&tokens[i + n..], "me|us|my|our|the ego|ego|the host").is_some());
         if of.is_some() && !mine && i + 2 < tokens.len() {
             out.push(Token {
                 kind: TokenKind::Comma,
@@ -173,13 +211,21 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
         let whole = begins(&tokens[i..], WHO).and_then(|n| {
             let verb = begins(&tokens[i + n..], LEFT)?;
             let k = i + n + verb;
-            let his = tokens.get(k).is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their"));
+            let his = tokens
+                .get(k)
+                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their"));
             let noun = (k + 1..tokens.len().min(k + 5)).find(|j| is_noun(&tokens[*j]))?;
             let more = tokens.get(noun + 1..).is_some_and(|rest| {
                 rest.iter()
                     .take_while(|t| !matches!(t.kind, TokenKind::Stop))
                     .zip(rest.iter().skip(1))
-                    .any(|(a, b)| a.text == "and" && matches!(b.text.as_str(), "is" | "stands" | "walks" | "now" | "has" | "he" | "she"))
+                    .any(|(a, b)| {
+                        a.text == "and"
+                            && matches!(
+                                b.text.as_str(),
+                                "is" | "stands" | "walks" | "now" | "has" | "he" | "she"
+                            )
+                    })
             });
             (his && !more).then_some((k, noun))
         });
@@ -215,8 +261,12 @@ fn labels(tokens: &[Token]) -> Vec<Token> {
         }
         let measure = matches!(t.text.as_str(), "range" | "distance" | "headway" | "gap") && opens(tokens, i);
         let from = i + 1 + usize::from(colon);
-        let metres = tokens.get(from).is_some_and(|n| matches!(n.kind, TokenKind::Number(_)))
-            && tokens.get(from + 1).is_some_and(|u| matches!(look_up(&u.text), Some(Sense::Unit(_))));
+        let metres = tokens
+            .get(from)
+            .is_some_and(|n| matches!(n.kind, TokenKind::Number(_)))
+            && tokens
+                .get(from + 1)
+                .is_some_and(|u| matches!(look_up(&u.text), Some(Sense::Unit(_))));
         if measure && metres && !colon {
             out.push(word("at", t));
             continue;
@@ -229,8 +279,27 @@ fn labels(tokens: &[Token]) -> Vec<Token> {
 /// "shows us its back", "has its front to me": how it faces.
 fn shown(tokens: &[Token]) -> Vec<Token> {
     const SHOWS: &str = "shows|show|showing|turns|turn|turning|presents|presenting|offers|has|have|having|with|points|pointing";
-    let front = |w: &str| matches!(w, "front" | "nose" | "face" | "bonnet" | "hood" | "headlights" | "headlamps" | "grille" | "fronts" | "faces");
-    let back = |w: &str| matches!(w, "back" | "rear" | "tail" | "backs" | "taillights" | "boot" | "backside");
+    let front = |w: &str| {
+        matches!(
+            w,
+            "front"
+                | "nose"
+                | "face"
+                | "bonnet"
+                | "hood"
+                | "headlights"
+                | "headlamps"
+                | "grille"
+                | "fronts"
+                | "faces"
+        )
+    };
+    let back = |w: &str| {
+        matches!(
+            w,
+            "back" | "rear" | "tail" | "backs" | "taillights" | "boot" | "backside"
+        )
+    };
     let me = |t: Option<&Token>| t.is_some_and(|t| matches!(t.text.as_str(), "me" | "us"));
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
@@ -239,7 +308,9 @@ fn shown(tokens: &[Token]) -> Vec<Token> {
             let mut k = i + n;
             let mut ego = me(tokens.get(k));
             k += usize::from(ego);
-            let own = tokens.get(k).is_some_and(|t| matches!(t.text.as_str(), "its" | "his" | "her" | "their"));
+            let own = tokens
+                .get(k)
+                .is_some_and(|t| matches!(t.text.as_str(), "its" | "his" | "her" | "their"));
             let part = tokens.get(k + 1)?.text.clone();
             k += 2;
             if !ego {
@@ -281,10 +352,31 @@ fn watched_from(tokens: &[Token]) -> Vec<Token> {
         let watches = i > 0
             && matches!(
                 tokens[i - 1].text.as_str(),
-                "watching" | "watch" | "watches" | "looking" | "look" | "looks" | "on" | "standing" | "waving" | "waves" | "observing" | "observe" | "shouting" | "calling" | "staring"
+                "watching"
+                    | "watch"
+                    | "watches"
+                    | "looking"
+                    | "look"
+                    | "looks"
+                    | "on"
+                    | "standing"
+                    | "waving"
+                    | "waves"
+                    | "observing"
+                    | "observe"
+                    | "shouting"
+                    | "calling"
+                    | "staring"
             );
-        if t.text == "from" && watches && tokens.get(i + 1).is_some_and(|n| matches!(n.text.as_str(), "the" | "a" | "my" | "our")) {
-            let centre = tokens.get(i + 2).is_some_and(|n| matches!(n.text.as_str(), "middle" | "centre" | "center"));
+        if t.text == "from"
+            && watches
+            && tokens
+                .get(i + 1)
+                .is_some_and(|n| matches!(n.text.as_str(), "the" | "a" | "my" | "our"))
+        {
+            let centre = tokens
+                .get(i + 2)
+                .is_some_and(|n| matches!(n.text.as_str(), "middle" | "centre" | "center"));
             out.push(word(if centre { "in" } else { "on" }, t));
         } else {
             out.push(t.clone());
@@ -308,10 +400,19 @@ mod tests {
             said("and parked in front of that is a van"),
             "and in front of that is a parked van"
         );
-        assert_eq!(said("the children it is waiting for are walking"), "the children are walking");
-        assert_eq!(said("some fool has parked his van on the pavement"), "a van is parked on the pavement");
+        assert_eq!(
+            said("the children it is waiting for are walking"),
+            "the children are walking"
+        );
+        assert_eq!(
+            said("some fool has parked his van on the pavement"),
+            "a van is parked on the pavement"
+        );
         assert_eq!(said("Rear: a van, range 20 m"), "behind me : a van , at 20 m");
         assert_eq!(said("the other shows me its front"), "the other facing me");
-        assert_eq!(said("it blocks the lane ahead of it"), "it blocks the lane , ahead of it");
+        assert_eq!(
+            said("it blocks the lane ahead of it"),
+            "it blocks the lane , ahead of it"
+        );
     }
 }

@@ -340,7 +340,11 @@ fn build() -> Table {
             }
         }
     }
-    for noun in places::SIDED.iter().flat_map(|s| words(s.3)).filter(|w| !w.contains(' ')) {
+    for noun in places::SIDED
+        .iter()
+        .flat_map(|s| words(s.3))
+        .filter(|w| !w.contains(' '))
+    {
         for prep in ["on", "at", "along"] {
             put(&format!("{prep} both {}", plural(noun)), Sense::BothSides(false));
             for each in ["each", "either"] {

@@ -1,6 +1,7 @@
 //! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
 
 mod again;
+mod amounts;
 mod back;
 pub mod description;
 pub mod edit;
@@ -11,6 +12,8 @@ mod edit_move;
 mod edit_moving;
 mod edit_place;
 mod ellipsis;
+mod exchange;
+mod existence;
 mod finish;
 pub mod holds;
 mod inferred_places;
@@ -21,7 +24,6 @@ mod mention;
 pub mod parse;
 pub mod place;
 mod rephrase;
-mod restate;
 pub mod road;
 mod said;
 mod select;

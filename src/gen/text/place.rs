@@ -325,7 +325,8 @@ impl Placer<'_> {
             }
             // what comes towards the ego vehicle has not passed it yet
             let comes = stated.iter().any(|(e, t)| {
-                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX) && e.relation == RelationKind::OppositeDirection
+                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                    && e.relation == RelationKind::OppositeDirection
             });
             if comes && s.p.x < 4.0 {
                 cost += 2.0;

@@ -1,8 +1,10 @@
 //! Edits said as statements, turned into commands before they are read: "the bus should go" is "remove the bus", "the taxi
 //! ought to be a van" is "make the taxi a van", "one pedestrian less" is "keep the pedestrians", with one fewer.
 
+use super::amounts::{arithmetic, counted};
+use super::exchange::exchanged;
+use super::existence::{nobody, sent_off, there};
 use super::lexicon::{Sense, look_up};
-use super::restate::{clauses, restate};
 use super::tokens::{Token, TokenKind};
 use super::words::edits::VERBS;
 
@@ -176,7 +178,7 @@ fn starts_with(tokens: &[Token], words: &[&str]) -> bool {
     tokens.len() >= words.len() && tokens.iter().zip(words).all(|(t, w)| t.text == *w)
 }
 
-fn strip<'a>(mut tokens: &'a [Token], lists: &[&[&str]]) -> &'a [Token] {
+pub fn strip<'a>(mut tokens: &'a [Token], lists: &[&[&str]]) -> &'a [Token] {
     'again: loop {
         for words in lists {
             if tokens.len() > words.len() && starts_with(tokens, words) {
@@ -255,23 +257,13 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         let put_back = topic(body);
         let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        let parts = clauses(&body);
-        for (i, clause) in parts.iter().enumerate() {
-            let Some(first) = clause.first() else {
-                continue;
-            };
-            let (new, change) = one(clause);
+        if let Some(first) = body.first() {
+            let (new, change) = one(&body);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));
             }
             out.tokens.extend(new);
-            if i + 1 < parts.len() {
-                out.tokens.push(Token {
-                    kind: TokenKind::Stop,
-                    ..word(".", first)
-                });
-            }
         }
         out.tokens.extend(stop.cloned());
     }
@@ -321,7 +313,10 @@ fn topic(body: &[Token]) -> Option<Vec<Token>> {
         let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
         // "whatever is behind me, delete it": all of it
         let removed = body[cut + 1..].iter().take(3).any(|t| {
-            matches!(t.text.as_str(), "remove" | "delete" | "erase" | "drop" | "clear" | "lose" | "bin" | "rid" | "scrap")
+            matches!(
+                t.text.as_str(),
+                "remove" | "delete" | "erase" | "drop" | "clear" | "lose" | "bin" | "rid" | "scrap"
+            )
         });
         np.push(word(if removed { "all" } else { "the" }, first));
         np.push(word(
@@ -425,6 +420,17 @@ fn take_ordinals(body: &[Token], out: &mut Rephrased) -> Vec<Token> {
         }
     }
     kept
+}
+
+/// A clause as a command, and how a number changes by it; `None` if it is one already or none of these.
+fn restate(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
+    counted(clause).or_else(|| {
+        let found = nobody(clause)
+            .or_else(|| exchanged(clause))
+            .or_else(|| sent_off(clause))
+            .or_else(|| there(clause))?;
+        Some((found, None))
+    })
 }
 
 fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
@@ -654,96 +660,6 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (rest.to_vec(), None);
     }
     (stated(rest).unwrap_or_else(|| rest.to_vec()), None)
-}
-
-/// "double the cars", "half as many cars", "two fewer pedestrians", "one pedestrian less".
-fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
-    let at = |words: &[&str]| -> Option<usize> { (0..rest.len()).find(|i| starts_with(&rest[*i..], words)) };
-    let first = &rest[0];
-    let times = [
-        ("double", 2.0),
-        ("triple", 3.0),
-        ("treble", 3.0),
-        ("quadruple", 4.0),
-        ("halve", 0.5),
-        ("twice", 2.0),
-        ("thrice", 3.0),
-    ];
-    let lead = strip(
-        rest,
-        &[
-            &["make"],
-            &["make", "it"],
-            &["put"],
-            &["add"],
-            &["have"],
-            &["show"],
-        ],
-    );
-    let mut factor = lead
-        .first()
-        .and_then(|t| times.iter().find(|(w, _)| t.text == *w))
-        .map(|(_, f)| *f);
-    if starts_with(lead, &["half", "as", "many"])
-        || starts_with(lead, &["half", "the", "number"])
-        || starts_with(lead, &["cut", "the", "number"]) && at(&["half"]).is_some()
-    {
-        factor = Some(0.5);
-    }
-    if lead.get(1).is_some_and(|t| t.text == "times") {
-        factor = lead.first().and_then(number).map(|n| n as f64);
-    }
-    let noun_from = |tokens: &[Token]| -> Option<usize> { tokens.iter().position(is_noun) };
-    if let Some(f) = factor {
-        let noun = noun_from(lead)?;
-        let double_decker = lead[0].text == "double"
-            && lead
-                .get(1)
-                .is_some_and(|t| t.text == "decker" || t.text == "parked");
-        if double_decker {
-            return None;
-        }
-        // what is said between the number words and the noun belongs to it
-        let small = ["the", "number", "of", "as", "many", "times", "a"];
-        let mut from = noun;
-        while from > 1 && !small.contains(&lead[from - 1].text.as_str()) && number(&lead[from - 1]).is_none()
-        {
-            from -= 1;
-        }
-        let end = lead
-            .iter()
-            .position(|t| matches!(t.text.as_str(), "in" if t.text == "half"))
-            .unwrap_or(lead.len());
-        return Some((
-            with_verb("keep the", first, &lead[from.min(end)..end]),
-            Change::Times(f),
-        ));
-    }
-    // fewer and less; more, where it comes after the noun
-    let fewer = rest
-        .iter()
-        .position(|t| matches!(t.text.as_str(), "fewer" | "less"))?;
-    let n = rest[..fewer]
-        .iter()
-        .rev()
-        .find_map(|t| number(t).or((matches!(t.text.as_str(), "a" | "an")).then_some(1)))
-        .unwrap_or(1);
-    let noun = noun_from(rest)?;
-    let next_to_noun = fewer + 1 == rest.len() || fewer < noun || rest[fewer + 1].text == "please";
-    if !next_to_noun || rest.get(fewer + 1).is_some_and(|t| t.text == "than") {
-        return None;
-    }
-    let mut tokens: Vec<Token> = Vec::new();
-    for (i, t) in rest.iter().enumerate() {
-        let skip = i == fewer
-            || (i < noun
-                && (number(t).is_some()
-                    || matches!(t.text.as_str(), "a" | "an" | "make" | "it" | "one" | "have")));
-        if !skip {
-            tokens.push(t.clone());
-        }
-    }
-    Some((with_verb("keep the", first, &tokens), Change::Plus(-n)))
 }
 
 /// What is wished for: to be gone, elsewhere, something else, or there.

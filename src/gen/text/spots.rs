@@ -120,8 +120,9 @@ pub fn spots(
                 }
                 _ => g.walks(),
             }
-            let on_junction =
-                |(e, t): &(Edge, Option<Target>)| matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On;
+            let on_junction = |(e, t): &(Edge, Option<Target>)| {
+                matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
+            };
             if stated.iter().any(on_junction) {
                 g.amid_junction();
             }

@@ -170,7 +170,9 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 });
             }
             ("pedestrian crossing", _)
-                if next.is_some_and(leads_to_road) && !(at_place(out.as_slice()) && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false)))) =>
+                if next.is_some_and(leads_to_road)
+                    && !(at_place(out.as_slice())
+                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false)))) =>
             {
                 // "a pedestrian crossing the road"
                 let cut = item.span.start + "pedestrian".len();

@@ -285,14 +285,12 @@ impl Parser<'_> {
                     fresh && self.noun_ahead(self.at + 1) && matches!(f, Anchor::Ego | Anchor::Object(_))
                 })
                 .filter(|_| {
-                    self.pending
-                        .as_ref()
-                        .is_some_and(|p| match &p.prep {
-                            Prep::Rels(kinds) => {
-                                kinds.contains(&RelationKind::LeftOf) || kinds.contains(&RelationKind::RightOf)
-                            }
-                            _ => false,
-                        })
+                    self.pending.as_ref().is_some_and(|p| match &p.prep {
+                        Prep::Rels(kinds) => {
+                            kinds.contains(&RelationKind::LeftOf) || kinds.contains(&RelationKind::RightOf)
+                        }
+                        _ => false,
+                    })
                 });
             let placed_in = self
                 .pending

@@ -48,7 +48,7 @@ pub(super) struct Parser<'a> {
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
-    fronted_both: Option<bool>, // "on both sides stand ..."
+    fronted_both: Option<bool>,  // "on both sides stand ..."
     pub(super) chain: bool,      // only nouns so far in this clause
     pub(super) list: Vec<usize>, // those nouns
     linked: bool,                // "and" or a comma right before

@@ -241,7 +241,10 @@ impl Parser<'_> {
             {
                 r.distance_m = Some(metres);
                 used = true;
-            } else if list.iter().all(|r| matches!(r.anchor, Anchor::Lane(_)) && r.distance_m.is_none()) {
+            } else if list
+                .iter()
+                .all(|r| matches!(r.anchor, Anchor::Lane(_)) && r.distance_m.is_none())
+            {
                 // "in front of me: a car at 10 m, a truck at 20 m": the side holds for all of the list
                 list.push(Stated {
                     relation: listed.unwrap_or(RelationKind::Near),

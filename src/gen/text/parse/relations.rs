@@ -103,7 +103,11 @@ impl Parser<'_> {
         }
         // "behind a bus that comes towards us, two cars": the bus comes
         let of_front = match self.fronted.last().map(|f| f.anchor) {
-            Some(Anchor::Object(i)) if self.head.is_empty() && !p.fresh && !p.ego && frag.anchor != Anchor::Object(i) => Some(i),
+            Some(Anchor::Object(i))
+                if self.head.is_empty() && !p.fresh && !p.ego && frag.anchor != Anchor::Object(i) =>
+            {
+                Some(i)
+            }
             _ => None,
         };
         if let Some(m) = of_front.and_then(|i| self.mentions.get_mut(i)) {
@@ -159,7 +163,9 @@ impl Parser<'_> {
             (_, Some(first)) => Some(first),
             (Prep::Rels(kinds), None) => match kinds.first() {
                 // "a bus has stopped at the zebra, and five children are walking over"
-                Some(RelationKind::Crossing) if self.last_place == Some(Anchor::Crossing) => Some(Anchor::Crossing),
+                Some(RelationKind::Crossing) if self.last_place == Some(Anchor::Crossing) => {
+                    Some(Anchor::Crossing)
+                }
                 Some(RelationKind::Crossing) => Some(Anchor::Lane(LaneRole::Road)),
                 Some(RelationKind::Blocking) => Some(Anchor::Lane(LaneRole::Ego)),
                 Some(

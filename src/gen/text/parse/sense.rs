@@ -30,7 +30,10 @@ impl<'a> Parser<'a> {
                     // "the left lane has two cars in it"
                     "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
                     // "my lane has been closed off by cones"
-                    "has" | "have" if self.item(self.at + 1).is_some_and(|n| n.words.starts_with("been")) => {}
+                    "has" | "have"
+                        if self
+                            .item(self.at + 1)
+                            .is_some_and(|n| n.words.starts_with("been")) => {}
                     "with" | "has" | "have" | "having" => {
                         self.with = true;
                         self.topic = None;
@@ -49,7 +52,8 @@ impl<'a> Parser<'a> {
                     }
                     // "a car park in which eight cars stand"
                     "which" | "that"
-                        if self.pending.as_ref().is_some_and(|p| p.first.is_none()) && self.last_place.is_some() =>
+                        if self.pending.as_ref().is_some_and(|p| p.first.is_none())
+                            && self.last_place.is_some() =>
                     {
                         if let (Some(place), Some(p)) = (self.last_place, self.pending.as_mut()) {
                             p.fresh = true;
@@ -100,7 +104,10 @@ impl<'a> Parser<'a> {
                     // "... obstructs the crossing; four people wait there"
                     "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
                     // "on both pavements stand three people each"
-                    "each" if self.ends(self.at + 1) && self.last.iter().any(|i| self.mentions[*i].both.is_some()) => {
+                    "each"
+                        if self.ends(self.at + 1)
+                            && self.last.iter().any(|i| self.mentions[*i].both.is_some()) =>
+                    {
                         for i in self.last.clone() {
                             self.mentions[i].both = self.mentions[i].both.map(|_| true);
                         }

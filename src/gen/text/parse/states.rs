@@ -100,7 +100,17 @@ impl Parser<'_> {
         for t in targets.iter().copied() {
             // "a lady cycling ahead of us" is on a bicycle
             let pedals = item.words.split(' ').any(|w| {
-                matches!(w, "cycling" | "cycles" | "cycle" | "cycled" | "pedalling" | "pedaling" | "pedals" | "biking")
+                matches!(
+                    w,
+                    "cycling"
+                        | "cycles"
+                        | "cycle"
+                        | "cycled"
+                        | "pedalling"
+                        | "pedaling"
+                        | "pedals"
+                        | "biking"
+                )
             });
             let m = &mut self.mentions[t];
             if pedals && m.spec.class == Class::Pedestrian && !self.edits {

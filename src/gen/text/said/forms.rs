@@ -223,22 +223,23 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
     let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
-    let goes = keeps || i == 0
-        && inner[end..].iter().any(|t| {
-            matches!(
-                text(t),
-                "go" | "gone"
-                    | "leave"
-                    | "leaves"
-                    | "left"
-                    | "away"
-                    | "removed"
-                    | "disappear"
-                    | "out"
-                    | "off"
-                    | "superfluous"
-            )
-        });
+    let goes = keeps
+        || i == 0
+            && inner[end..].iter().any(|t| {
+                matches!(
+                    text(t),
+                    "go" | "gone"
+                        | "leave"
+                        | "leaves"
+                        | "left"
+                        | "away"
+                        | "removed"
+                        | "disappear"
+                        | "out"
+                        | "off"
+                        | "superfluous"
+                )
+            });
     (removing || goes).then(|| {
         vec![Piece::Plain(led(
             "half the number of",
@@ -435,7 +436,12 @@ pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) 
         })
         .last()
         // "on its place comes motorbike"
-        .or((a == 0 || !is(rest.get(a - 1), &["the", "that", "this", "my", "both", "those", "these"])).then_some(a))?;
+        .or((a == 0
+            || !is(
+                rest.get(a - 1),
+                &["the", "that", "this", "my", "both", "those", "these"],
+            ))
+        .then_some(a))?;
     let np = &rest[lead..b];
     let span = inner.iter().fold(inner[0].span, |s: Span, t| s.to(t.span));
     let mut c = Command::new(Verb::Add, talk.text, span);

@@ -8,9 +8,35 @@ use super::lists::{HELPERS, NEGATED};
 use super::words::{find, first_noun, is, is_finite, leads, led, number, text, trimmed};
 
 const WISHES: &[&str] = &[
-    "there should be", "there must be", "there shall be", "let there be", "there are", "i want", "i would like", "id like",
-    "i need", "we need", "we want", "put", "have", "make it", "make that", "use", "show", "give me", "id prefer", "let me have",
-    "let it be", "add", "place", "id rather have", "park", "there ought to be", "there could be", "insert", "let us have",
+    "there should be",
+    "there must be",
+    "there shall be",
+    "let there be",
+    "there are",
+    "i want",
+    "i would like",
+    "id like",
+    "i need",
+    "we need",
+    "we want",
+    "put",
+    "have",
+    "make it",
+    "make that",
+    "use",
+    "show",
+    "give me",
+    "id prefer",
+    "let me have",
+    "let it be",
+    "add",
+    "place",
+    "id rather have",
+    "park",
+    "there ought to be",
+    "there could be",
+    "insert",
+    "let us have",
 ];
 
 /// The sentence in plain words, if it is one of them.
@@ -31,22 +57,82 @@ pub fn plain(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .or_else(|| besides(tokens))
         .or_else(|| let_it_be(tokens, talk))
         .or_else(|| nobody_but(tokens))
+        .or_else(|| likewise(tokens))
         .or_else(|| only_of(tokens))
         .or_else(|| step_with(tokens))
         .or_else(|| none_there(tokens))
         .or_else(|| about.map(<[Token]>::to_vec))
 }
 
+/// "the digger is to be taken out, and likewise the barriers": the same is said of those.
+fn likewise(tokens: &[Token]) -> Option<Vec<Token>> {
+    let (i, n) = find(
+        tokens,
+        &[
+            "and likewise",
+            "likewise",
+            "and so do",
+            "and so does",
+            "and so should",
+            "and so must",
+            "and so are",
+            "so do",
+            "so should",
+            "so are",
+            "as do",
+            "as does",
+            "as should",
+            "as are",
+            "and also",
+            "as must",
+            "as is",
+            "and so is",
+            "and equally",
+            "and similarly",
+        ],
+    )?;
+    let np = trimmed(&tokens[i + n..]);
+    let definite = is(
+        np.first(),
+        &["the", "both", "all", "every", "that", "those", "these", "my"],
+    );
+    let plain = np
+        .iter()
+        .all(|t| !HELPERS.contains(&text(t)) || is(Some(t), &["both", "all"]));
+    let before = trimmed(&tokens[..i]);
+    let (_, b) = first_noun(before).filter(|x| x.0 < 5)?;
+    let verb = (b..before.len())
+        .find(|k| HELPERS.contains(&text(&before[*k])) || is_finite(text(&before[*k]), true))?;
+    let and = led("and", &tokens[i], &[np, &before[verb..]]);
+    (definite && plain && first_noun(np).is_some()).then(|| [before, &and].concat())
+}
+
 /// "only one of the two cars should stay".
 fn only_of(tokens: &[Token]) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["only", "just", "no more than", "exactly", "not more than"])?;
+    let n = leads(
+        tokens,
+        &["only", "just", "no more than", "exactly", "not more than"],
+    )?;
     number(tokens.get(n)?)?;
     let of = leads(&tokens[n + 1..], &["of the", "of these", "of those", "of my"])?;
     let rest = &tokens[n + 1 + of..];
     let (_, b) = first_noun(rest).filter(|x| x.0 < 5)?;
-    let stays = rest[b..].iter().any(|t| matches!(text(t), "stay" | "stays" | "remain" | "remains" | "left" | "kept" | "needed"));
-    let end = (b..rest.len()).find(|k| HELPERS.contains(&text(&rest[*k])) || is_finite(text(&rest[*k]), true)).unwrap_or(b);
-    stays.then(|| led("keep exactly", &tokens[0], &[&tokens[n..=n], &bare_np(&rest[..end])]))
+    let stays = rest[b..].iter().any(|t| {
+        matches!(
+            text(t),
+            "stay" | "stays" | "remain" | "remains" | "left" | "kept" | "needed"
+        )
+    });
+    let end = (b..rest.len())
+        .find(|k| HELPERS.contains(&text(&rest[*k])) || is_finite(text(&rest[*k]), true))
+        .unwrap_or(b);
+    stays.then(|| {
+        led(
+            "keep exactly",
+            &tokens[0],
+            &[&tokens[n..=n], &bare_np(&rest[..end])],
+        )
+    })
 }
 
 /// "ten metres further ahead with the bus": a step, and of what.
@@ -56,8 +142,26 @@ fn step_with(tokens: &[Token]) -> Option<Vec<Token>> {
     let known = is(np.first(), &["the", "that", "my", "both", "this"]);
     let (_, b) = first_noun(np).filter(|x| x.0 < 4)?;
     let step = trimmed(&tokens[..k]);
-    let way = step.iter().any(|t| matches!(text(t), "further" | "farther" | "closer" | "nearer" | "back" | "forward" | "left" | "right" | "ahead" | "behind" | "away" | "lane"));
-    let plain = first_noun(step).is_none() && !step.iter().any(|t| HELPERS.contains(&text(t))) && !super::super::rephrase::is_verb(step.first()?);
+    let way = step.iter().any(|t| {
+        matches!(
+            text(t),
+            "further"
+                | "farther"
+                | "closer"
+                | "nearer"
+                | "back"
+                | "forward"
+                | "left"
+                | "right"
+                | "ahead"
+                | "behind"
+                | "away"
+                | "lane"
+        )
+    });
+    let plain = first_noun(step).is_none()
+        && !step.iter().any(|t| HELPERS.contains(&text(t)))
+        && !super::super::rephrase::is_verb(step.first()?);
     let bare = !is(step.first(), &["out", "away", "off", "down", "up"]);
     (known && b == np.len() && way && plain && bare).then(|| led("move", &tokens[0], &[np, step]))
 }
@@ -69,8 +173,11 @@ fn none_there(tokens: &[Token]) -> Option<Vec<Token>> {
     let rest = trimmed(&tokens[n + b..]);
     let end = find(rest, &["any more", "anymore", "any longer", "please", "now"]).map_or(rest.len(), |x| x.0);
     let place = trimmed(&rest[..end]);
-    let placed = super::words::is_place(place) && !place.iter().any(|t| t.kind == TokenKind::Comma) && first_noun(place).is_none();
-    (placed && !is(place.first(), &["to", "by", "up", "out", "off"])).then(|| led("remove all the", &tokens[0], &[&tokens[n + a..n + b], place]))
+    let placed = super::words::is_place(place)
+        && !place.iter().any(|t| t.kind == TokenKind::Comma)
+        && first_noun(place).is_none();
+    (placed && !is(place.first(), &["to", "by", "up", "out", "off"]))
+        .then(|| led("remove all the", &tokens[0], &[&tokens[n + a..n + b], place]))
 }
 
 /// "I've changed my mind about the bus, make it a van": of the bus.
@@ -78,20 +185,36 @@ fn changed_mind(tokens: &[Token]) -> Option<&[Token]> {
     let n = leads(
         tokens,
         &[
-            "ive changed my mind about", "i have changed my mind about", "i changed my mind about", "as for", "as regards",
-            "regarding", "concerning", "when it comes to", "with regard to", "as to", "about", "a word about", "what about",
-            "second thoughts about", "on second thought about", "ive had second thoughts about",
+            "ive changed my mind about",
+            "i have changed my mind about",
+            "i changed my mind about",
+            "as for",
+            "as regards",
+            "regarding",
+            "concerning",
+            "when it comes to",
+            "with regard to",
+            "as to",
+            "about",
+            "a word about",
+            "what about",
+            "second thoughts about",
+            "on second thought about",
+            "ive had second thoughts about",
         ],
     )?;
     let known = is(tokens.get(n), &["the", "that", "those", "these", "both", "my"]);
     let (_, end) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
-    let parted = tokens[n + end..].iter().any(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Mark));
+    let parted = tokens[n + end..]
+        .iter()
+        .any(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Mark));
     (known && parted).then(|| &tokens[n..])
 }
 
 /// "has done its job, so remove it": a reason for what is asked. How many tokens its verb takes.
 fn reason(rest: &[Token]) -> Option<usize> {
-    let (so, n) = find(rest, &["so", "therefore", "hence", "thats why", "that is why"]).filter(|x| x.0 > 1)?;
+    let (so, n) =
+        find(rest, &["so", "therefore", "hence", "thats why", "that is why"]).filter(|x| x.0 > 1)?;
     let gone = removes(rest.get(so + n)) || leads(&rest[so + n..], &["get rid of", "do away with"]).is_some();
     (gone && HELPERS.contains(&text(&rest[0]))).then_some(1)
 }
@@ -104,26 +227,49 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
         + leads(
             &tokens[end..],
             &[
-                "wants to", "want to", "needs to", "need to", "is about to", "are about to", "would like to", "plans to", "plan to",
-                "intends to", "intend to", "is going to", "are going to", "hopes to", "has to", "wants a", "needs a",
+                "wants to",
+                "want to",
+                "needs to",
+                "need to",
+                "is about to",
+                "are about to",
+                "would like to",
+                "plans to",
+                "plan to",
+                "intends to",
+                "intend to",
+                "is going to",
+                "are going to",
+                "hopes to",
+                "has to",
+                "wants a",
+                "needs a",
             ],
         )
         .or_else(|| reason(&tokens[end..]))?;
     let cut = (wants..tokens.len()).find(|k| {
-        matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Mark) || is(tokens.get(*k), &["so", "therefore"])
+        matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Mark)
+            || is(tokens.get(*k), &["so", "therefore"])
     })?;
     let mut from = cut;
-    while tokens.get(from).is_some_and(|t| t.kind != TokenKind::Word || matches!(text(t), "so" | "therefore" | "then" | "please" | "and" | "hence")) {
+    while tokens.get(from).is_some_and(|t| {
+        t.kind != TokenKind::Word
+            || matches!(text(t), "so" | "therefore" | "then" | "please" | "and" | "hence")
+    }) {
         from += 1;
     }
     let rest = tokens.get(from..)?;
     let aim = &tokens[wants..cut];
     let who = &tokens[..end];
-    let definite = is(who.first(), &["the", "all", "both", "my", "that", "those", "these"]);
+    let definite = is(
+        who.first(),
+        &["the", "all", "both", "my", "that", "those", "these"],
+    );
     if !definite || !super::super::rephrase::is_verb(rest.first()?) {
         return None;
     }
-    let at = (1..rest.len()).find(|k| is(rest.get(*k), &["it", "him", "her", "them", "his", "their", "its"]))?;
+    let at =
+        (1..rest.len()).find(|k| is(rest.get(*k), &["it", "him", "her", "them", "his", "their", "its"]))?;
     let own = is(rest.get(at), &["his", "her", "their", "its"])
         || is(rest.get(at), &["her"]) && is(rest.get(at + 1), &["vehicle", "car"]);
     let thing = usize::from(is(rest.get(at + 1), &["vehicle", "car", "machine", "ride"]));
@@ -145,30 +291,66 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
 
 /// "in place of the digger there is now a roller, and it ...": the digger is replaced, and the rest is said of what replaces it.
 fn stands_in(tokens: &[Token]) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["in place of", "instead of", "in the place of", "in lieu of", "in exchange for"])?;
+    let n = leads(
+        tokens,
+        &[
+            "in place of",
+            "instead of",
+            "in the place of",
+            "in lieu of",
+            "in exchange for",
+        ],
+    )?;
     let known = is(tokens.get(n), &["the", "that", "both", "my", "all", "those"]);
     let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 5)?;
     let rest = trimmed(&tokens[n + b..]);
-    let mut k = leads(rest, WISHES).or_else(|| leads(rest, &["there is", "there comes", "there stands", "comes", "stands", "there are", "we have", "we now have", "we see"]))?;
+    let mut k = leads(rest, WISHES).or_else(|| {
+        leads(
+            rest,
+            &[
+                "there is",
+                "there comes",
+                "there stands",
+                "comes",
+                "stands",
+                "there are",
+                "we have",
+                "we now have",
+                "we see",
+            ],
+        )
+    })?;
     while is(rest.get(k), &["now", "then", "to", "see", "just"]) {
         k += 1;
     }
     let fresh = is(rest.get(k), &["a", "an", "another"]) || number(rest.get(k)?).is_some();
     let (_, e) = first_noun(&rest[k..]).filter(|x| x.0 < 4)?;
-    let more = rest.get(k + e..).filter(|m| m.first().is_some_and(|t| t.kind == TokenKind::Comma || text(t) == "and") && m.len() > 3)?;
+    let more = rest.get(k + e..).filter(|m| {
+        m.first()
+            .is_some_and(|t| t.kind == TokenKind::Comma || text(t) == "and")
+            && m.len() > 3
+    })?;
     let with = led("with", &tokens[0], &[&rest[k..k + e], more]);
     (known && fresh).then(|| led("replace", &tokens[0], &[&tokens[n..n + b], &with]))
 }
 
 /// "there shouldn't be anybody here, just the cars": what is to be there is there.
 fn nobody_but(tokens: &[Token]) -> Option<Vec<Token>> {
-    let denied = tokens.iter().take(6).any(|t| NEGATED.contains(&text(t)) || matches!(text(t), "nobody" | "no" | "nothing"));
+    let denied = tokens
+        .iter()
+        .take(6)
+        .any(|t| NEGATED.contains(&text(t)) || matches!(text(t), "nobody" | "no" | "nothing"));
     let comma = (2..tokens.len()).find(|k| {
         tokens[*k].kind == TokenKind::Comma
             && is(tokens.get(k + 1), &["just", "only", "but", "except"])
             && is(tokens.get(k + 2), &["the", "for", "those", "these", "my"])
     })?;
-    let people = tokens[..comma].iter().any(|t| matches!(text(t), "anybody" | "anyone" | "nobody" | "people" | "person" | "pedestrians" | "persons"));
+    let people = tokens[..comma].iter().any(|t| {
+        matches!(
+            text(t),
+            "anybody" | "anyone" | "nobody" | "people" | "person" | "pedestrians" | "persons"
+        )
+    });
     let (_, e) = first_noun(&tokens[comma..]).filter(|x| x.0 < 6)?;
     (denied && people).then(|| [&tokens[..comma], &tokens[comma + e..]].concat())
 }
@@ -177,13 +359,28 @@ fn goes(tokens: &[Token]) -> bool {
     tokens.iter().any(|t| {
         matches!(
             text(t),
-            "go" | "goes" | "gone" | "leave" | "disappear" | "vanish" | "removed" | "deleted" | "away" | "out" | "off" | "erased"
+            "go" | "goes"
+                | "gone"
+                | "leave"
+                | "disappear"
+                | "vanish"
+                | "removed"
+                | "deleted"
+                | "away"
+                | "out"
+                | "off"
+                | "erased"
         )
     })
 }
 
 fn removes(t: Option<&Token>) -> bool {
-    is(t, &["remove", "delete", "erase", "take", "drop", "bin", "scrap", "cut", "lose", "clear", "discard"])
+    is(
+        t,
+        &[
+            "remove", "delete", "erase", "take", "drop", "bin", "scrap", "cut", "lose", "clear", "discard",
+        ],
+    )
 }
 
 fn digits(n: usize, at: &Token) -> Token {
@@ -196,21 +393,35 @@ fn digits(n: usize, at: &Token) -> Token {
 
 /// A noun phrase without article and number.
 fn bare_np(np: &[Token]) -> Vec<Token> {
-    let skip = |t: &Token| is(Some(t), &["the", "my", "these", "those", "all", "our", "of", "both"]) || number(t).is_some();
+    let skip = |t: &Token| {
+        is(
+            Some(t),
+            &["the", "my", "these", "those", "all", "our", "of", "both"],
+        ) || number(t).is_some()
+    };
     let from = np.iter().position(|t| !skip(t)).unwrap_or(0);
     np[from..].to_vec()
 }
 
 /// "of the people on the right, leave only two".
 fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["of", "out of", "among", "from among", "from", "as for", "as to"])?;
+    let n = leads(
+        tokens,
+        &["of", "out of", "among", "from among", "from", "as for", "as to"],
+    )?;
     if !is(tokens.get(n), &["the", "my", "these", "those", "all", "our"]) {
         return None;
     }
     // "from the parked cars take one away"
-    let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma).or_else(|| {
-        (n + 2..tokens.len()).find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"])).map(|k| k - 1).filter(|k| first_noun(&tokens[n..=*k]).is_some())
-    })?;
+    let comma = tokens
+        .iter()
+        .position(|t| t.kind == TokenKind::Comma)
+        .or_else(|| {
+            (n + 2..tokens.len())
+                .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"]))
+                .map(|k| k - 1)
+                .filter(|k| first_noun(&tokens[n..=*k]).is_some())
+        })?;
     let end = comma + usize::from(tokens[comma].kind != TokenKind::Comma);
     let np = tokens.get(n..end).filter(|np| first_noun(np).is_some())?;
     let rest = trimmed(&tokens[comma + 1..]);
@@ -219,8 +430,15 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     }
     let k = rest.iter().position(|t| number(t).is_some()).filter(|k| *k < 4)?;
     let many = number(&rest[k])?.max(0) as usize;
-    let keeps = is(rest.first(), &["leave", "keep", "retain", "spare", "preserve", "only", "just"])
-        || rest[k + 1..].iter().any(|t| matches!(text(t), "stay" | "stays" | "remain" | "remains" | "left" | "enough" | "suffice"));
+    let keeps = is(
+        rest.first(),
+        &["leave", "keep", "retain", "spare", "preserve", "only", "just"],
+    ) || rest[k + 1..].iter().any(|t| {
+        matches!(
+            text(t),
+            "stay" | "stays" | "remain" | "remains" | "left" | "enough" | "suffice"
+        )
+    });
     let kept = if keeps {
         many
     } else if removes(rest.first()) || goes(&rest[k + 1..]) {
@@ -228,22 +446,70 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     } else {
         return None;
     };
-    Some(led("keep exactly", &tokens[0], &[&[digits(kept, &rest[k])], &bare_np(np)]))
+    Some(led(
+        "keep exactly",
+        &tokens[0],
+        &[&[digits(kept, &rest[k])], &bare_np(np)],
+    ))
 }
 
 /// "for each of the cones, put a barrier in its place".
 fn for_each(tokens: &[Token]) -> Option<Vec<Token>> {
-    let there = leads(tokens, &["in place of each of the", "instead of each of the", "in place of every", "instead of every", "in place of each", "instead of each", "in place of all the", "instead of all the", "where each of the"]);
-    let n = there.or_else(|| leads(tokens, &["for each of the", "for each of these", "for every one of the", "for each", "for every"]))?;
+    let there = leads(
+        tokens,
+        &[
+            "in place of each of the",
+            "instead of each of the",
+            "in place of every",
+            "instead of every",
+            "in place of each",
+            "instead of each",
+            "in place of all the",
+            "instead of all the",
+            "where each of the",
+        ],
+    );
+    let n = there.or_else(|| {
+        leads(
+            tokens,
+            &[
+                "for each of the",
+                "for each of these",
+                "for every one of the",
+                "for each",
+                "for every",
+            ],
+        )
+    })?;
     let (a, end) = first_noun(&tokens[n..]).map(|x| (n + x.0, n + x.1))?;
     let rest = trimmed(tokens.get(end..)?);
-    let fresh = rest.iter().take(5).position(|t| matches!(text(t), "a" | "an" | "one"))?;
+    let fresh = rest
+        .iter()
+        .take(5)
+        .position(|t| matches!(text(t), "a" | "an" | "one"))?;
     let noun = first_noun(&rest[fresh..])?;
-    let placed = find(rest, &["in its place", "in their place", "instead", "in its stead", "where it stands", "where it is", "in that place", "there"]).is_some();
+    let placed = find(
+        rest,
+        &[
+            "in its place",
+            "in their place",
+            "instead",
+            "in its stead",
+            "where it stands",
+            "where it is",
+            "in that place",
+            "there",
+        ],
+    )
+    .is_some();
     if a > n + 3 || !(placed || there.is_some()) {
         return None;
     }
-    let all = if is(tokens.get(n.saturating_sub(1)), &["the", "these"]) { "replace all the" } else { "replace every" };
+    let all = if is(tokens.get(n.saturating_sub(1)), &["the", "these"]) {
+        "replace all the"
+    } else {
+        "replace every"
+    };
     let with = led("with", &tokens[0], &[&rest[fresh..fresh + noun.1]]);
     Some(led(all, &tokens[0], &[&tokens[n..end], &with]))
 }
@@ -253,35 +519,60 @@ fn all_except(tokens: &[Token]) -> Option<Vec<Token>> {
     let (i, n) = find(
         tokens,
         &[
-            "all except for", "all except", "all but", "all bar", "all save", "except for", "except", "but for", "apart from",
-            "save for", "but", "bar", "save", "with the exception of", "all of them except", "all of them but", "other than",
+            "all except for",
+            "all except",
+            "all but",
+            "all bar",
+            "all save",
+            "except for",
+            "except",
+            "but for",
+            "apart from",
+            "save for",
+            "but",
+            "bar",
+            "save",
+            "with the exception of",
+            "all of them except",
+            "all of them but",
+            "other than",
             "every one of them but",
         ],
     )?;
     let k = i + n;
     let many = number(tokens.get(k)?)?;
     let end = &tokens[k + 1..];
-    let ends = end.is_empty() || leads(end, &["of them", "of those", "of these", "please"]).is_some_and(|m| m == end.len());
+    let ends = end.is_empty()
+        || leads(end, &["of them", "of those", "of these", "please"]).is_some_and(|m| m == end.len());
     let before = trimmed(&tokens[..i]);
     let (a, b) = first_noun(before).filter(|x| x.0 < 5)?;
     let verb = before[b..]
         .iter()
         .position(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true))
         .map_or(before.len(), |v| b + v);
-    let gone = goes(&before[b..]) || removes(before.first()) || leads(before, &["get rid of", "do away with"]).is_some();
+    let gone = goes(&before[b..])
+        || removes(before.first())
+        || leads(before, &["get rid of", "do away with"]).is_some();
     if !ends || !gone || many < 0 {
         return None;
     }
-    let np = if removes(before.first()) { &before[a..] } else { &before[a..verb.max(b)] };
+    let np = if removes(before.first()) {
+        &before[a..]
+    } else {
+        &before[a..verb.max(b)]
+    };
     Some(led("keep exactly", &tokens[0], &[&tokens[k..=k], np]))
 }
 
 /// "what waits there shouldn't be a car but a bus": what it shall be.
 fn not_but(tokens: &[Token]) -> Option<Vec<Token>> {
-    let but = (3..tokens.len()).find(|k| is(tokens.get(*k), &["but"]) && is(tokens.get(k + 1), &["a", "an", "two", "three"]))?;
+    let but = (3..tokens.len())
+        .find(|k| is(tokens.get(*k), &["but"]) && is(tokens.get(k + 1), &["a", "an", "two", "three"]))?;
     let not = (0..but).rev().find(|k| NEGATED.contains(&text(&tokens[*k])))?;
     let old = first_noun(&tokens[not..but])?;
-    let article = tokens[not..not + old.0].iter().any(|t| matches!(text(t), "a" | "an"));
+    let article = tokens[not..not + old.0]
+        .iter()
+        .any(|t| matches!(text(t), "a" | "an"));
     if old.0 > 4 || not + old.1 != but || !article {
         return None;
     }
@@ -294,10 +585,23 @@ fn not_but(tokens: &[Token]) -> Option<Vec<Token>> {
         return None;
     }
     let old = &tokens[not + old.0..not + old.1];
-    let what = leads(subject, &["what is", "whats", "whatever is", "what", "the thing that is", "the thing", "the one that is"]);
+    let what = leads(
+        subject,
+        &[
+            "what is",
+            "whats",
+            "whatever is",
+            "what",
+            "the thing that is",
+            "the thing",
+            "the one that is",
+        ],
+    );
     let who = match what {
         // "that isn't a bus but a truck"
-        None if subject.len() == 1 && is(subject.first(), &["that", "it", "this"]) => led("the", &tokens[0], &[old]),
+        None if subject.len() == 1 && is(subject.first(), &["that", "it", "this"]) => {
+            led("the", &tokens[0], &[old])
+        }
         Some(n) => led("the", &tokens[0], &[old, &subject[n..]]),
         None => subject.to_vec(),
     };
@@ -313,20 +617,61 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let w = leads(rest, WISHES)?;
     let k = w + usize::from(is(rest.get(w), &["just", "only"]));
     let many = rest.get(k).filter(|t| number(t).is_some())?;
-    let ends = rest.len() == k + 1 || leads(&rest[k + 1..], &["of them", "please", "instead", "of those"]).is_some();
-    (counted && ends && a < n + 5).then(|| led("keep exactly", &tokens[0], &[std::slice::from_ref(many), &tokens[a..b]]))
+    let ends =
+        rest.len() == k + 1 || leads(&rest[k + 1..], &["of them", "please", "instead", "of those"]).is_some();
+    (counted && ends && a < n + 5).then(|| {
+        led(
+            "keep exactly",
+            &tokens[0],
+            &[std::slice::from_ref(many), &tokens[a..b]],
+        )
+    })
 }
 
 /// "out with the bikes, in with as many vans".
 fn out_and_in(tokens: &[Token]) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["out with", "away with", "off with", "down with", "enough of", "no more", "lose", "out go", "out goes"])?;
-    let (i, m) = find(tokens, &["in with", "on with", "up with", "bring in", "in come", "in comes", "in go", "in goes", "hello to"])?;
+    let n = leads(
+        tokens,
+        &[
+            "out with",
+            "away with",
+            "off with",
+            "down with",
+            "enough of",
+            "no more",
+            "lose",
+            "out go",
+            "out goes",
+        ],
+    )?;
+    let (i, m) = find(
+        tokens,
+        &[
+            "in with", "on with", "up with", "bring in", "in come", "in comes", "in go", "in goes",
+            "hello to",
+        ],
+    )?;
     let old = trimmed(tokens.get(n..i)?);
     let mut new = trimmed(&tokens[i + m..]);
-    let as_many = leads(new, &["just as many", "as many", "equally many", "the same number of", "an equal number of", "exactly as many", "some", "the"]);
+    let as_many = leads(
+        new,
+        &[
+            "just as many",
+            "as many",
+            "equally many",
+            "the same number of",
+            "an equal number of",
+            "exactly as many",
+            "some",
+            "the",
+        ],
+    );
     new = &new[as_many.unwrap_or(0)..];
     let (old_noun, new_noun) = (first_noun(old)?, first_noun(new)?);
-    let one = old.iter().take(old_noun.0).any(|t| matches!(text(t), "the" | "that" | "this" | "my"))
+    let one = old
+        .iter()
+        .take(old_noun.0)
+        .any(|t| matches!(text(t), "the" | "that" | "this" | "my"))
         && !matches!(look_up(text(&old[old_noun.1 - 1])), Some(Sense::Noun(_, true)));
     let lead = if one { "replace the" } else { "replace all the" };
     let with = led("with", &tokens[0], &[&new[..new_noun.1.max(1)]]);
@@ -337,22 +682,51 @@ fn out_and_in(tokens: &[Token]) -> Option<Vec<Token>> {
 fn too_many(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let (i, n) = find(tokens, &["too many", "too much"])?;
     let be = (1..i).rev().find(|k| is(tokens.get(*k), &["is", "are"]))?;
-    let many = tokens.get(be + 1).filter(|t| number(t).is_some() && be + 2 == i)?;
+    let many = tokens
+        .get(be + 1)
+        .filter(|t| number(t).is_some() && be + 2 == i)?;
     let (a, _) = first_noun(&tokens[..be]).filter(|x| x.0 < 4)?;
     let rest = trimmed(tokens.get(i + n..)?);
     let takes = rest.is_empty() || removes(rest.first()) || leads(rest, &["get rid", "one", "so"]).is_some();
-    let left = talk.fits(&tokens[a..be]).checked_sub(number(many)?.max(0) as usize)?;
-    takes.then(|| led("keep exactly", &tokens[0], &[&[digits(left, many)], &tokens[a..be]]))
+    let left = talk
+        .fits(&tokens[a..be])
+        .checked_sub(number(many)?.max(0) as usize)?;
+    takes.then(|| {
+        led(
+            "keep exactly",
+            &tokens[0],
+            &[&[digits(left, many)], &tokens[a..be]],
+        )
+    })
 }
 
 /// "in addition to the cars that are coming I want four more".
 fn besides(tokens: &[Token]) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["in addition to", "besides", "apart from", "on top of", "as well as", "along with", "beside", "aside from", "next to having"])?;
+    let n = leads(
+        tokens,
+        &[
+            "in addition to",
+            "besides",
+            "apart from",
+            "on top of",
+            "as well as",
+            "along with",
+            "beside",
+            "aside from",
+            "next to having",
+        ],
+    )?;
     let (w, m) = find(tokens, WISHES).filter(|w| w.0 > n)?;
     let (a, b) = first_noun(&tokens[n..w]).map(|x| (n + x.0, n + x.1))?;
     let rest = trimmed(&tokens[w + m..]);
-    let k = rest.iter().position(|t| number(t).is_some() || is(Some(t), &["another", "a", "an"])).filter(|k| *k < 2)?;
-    let more = is(rest.get(k + 1), &["more", "others", "additional", "extra", "further"]);
+    let k = rest
+        .iter()
+        .position(|t| number(t).is_some() || is(Some(t), &["another", "a", "an"]))
+        .filter(|k| *k < 2)?;
+    let more = is(
+        rest.get(k + 1),
+        &["more", "others", "additional", "extra", "further"],
+    );
     let own = first_noun(&rest[k..]).is_some_and(|x| x.0 < 4);
     if is(tokens.get(n), &["me", "us"]) || a > n + 4 {
         return None;
@@ -364,7 +738,16 @@ fn besides(tokens: &[Token]) -> Option<Vec<Token>> {
 
 /// "let it be three motorbikes coming towards me".
 fn let_it_be(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["let it be", "let that be", "let there be", "let those be", "let them be"])?;
+    let n = leads(
+        tokens,
+        &[
+            "let it be",
+            "let that be",
+            "let there be",
+            "let those be",
+            "let them be",
+        ],
+    )?;
     let rest = &tokens[n..];
     let counted = number(rest.first()?).is_some() || is(rest.first(), &["a", "an", "some"]);
     let (a, b) = first_noun(rest).filter(|x| x.0 < 4)?;

@@ -365,8 +365,17 @@ fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let first = inner.first()?;
     let one = first_noun(inner).filter(|n| n.0 > 2 && n.0 < 6 && n.1 == inner.len());
     let into = usize::from(is(inner.get(2), &["into", "to"]));
-    let makes_of = if into == 1 { is(Some(first), &["turn", "change", "convert", "transform", "make"]) } else { text(first) == "make" };
-    if makes_of && is(inner.get(1), &["it", "that", "him", "her"]) && is(inner.get(2 + into), &["a", "an"]) && one.is_some() && talk.last.is_some() {
+    let makes_of = if into == 1 {
+        is(Some(first), &["turn", "change", "convert", "transform", "make"])
+    } else {
+        text(first) == "make"
+    };
+    if makes_of
+        && is(inner.get(1), &["it", "that", "him", "her"])
+        && is(inner.get(2 + into), &["a", "an"])
+        && one.is_some()
+        && talk.last.is_some()
+    {
         let s = Subject {
             kind: Kind::Back(Back::Same),
             np: inner[1..2].to_vec(),
@@ -388,10 +397,30 @@ fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 fn rid_of_others(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let n = leads(
         inner,
-        &["get rid of", "remove", "delete", "erase", "drop", "lose", "take away", "take out", "do away with", "scrap", "bin", "discard", "clear away", "dispose of", "throw out"],
+        &[
+            "get rid of",
+            "remove",
+            "delete",
+            "erase",
+            "drop",
+            "lose",
+            "take away",
+            "take out",
+            "do away with",
+            "scrap",
+            "bin",
+            "discard",
+            "clear away",
+            "dispose of",
+            "throw out",
+        ],
     )?;
     let (back, m) = pointing(&inner[n..])?;
-    if back != Back::Others || trimmed(&inner[n + m..]).iter().any(|t| !matches!(text(t), "away" | "too" | "please" | "as" | "well" | "off" | "out")) {
+    if back != Back::Others
+        || trimmed(&inner[n + m..])
+            .iter()
+            .any(|t| !matches!(text(t), "away" | "too" | "please" | "as" | "well" | "off" | "out"))
+    {
         return None;
     }
     let s = Subject {

@@ -34,7 +34,20 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 next += 1;
             }
             // "everything but the bus"
-            if text(t) == "but" && is(body.get(i.wrapping_sub(1)), &["everything", "everyone", "everybody", "all", "nothing", "anything", "nobody"]) {
+            if text(t) == "but"
+                && is(
+                    body.get(i.wrapping_sub(1)),
+                    &[
+                        "everything",
+                        "everyone",
+                        "everybody",
+                        "all",
+                        "nothing",
+                        "anything",
+                        "nobody",
+                    ],
+                )
+            {
                 i += 1;
                 continue;
             }
@@ -165,8 +178,17 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     let near = &inner[..inner.len().min(14)];
     // "and turn the pickup so that it faces us"
-    let orders = is(inner.first(), &MOVES) || is(inner.first(), &["turn", "rotate", "spin", "remove", "delete", "add", "replace"]);
-    if orders && is(inner.get(1), &["the", "it", "them", "him", "her", "both", "all", "my"]) {
+    let orders = is(inner.first(), &MOVES)
+        || is(
+            inner.first(),
+            &["turn", "rotate", "spin", "remove", "delete", "add", "replace"],
+        );
+    if orders
+        && is(
+            inner.get(1),
+            &["the", "it", "them", "him", "her", "both", "all", "my"],
+        )
+    {
         return true;
     }
     if let Some(s) = subject(

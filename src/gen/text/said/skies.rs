@@ -5,10 +5,39 @@ use super::super::tokens::Token;
 use super::words::{find, is, leads, led, text};
 
 const ENDS: &[&str] = &[
-    "lift", "lose", "drop", "disperse", "stop", "end", "dispel", "get rid of", "take away", "do away with", "let up", "clear", "clear away",
-    "blow away", "switch off", "turn off", "remove",
+    "lift",
+    "lose",
+    "drop",
+    "disperse",
+    "stop",
+    "end",
+    "dispel",
+    "get rid of",
+    "take away",
+    "do away with",
+    "let up",
+    "clear",
+    "clear away",
+    "blow away",
+    "switch off",
+    "turn off",
+    "remove",
 ];
-const SKIES: &[&str] = &["fog", "mist", "rain", "snow", "haze", "storm", "sandstorm", "drizzle", "snowfall", "rainfall", "downpour", "clouds", "murk"];
+const SKIES: &[&str] = &[
+    "fog",
+    "mist",
+    "rain",
+    "snow",
+    "haze",
+    "storm",
+    "sandstorm",
+    "drizzle",
+    "snowfall",
+    "rainfall",
+    "downpour",
+    "clouds",
+    "murk",
+];
 
 fn is_style(t: &Token) -> bool {
     matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)))
@@ -29,10 +58,15 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
 
 /// "daylight instead of this darkness": the one that is wished for.
 fn unwanted(tokens: Vec<Token>) -> Vec<Token> {
-    let prefers = tokens.iter().any(|t| matches!(text(t), "prefer" | "rather" | "like" | "want" | "better"));
+    let prefers = tokens
+        .iter()
+        .any(|t| matches!(text(t), "prefer" | "rather" | "like" | "want" | "better"));
     let cut = (1..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["instead of", "rather than", "in place of", "and not", "not"])
-            .or_else(|| leads(&tokens[i..], &["to", "over", "than"]).filter(|_| prefers))?;
+        let n = leads(
+            &tokens[i..],
+            &["instead of", "rather than", "in place of", "and not", "not"],
+        )
+        .or_else(|| leads(&tokens[i..], &["to", "over", "than"]).filter(|_| prefers))?;
         let mut k = i + n;
         while is(tokens.get(k), &["the", "this", "that", "all", "a", "such"]) {
             k += 1;

@@ -3,28 +3,140 @@
 use super::super::tokens::{Token, TokenKind};
 use super::words::{begins, is, leads, trimmed};
 
-const LEADS: &[&str] = &["with", "and", "but", "leave", "keep", "leaving", "keeping", "while", "let", "have", "just", "please", "only", "otherwise"];
+const LEADS: &[&str] = &[
+    "with",
+    "and",
+    "but",
+    "leave",
+    "keep",
+    "leaving",
+    "keeping",
+    "while",
+    "let",
+    "have",
+    "just",
+    "please",
+    "only",
+    "otherwise",
+];
 const ALL_ELSE: &[&str] = &[
-    "everything else", "all else", "all the rest", "the rest", "everything", "the other things", "the objects", "all objects",
-    "all the objects", "all other things", "the scene", "the rest of the scene", "the other objects", "it all", "all of it",
+    "everything else",
+    "all else",
+    "all the rest",
+    "the rest",
+    "everything",
+    "the other things",
+    "the objects",
+    "all objects",
+    "all the objects",
+    "all other things",
+    "the scene",
+    "the rest of the scene",
+    "the other objects",
+    "it all",
+    "all of it",
 ];
 const STAYS: &[&str] = &[
-    "as it is", "as it was", "as is", "as they are", "just as it is", "exactly as it is", "just as they are", "exactly as they are",
-    "the way it is", "the way they are", "the way it was", "untouched", "unchanged", "alone", "the same", "exactly the same",
-    "in place", "where it is", "where they are", "as before", "like it is", "like before", "the same as before", "intact", "put",
-    "in its place", "as it stands",
+    "as it is",
+    "as it was",
+    "as is",
+    "as they are",
+    "just as it is",
+    "exactly as it is",
+    "just as they are",
+    "exactly as they are",
+    "the way it is",
+    "the way they are",
+    "the way it was",
+    "untouched",
+    "unchanged",
+    "alone",
+    "the same",
+    "exactly the same",
+    "in place",
+    "where it is",
+    "where they are",
+    "as before",
+    "like it is",
+    "like before",
+    "the same as before",
+    "intact",
+    "put",
+    "in its place",
+    "as it stands",
 ];
-const BE: &[&str] = &["is", "are", "be", "being", "stays", "stay", "remains", "remain", "should", "must", "shall", "to", "staying", "remaining", "may", "can", "just", "exactly", "left", "kept"];
+const BE: &[&str] = &[
+    "is",
+    "are",
+    "be",
+    "being",
+    "stays",
+    "stay",
+    "remains",
+    "remain",
+    "should",
+    "must",
+    "shall",
+    "to",
+    "staying",
+    "remaining",
+    "may",
+    "can",
+    "just",
+    "exactly",
+    "left",
+    "kept",
+];
 const NOTHING: &[&str] = &[
-    "nothing else changes", "nothing else should change", "nothing else changed", "nothing else needs to change", "nothing else",
-    "no other changes", "no other change", "without changing anything else", "without any other changes", "otherwise the same",
-    "otherwise unchanged", "otherwise identical", "dont change anything else", "do not change anything else",
-    "dont touch anything else", "do not touch anything else", "dont change the objects", "do not change the objects",
-    "dont touch the objects", "do not touch the objects", "dont move anything", "do not move anything", "dont change the rest",
-    "dont alter the objects", "dont change the cars or people", "dont move the objects", "dont touch the rest",
-    "leave it at that", "the objects stay", "everything else stays",
+    "nothing else changes",
+    "nothing else should change",
+    "nothing else changed",
+    "nothing else needs to change",
+    "nothing else",
+    "no other changes",
+    "no other change",
+    "without changing anything else",
+    "without any other changes",
+    "otherwise the same",
+    "otherwise unchanged",
+    "otherwise identical",
+    "dont change anything else",
+    "do not change anything else",
+    "dont touch anything else",
+    "do not touch anything else",
+    "dont change the objects",
+    "do not change the objects",
+    "dont touch the objects",
+    "do not touch the objects",
+    "dont move anything",
+    "do not move anything",
+    "dont change the rest",
+    "dont alter the objects",
+    "dont change the cars or people",
+    "dont move the objects",
+    "dont touch the rest",
+    "leave it at that",
+    "the objects stay",
+    "everything else stays",
 ];
-const SAME: &[&str] = &["the same thing", "same thing", "the same scene", "same scene", "the same picture", "same picture", "the same situation", "same situation", "the same again", "same again", "same as before", "the same as before", "all the same", "same layout", "the same layout", "the same"];
+const SAME: &[&str] = &[
+    "the same thing",
+    "same thing",
+    "the same scene",
+    "same scene",
+    "the same picture",
+    "same picture",
+    "the same situation",
+    "same situation",
+    "the same again",
+    "same again",
+    "same as before",
+    "the same as before",
+    "all the same",
+    "same layout",
+    "the same layout",
+    "the same",
+];
 
 fn edge(t: Option<&Token>) -> bool {
     t.is_none_or(|t| t.kind != TokenKind::Word)
@@ -43,7 +155,13 @@ fn phrase(tokens: &[Token]) -> Option<usize> {
     while is(tokens.get(k), BE) {
         k += 1;
     }
-    let stays = leads(&tokens[k..], STAYS).map(|m| k + m).or_else(|| is(tokens.get(k.checked_sub(1)?), &["stays", "stay", "remains", "remain"]).then_some(k))?;
+    let stays = leads(&tokens[k..], STAYS).map(|m| k + m).or_else(|| {
+        is(
+            tokens.get(k.checked_sub(1)?),
+            &["stays", "stay", "remains", "remain"],
+        )
+        .then_some(k)
+    })?;
     edge(tokens.get(stays)).then_some(stays)
 }
 
@@ -70,10 +188,17 @@ pub fn cut(tokens: &[Token]) -> Vec<Token> {
         let rest = trimmed(&out[n..]);
         let again = begins(rest, "again").unwrap_or(0);
         let rest = trimmed(&rest[again..]);
-        let only = leads(rest, &["only", "but", "just", "except", "this time", "only this time"]);
+        let only = leads(
+            rest,
+            &["only", "but", "just", "except", "this time", "only this time"],
+        );
         if let Some(m) = only {
             return trimmed(&rest[m..]).to_vec();
         }
     }
-    if cut { trimmed(&out).to_vec() } else { tokens.to_vec() }
+    if cut {
+        trimmed(&out).to_vec()
+    } else {
+        tokens.to_vec()
+    }
 }

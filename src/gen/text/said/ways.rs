@@ -396,7 +396,10 @@ pub fn arrived(mut main: Vec<Token>) -> Vec<Token> {
         return main;
     }
     // "in behind the truck": in its lane
-    if let Some((i, n)) = find(&main, &["in behind", "in after", "tuck in behind", "slot in behind"]) {
+    if let Some((i, n)) = find(
+        &main,
+        &["in behind", "in after", "tuck in behind", "slot in behind"],
+    ) {
         let following = led("following", &main[i], &[]);
         main.splice(i..i + n, following);
     }

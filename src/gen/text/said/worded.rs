@@ -16,10 +16,30 @@ const COMES_UP: &str = "walks up to|goes up to|comes up to|steps up to|runs up t
 
 /// "let the car cut in, so that it sits between us": where it ends counts.
 fn so_that(tokens: &[Token]) -> Vec<Token> {
-    let found = find(tokens, &["so that it", "so that he", "so that she", "so that they", "so it", "such that it"]).filter(|(i, n)| {
+    let found = find(
+        tokens,
+        &[
+            "so that it",
+            "so that he",
+            "so that she",
+            "so that they",
+            "so it",
+            "such that it",
+        ],
+    )
+    .filter(|(i, n)| {
         let next = &tokens[i + n..];
-        let stands = is(next.first(), &["sits", "stands", "drives", "ends", "sit", "stand", "comes", "rides", "lands", "walks"]);
-        stands && (1..next.len().min(4)).any(|k| is_place(&next[k..])) && tokens[..*i].iter().any(|t| matches!(text(t), "let" | "have" | "make"))
+        let stands = is(
+            next.first(),
+            &[
+                "sits", "stands", "drives", "ends", "sit", "stand", "comes", "rides", "lands", "walks",
+            ],
+        );
+        stands
+            && (1..next.len().min(4)).any(|k| is_place(&next[k..]))
+            && tokens[..*i]
+                .iter()
+                .any(|t| matches!(text(t), "let" | "have" | "make"))
     });
     let Some((i, n)) = found else {
         return tokens.to_vec();
