@@ -71,6 +71,39 @@ fn face(mentions: &mut Vec<Mention>) {
     }
 }
 
+/// "two lorries drive side by side": one beside the other.
+fn abreast(mentions: &mut Vec<Mention>) {
+    for i in 0..mentions.len() {
+        let m = &mut mentions[i];
+        let said = m.spec.attributes.iter().any(|a| a == "sidebyside");
+        m.spec.attributes.retain(|a| a != "sidebyside");
+        let pair = m.spec.count == Count::exactly(2)
+            && m.both.is_none()
+            && m.spec.state != Some(ObjectState::Parked);
+        let strip = m
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Lane(_)));
+        if !said || m.gone || !pair || strip && m.spec.class.is_vehicle() {
+            continue;
+        }
+        m.spec.count = Count::exactly(1);
+        let mut other = m.clone();
+        other.spec.relations.push(Stated {
+            relation: RelationKind::NextTo,
+            anchor: Anchor::Object(i),
+            and: None,
+            distance_m: None,
+            span: other.spec.span,
+        });
+        for r in &mut other.spec.relations {
+            r.distance_m = None; // as far as the first
+        }
+        mentions.push(other);
+    }
+}
+
 /// What has stopped on the other side of the road stands at its edge.
 fn stopped_across(mentions: &mut [Mention], prompt: &str) {
     for m in mentions.iter_mut() {
@@ -314,6 +347,7 @@ fn share_places(mentions: &mut [Mention]) {
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
     face(mentions);
+    abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
     // Works beside cones or a digger that were named are made of those.

@@ -15,6 +15,7 @@ mod ellipsis;
 mod exchange;
 mod existence;
 mod finish;
+mod foremost;
 pub mod holds;
 mod inferred_places;
 mod inverted;
@@ -31,6 +32,7 @@ mod spots;
 pub mod tag;
 pub mod to_graph;
 pub mod tokens;
+mod wishes;
 mod wording;
 mod words;
 

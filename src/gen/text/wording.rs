@@ -174,6 +174,8 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
+const ABREAST: &str = "side by side|two abreast|abreast|next to each other|next to one another|beside each other|beside one another|alongside each other|alongside one another|shoulder to shoulder|neck and neck|level with each other|level with one another|parallel to each other|one beside the other|one next to the other";
+
 /// "facing each other" in one word, unless it is "face to face with" something.
 fn faced(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
@@ -188,6 +190,13 @@ fn faced(tokens: &[Token]) -> Vec<Token> {
             Some(n) => {
                 out.push(word("facetoface", &tokens[i]));
                 i += n;
+            }
+            // ("abreast of us" is a place)
+            None if begins(&tokens[i..], ABREAST)
+                .is_some_and(|n| begins(&tokens[i + n..], "with|of").is_none()) =>
+            {
+                out.push(word("sidebyside", &tokens[i]));
+                i += begins(&tokens[i..], ABREAST).unwrap_or(1);
             }
             None => {
                 out.push(tokens[i].clone());

@@ -359,6 +359,7 @@ fn placed(
             RelationKind::Facing => Turn::ToEgo,
             _ => Turn::FromEgo,
         });
+        c.state = spec.state.filter(|s| *s == ObjectState::Moving);
         return Some(vec![Piece::Meant(Box::new(c), noun)]);
     }
     note_definite(&mut c, &mentions);

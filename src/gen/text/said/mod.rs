@@ -15,6 +15,7 @@ mod parting;
 mod passive;
 mod predicate;
 mod skies;
+mod some_of;
 mod spoken;
 mod subject;
 mod swap;

@@ -11,6 +11,8 @@ const WHOLE: &str =
 const ON_FOOT: &str = "everyone who is on foot|everybody who is on foot|everyone on foot|everybody on foot|anyone on foot|anybody on foot|all who are on foot|all those on foot|those on foot|anyone who is on foot|anybody who is on foot|everyone whos on foot|everybody whos on foot|everyone who walks|everybody who walks|everyone who is walking|everybody who is walking|everyone going on foot|everyone walking|everybody walking|all people on foot|all persons on foot";
 const DRY: &str = "it has stopped raining|it has stopped snowing|it stopped raining|it stopped snowing|its stopped raining|its stopped snowing|it stops raining|it stops snowing|it has ceased raining|it has quit raining|the rain has stopped|the rain stopped|the rain has ended|the rain is over|the rain has gone|the rain is gone|the rain stops|the rain has cleared|the rain has passed|the rain has let up|it no longer rains|it is no longer raining|its no longer raining|it isnt raining any more|it isnt raining anymore|it is not raining any more|it is not raining anymore|no more rain|the snow has stopped|the snowfall has stopped|it no longer snows|it is no longer snowing|the fog has lifted|the fog lifted|the fog has cleared|the fog is gone|the fog has gone|the storm has passed|the shower has passed|the shower is over";
 
+const IF_ONLY: &str =
+    "if only there were|if only there was|i wish there were|i wish there was|if only we had|i wish we had";
 const APPEARS: &str = "turns up|shows up|pops up|comes along|turn up|show up|pop up|appears on|appears in|appears at|comes into view";
 const COMES_UP: &str = "walks up to|goes up to|comes up to|steps up to|runs up to|drives up to|rides up to|walk up to|go up to|come up to|step up to|run up to|drive up to|ride up to|strolls up to|stroll up to";
 
@@ -66,6 +68,7 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if let Some(new) = second_one(&out) {
         out = new;
     }
+    out = replaced(&out, IF_ONLY, "add");
     out = replaced(&out, APPEARS, "should be");
     out = replaced(&out, COMES_UP, "goes to");
     out = so_that(&out);
