@@ -13,6 +13,11 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
         "around is|about is|present is|in sight is|to be seen is",
         "is",
     );
+    let out = replaced(
+        &out,
+        "nothing but|nothing except|nothing other than|nothing more than",
+        "only",
+    );
     let out = pointing_back(&out);
     let out = participle_first(&out);
     let out = crossed_over(&out);
@@ -133,17 +138,14 @@ fn participle_first(tokens: &[Token]) -> Vec<Token> {
             tokens[i].text.as_str(),
             "parked" | "standing" | "waiting" | "stopped" | "sitting" | "walking"
         );
-        let placed = tokens.get(i + 1).and_then(|_| {
-            (1..=5.min(tokens.len() - i - 1)).rev().find_map(|n| {
-                let words: Vec<&str> = tokens[i + 1..=i + n].iter().map(|t| t.text.as_str()).collect();
-                matches!(
-                    look_up(&words.join(" ")),
-                    Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::Possessed(_))
-                )
-                .then_some(n)
-            })
+        let placed = (1..=5.min(tokens.len() - i - 1)).any(|n| {
+            let words: Vec<&str> = tokens[i + 1..=i + n].iter().map(|t| t.text.as_str()).collect();
+            matches!(
+                look_up(&words.join(" ")),
+                Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::Possessed(_))
+            )
         });
-        if !state || !opens(tokens, i) || placed.is_none() {
+        if !state || !opens(tokens, i) || !placed {
             continue;
         }
         let verb = (i + 2..tokens.len().min(i + 14))

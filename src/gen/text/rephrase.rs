@@ -7,7 +7,7 @@ use super::existence::{nobody, sent_off, there};
 use super::foremost::{POLITE, name_people, take_and_put, take_ordinals, topic};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wishes::{stated, stated_with, wished};
+use super::wishes::{stated, wished};
 use super::words::edits::VERBS;
 
 /// How a number changes.

@@ -387,6 +387,14 @@ pub(super) fn preferred(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> 
         .first()
         .is_some_and(|t| matches!(text(t), "the" | "that" | "this" | "both" | "my" | "those"));
     let end = first_noun(old)?.1;
+    // "rather have a tram than a bus": the only bus
+    let only = is(old.first(), &["a", "an"]) && talk.fits(&old[1..end]) == 1;
+    let the = led("the", &inner[0], &[&old[1..]]);
+    let (old, end, known) = if only {
+        (&the[..], end, true)
+    } else {
+        (old, end, known)
+    };
     (fresh && known && has_noun(new) && first_noun(new)?.0 < 4 && talk.fits(&old[..end]) > 0).then(|| {
         vec![Piece::Plain(led(
             "replace",

@@ -69,6 +69,22 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         out = new;
     }
     out = replaced(&out, IF_ONLY, "add");
+    out = replaced(&out, "do without|dispense with|spare me|manage without", "remove");
+    let whole = [
+        "empty the scene",
+        "clear the scene",
+        "wipe the scene",
+        "empty the picture",
+        "clear the picture",
+        "empty out the scene",
+        "clear out the scene",
+        "start from scratch",
+        "start from an empty scene",
+        "wipe the slate clean",
+    ];
+    if leads(&out, &whole).is_some_and(|n| n == out.len()) {
+        out = led("remove everything", &out[0], &[]);
+    }
     out = replaced(&out, APPEARS, "should be");
     out = replaced(&out, COMES_UP, "goes to");
     out = so_that(&out);
