@@ -25,38 +25,6 @@ fn is_ahead_of_ego(r: &Stated) -> bool {
     r.relation == R::InFrontOf && r.anchor == Anchor::Ego
 }
 
-fn is_ahead(m: &Mention) -> bool {
-    m.spec.relations.iter().any(is_ahead_of_ego)
-}
-
-/// What is behind something ahead of us is ahead, too: between it and us. The span to note it with.
-fn ahead_too(m: &Mention, all: &[Mention], relation: R, of: usize) -> Option<super::tokens::Span> {
-    let by = |k: usize| {
-        all.get(k)?
-            .spec
-            .relations
-            .iter()
-            .find_map(|r| match (r.relation, r.anchor) {
-                (R::NextTo, Anchor::Object(j)) => all.get(j),
-                _ => None,
-            })
-    };
-    let other = all.get(of)?;
-    let ahead = is_ahead(other) || by(of).is_some_and(is_ahead);
-    let told = m
-        .spec
-        .relations
-        .iter()
-        .any(|r| r.anchor == Anchor::Ego || is_lane(r.anchor));
-    let near = other
-        .spec
-        .relations
-        .iter()
-        .any(|r| r.anchor == Anchor::Ego && r.distance_m.is_some_and(|d| d < 14.0));
-    let still = m.spec.state == Some(ObjectState::Parked);
-    (relation == R::Behind && ahead && !told && !near && !still && m.spec.count.n <= 2).then_some(m.spec.span)
-}
-
 fn is_lane(a: Anchor) -> bool {
     matches!(a, Anchor::Lane(_))
 }
@@ -86,16 +54,7 @@ pub fn infer(mentions: &mut [Mention]) {
                 mentions[i].spec.relations.push(Stated { span: r.span, ..more });
             }
             drawn(&mut mentions[i], &other, k);
-            if let Some(span) = ahead_too(&mentions[i], mentions, r.relation, k) {
-                mentions[i].spec.relations.push(Stated {
-                    relation: R::InFrontOf,
-                    anchor: Anchor::Ego,
-                    and: None,
-                    distance_m: None,
-                    span,
-                });
-            }
-            let room = mentions[i].spec.class == Class::Trailer || is_ahead(&mentions[i]);
+            let room = mentions[i].spec.class == Class::Trailer;
             let room_m = room_m(other.spec.class, mentions[i].spec.class);
             let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
             if let (Some(far), true, R::Behind | R::Following) =

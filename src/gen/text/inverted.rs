@@ -400,7 +400,7 @@ mod tests {
         };
         assert_eq!(
             said("and parked in front of that is a van"),
-            "and in front of that is a parked van"
+            "and in front of it is a parked van"
         );
         assert_eq!(
             said("the children it is waiting for are walking"),
