@@ -29,12 +29,19 @@ impl Parser<'_> {
 
     /// "a motorbike and, behind it, a truck": true if a comma and a new noun phrase follow.
     pub(super) fn set_off(&self) -> bool {
-        self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
+        // "beyond them, 35 metres from me, a digger"
+        let mut i = self.at + 1;
+        let number = |n: &super::tag::Item| matches!(n.tag, Tag::Number(_) | Tag::Is(Sense::Count(_)));
+        if self.item(i + 1).is_some_and(number) && matches!(self.sense(i + 2), Some(Sense::Unit(_))) {
+            let end = (i + 3..i + 7).find(|k| self.item(*k).is_some_and(|n| n.tag == Tag::Comma));
+            i = end.unwrap_or(i);
+        }
+        self.item(i).is_some_and(|n| n.tag == Tag::Comma)
             && matches!(
-                self.item(self.at + 2).map(|n| n.tag),
+                self.item(i + 1).map(|n| n.tag),
                 Some(Tag::Is(Sense::Article(false) | Sense::Count(_)) | Tag::Number(_))
             )
-            && self.noun_ahead(self.at + 2)
+            && self.noun_ahead(i + 1)
     }
 
     /// True if "and" and a comma stand right before.
@@ -316,6 +323,43 @@ impl Parser<'_> {
         true
     }
 
+    /// "and all three come towards us": those named last, if they are so many. True if it was that.
+    pub(super) fn all_of_them(&mut self, count: Count) -> bool {
+        if self.edits
+            || self.pending.is_some()
+            || self.pre.pick != Some(Pick::All)
+            || self.noun_ahead(self.at + 1)
+        {
+            return false;
+        }
+        let mut sum = 0;
+        let mut found = Vec::new();
+        for i in (0..self.mentions.len()).rev().filter(|i| !self.mentions[*i].gone) {
+            sum += self.mentions[i].spec.count.n;
+            found.push(i);
+            if sum >= count.n {
+                break;
+            }
+        }
+        if sum != count.n || !count.is_exact() {
+            return false;
+        }
+        if self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom"))
+        {
+            self.at += 1;
+        }
+        found.reverse();
+        self.flush();
+        self.pre = Pre::default();
+        self.last.clone_from(&found);
+        self.head = found;
+        self.fresh = false;
+        self.chain = false;
+        true
+    }
+
     /// "Wrong-way driver: a car comes at us": a bare noun before a colon is a heading.
     pub(super) fn heading(&mut self) {
         let listed = matches!(
@@ -438,6 +482,14 @@ impl Parser<'_> {
             return false;
         };
         let m = &mut self.mentions[i];
+        // "the only soul to be seen is a cyclist"
+        let rides = matches!(noun.classes[0], Class::Bicycle | Class::Motorcycle)
+            && matches!(word.rsplit(' ').next(), Some(w) if w.ends_with("ist") || w.ends_with("rider") || w.ends_with("biker"));
+        if is_to_be(lead) && rides && m.spec.class == Class::Pedestrian && m.spec.count.n == 1 {
+            m.mounts(noun.classes[0]);
+            m.spec.noun = word.to_string();
+            return true;
+        }
         if noun.classes.len() > 1 || !m.classes.contains(&noun.classes[0]) {
             return false;
         }
@@ -619,4 +671,8 @@ impl Parser<'_> {
             .copied()
             .collect();
     }
+}
+
+fn is_to_be(word: &str) -> bool {
+    matches!(word, "is" | "was" | "being" | "which is" | "that is")
 }

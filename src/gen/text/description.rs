@@ -178,6 +178,8 @@ pub struct RoadWish {
     pub no_crossing: bool,
     /// No sidewalks.
     pub no_sidewalk: bool,
+    /// The lane that the ego vehicle drives in among those of its direction: left, right, or `Ego` for the middle.
+    pub own_lane: Option<LaneRole>,
 }
 
 /// A structured description of a scene.

@@ -243,6 +243,7 @@ impl Editor<'_> {
                             .boxes
                             .values()
                             .filter(|b| in_role(&self.map, role, b.center_m.truncate()))
+                            .filter(|b| on_side(&c.text, role, b))
                             .map(|b| b.id)
                             .collect();
                         ids.iter().for_each(|id| self.push(TextEdit::Remove { id: *id }));
@@ -442,6 +443,10 @@ impl Editor<'_> {
                 }
             }
         }
+        for spared in &c.except {
+            let ids = super::select::fitting(&self.map, &self.boxes, spared, &c.except);
+            all.retain(|id| !ids.contains(id));
+        }
         all.sort_unstable();
         all.dedup();
         if !all.is_empty() {
@@ -582,4 +587,14 @@ pub(super) fn places_it(kind: RelationKind) -> bool {
 /// Roles that "clear" may empty.
 pub(super) fn clears(role: LaneRole) -> bool {
     role != LaneRole::Carpark
+}
+
+/// "the left side of the road" is half of it.
+fn on_side(words: &str, role: LaneRole, b: &SceneBox) -> bool {
+    let said = words.to_lowercase();
+    match (role, said.contains("left"), said.contains("right")) {
+        (LaneRole::Road, true, false) => b.center_m.y > 1.0,
+        (LaneRole::Road, false, true) => b.center_m.y < -1.0,
+        _ => true,
+    }
 }

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::description::{Count, ObjectSpec, Reading};
-use super::edit_command::imperatives;
+use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Piece, Talk, said, worded};
+use super::said::{Piece, Talk, except, said, worded};
+use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
 use super::words::edits::Verb;
@@ -108,6 +109,8 @@ pub struct Command {
     pub nth: Option<usize>,
     /// What it is about was named before.
     pub back: Option<Back>,
+    /// What it is not about: "all cars but the taxi".
+    pub except: Vec<Mention>,
     /// What is added stands where others were taken away.
     pub in_place: bool,
 }
@@ -133,6 +136,7 @@ impl Command {
             change: None,
             nth: None,
             back: None,
+            except: Vec::new(),
             in_place: false,
         }
     }
@@ -205,12 +209,18 @@ impl<'t> Reader<'t> {
             text: self.text,
             map,
             boxes,
-            others: false,
+            others: begins(
+                &self.tokens[end..],
+                "the other|the others|and the other|but the other|the rest|the remaining|and the others",
+            )
+            .is_some(),
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let pieces = said(&worded(&self.tokens[from..end], &talk), &talk);
-        let mut out = Vec::new();
+        let whole = &self.tokens[from..end];
+        let cut = except(whole);
+        let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
+        let mut out: Vec<Command> = Vec::new();
         for piece in pieces {
             match piece {
                 Piece::Meant(command, noun) => {
@@ -220,6 +230,17 @@ impl<'t> Reader<'t> {
                 Piece::Plain(tokens) => {
                     out.extend(imperatives(self.text, &rephrase(&tokens), &mut self.last_noun));
                 }
+            }
+        }
+        if let Some((_, np)) = cut {
+            let mut spared = Command::new(Verb::Note, self.text, np[0].span);
+            target_part(self.text, &tag(&np), &mut spared);
+            for c in out
+                .iter_mut()
+                .filter(|c| c.targets.iter().any(|t| t.plural))
+                .take(1)
+            {
+                c.except.clone_from(&spared.targets);
             }
         }
         Some(out)

@@ -61,14 +61,26 @@ impl Editor<'_> {
             Some(Destination::Place(spec)) => {
                 let mut spec = spec.as_ref().clone();
                 let said = c.text.to_lowercase();
+                // "the opposite kerb" is the one that it does not stand at
+                let opposite = ["opposite", "other", "far"].iter().any(|w| {
+                    [
+                        "kerb", "curb", "pavement", "sidewalk", "side", "roadside", "footpath", "edge",
+                        "verge",
+                    ]
+                    .iter()
+                    .any(|s| said.contains(&format!("{w} {s}")))
+                });
                 // What stands at the edge of the road stands at the other edge there.
                 let over = ["other side", "opposite side", "far side", "across the"]
                     .iter()
                     .any(|w| said.contains(w));
-                let aside = matches!(
-                    role_of(&self.map, &b),
-                    Some(LaneRole::LeftRoadside | LaneRole::RightRoadside)
-                ) && b.velocity_mps.length() < 0.5;
+                let aside = b.class.is_vehicle()
+                    && super::select::state_of(&self.map, &b, ObjectState::Parked)
+                    || matches!(
+                        role_of(&self.map, &b),
+                        Some(LaneRole::LeftRoadside | LaneRole::RightRoadside)
+                    ) && b.velocity_mps.length() < 0.5;
+                let over = over || opposite;
                 if over && aside {
                     for r in &mut spec.relations {
                         if r.anchor == Anchor::Lane(LaneRole::Oncoming) {
@@ -76,8 +88,21 @@ impl Editor<'_> {
                         }
                     }
                 }
+                let mut named = false;
+                for r in spec.relations.iter_mut().filter(|_| opposite) {
+                    let before = r.anchor;
+                    r.anchor = match (r.anchor, b.center_m.y > 0.0) {
+                        (Anchor::Lane(LaneRole::Roadside), false) => Anchor::Lane(LaneRole::LeftRoadside),
+                        (Anchor::Lane(LaneRole::Sidewalk), false) => Anchor::Lane(LaneRole::LeftSidewalk),
+                        (Anchor::Lane(LaneRole::Roadside), true) => Anchor::Lane(LaneRole::RightRoadside),
+                        (Anchor::Lane(LaneRole::Sidewalk), true) => Anchor::Lane(LaneRole::RightSidewalk),
+                        (other, _) => other,
+                    };
+                    named |= r.anchor != before;
+                }
                 // The other side is that on which it is not.
                 if b.center_m.y > 0.0
+                    && !named
                     && [
                         "opposite",
                         "other side",
@@ -406,8 +431,11 @@ impl Editor<'_> {
                     .map
                     .nearest(p)
                     .is_some_and(|l| l.dir.x.abs() > 0.5 && (l.dir.x > 0.0) != with);
-                // A driver changes to the lane that leads there.
-                if b.velocity_mps.length() > 0.5 && against_lane && b.class != Class::Pedestrian {
+                // A driver changes to the lane that leads there; what was parked and shall drive leaves the edge of the road.
+                let pulls_out = c.state == Some(ObjectState::Moving)
+                    && super::select::state_of(&self.map, &b, ObjectState::Parked);
+                let drives = b.velocity_mps.length() > 0.5 && against_lane;
+                if (drives || pulls_out) && b.class != Class::Pedestrian {
                     let relation = if with {
                         RelationKind::SameDirection
                     } else {
@@ -416,6 +444,15 @@ impl Editor<'_> {
                     let mut spec = range(&b, 0.0, c.span);
                     spec.relations[0].relation = relation;
                     spec.relations[0].distance_m = None;
+                    if pulls_out {
+                        spec.state = Some(ObjectState::Moving);
+                        let lane = if with { LaneRole::Ego } else { LaneRole::Oncoming };
+                        spec.relations.push(Stated {
+                            relation: RelationKind::On,
+                            anchor: Anchor::Lane(lane),
+                            ..spec.relations[0]
+                        });
+                    }
                     self.move_to_place(&b, &spec, c);
                     return;
                 }

@@ -28,8 +28,29 @@ pub(super) fn direction(words: &str) -> Option<DVec2> {
         | "to our right"
         | "to the right side"
         | "to the right hand side" => DVec2::NEG_Y,
-        "forward" | "forwards" | "ahead" | "further ahead" | "farther ahead" | "up" | "to the front"
-        | "further forward" | "up ahead" | "further on" | "further along" => DVec2::X,
+        "forward"
+        | "forwards"
+        | "ahead"
+        | "further ahead"
+        | "farther ahead"
+        | "up"
+        | "to the front"
+        | "further forward"
+        | "up ahead"
+        | "further on"
+        | "further along"
+        | "further up the road"
+        | "further down the road"
+        | "further up the street"
+        | "further down the street"
+        | "up the road"
+        | "down the road"
+        | "up the street"
+        | "down the street"
+        | "farther up the road"
+        | "farther down the road"
+        | "farther along"
+        | "farther on" => DVec2::X,
         "back" | "backwards" | "backward" | "down" | "to the rear" | "further back" | "to the back"
         | "rearwards" | "further behind" => DVec2::NEG_X,
         _ => return None,

@@ -71,6 +71,39 @@ fn face(mentions: &mut Vec<Mention>) {
     }
 }
 
+/// "two lorries drive side by side": one beside the other.
+fn abreast(mentions: &mut Vec<Mention>) {
+    for i in 0..mentions.len() {
+        let m = &mut mentions[i];
+        let said = m.spec.attributes.iter().any(|a| a == "sidebyside");
+        m.spec.attributes.retain(|a| a != "sidebyside");
+        let pair = m.spec.count == Count::exactly(2)
+            && m.both.is_none()
+            && m.spec.state != Some(ObjectState::Parked);
+        let strip = m
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Lane(_)));
+        if !said || m.gone || !pair || strip && m.spec.class.is_vehicle() {
+            continue;
+        }
+        m.spec.count = Count::exactly(1);
+        let mut other = m.clone();
+        other.spec.relations.push(Stated {
+            relation: RelationKind::NextTo,
+            anchor: Anchor::Object(i),
+            and: None,
+            distance_m: None,
+            span: other.spec.span,
+        });
+        for r in &mut other.spec.relations {
+            r.distance_m = None; // as far as the first
+        }
+        mentions.push(other);
+    }
+}
+
 /// What has stopped on the other side of the road stands at its edge.
 fn stopped_across(mentions: &mut [Mention], prompt: &str) {
     for m in mentions.iter_mut() {
@@ -116,6 +149,28 @@ fn split_sides(mentions: &mut Vec<Mention>) {
             add_side(spec, is_left, class, state, span);
         }
         mentions.push(other);
+        // "two buses on both sides, and behind them two cars": one behind each
+        let twin = mentions.len() - 1;
+        let by_each = |m: &Mention| {
+            !m.gone && m.spec.count == total && m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+        };
+        for j in (0..twin).filter(|j| *j != i && !each).collect::<Vec<_>>() {
+            if !by_each(&mentions[j]) {
+                continue;
+            }
+            let mut second = mentions[j].clone();
+            mentions[j].spec.count = part(left);
+            second.spec.count = part(right);
+            for r in second
+                .spec
+                .relations
+                .iter_mut()
+                .filter(|r| r.anchor == Anchor::Object(i))
+            {
+                r.anchor = Anchor::Object(twin);
+            }
+            mentions.push(second);
+        }
     }
 }
 
@@ -292,6 +347,7 @@ fn share_places(mentions: &mut [Mention]) {
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
     face(mentions);
+    abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
     // Works beside cones or a digger that were named are made of those.
@@ -311,6 +367,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         }
     }
     share_places(mentions);
+    super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;
     for (i, m) in mentions.iter().enumerate() {

@@ -340,6 +340,18 @@ fn build() -> Table {
             }
         }
     }
+    for noun in places::SIDED
+        .iter()
+        .flat_map(|s| words(s.3))
+        .filter(|w| !w.contains(' '))
+    {
+        for prep in ["on", "at", "along"] {
+            put(&format!("{prep} both {}", plural(noun)), Sense::BothSides(false));
+            for each in ["each", "either"] {
+                put(&format!("{prep} {each} {noun}"), Sense::BothSides(each == "each"));
+            }
+        }
+    }
     words(places::IN).for_each(|w| put(w, Sense::In));
     words(places::AT).for_each(|w| put(w, Sense::At));
     words(places::ACROSS).for_each(|w| put(w, Sense::Across));

@@ -3,7 +3,7 @@
 use super::description::{Anchor, Count, ObjectSpec, Stated};
 use super::tokens::Span;
 use super::words::edits::Pick;
-use super::words::objects::Noun;
+use super::words::objects::{NOUNS, Noun};
 use crate::scene::Class;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 
@@ -128,6 +128,19 @@ impl Mention {
             said_where: false,
             gone: false,
         }
+    }
+}
+
+impl Mention {
+    /// A person turns out to ride something of this class.
+    pub fn mounts(&mut self, class: Class) {
+        let Some(noun) = NOUNS.iter().find(|n| n.classes == [class]) else {
+            return;
+        };
+        self.classes = noun.classes;
+        self.spec.class = class;
+        self.spec.size_m = noun.size_m;
+        self.spec.noun = class.label();
     }
 }
 

@@ -1,6 +1,7 @@
 //! From words to a scene: prompt, structured description, scene graph, placement; and edits of an open scene by text.
 
 mod again;
+mod amounts;
 mod back;
 pub mod description;
 pub mod edit;
@@ -10,15 +11,20 @@ mod edit_grammar;
 mod edit_move;
 mod edit_moving;
 mod edit_place;
+mod ellipsis;
+mod exchange;
+mod existence;
 mod finish;
+mod foremost;
 pub mod holds;
+mod inferred_places;
+mod inverted;
 pub mod lanes;
 pub mod lexicon;
 mod mention;
 pub mod parse;
 pub mod place;
 mod rephrase;
-mod restate;
 pub mod road;
 mod said;
 mod select;
@@ -26,6 +32,7 @@ mod spots;
 pub mod tag;
 pub mod to_graph;
 pub mod tokens;
+mod wishes;
 mod wording;
 mod words;
 

@@ -323,6 +323,22 @@ impl Placer<'_> {
             if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
                 cost += 1.5 + 0.03 * s.p.x.abs();
             }
+            // behind something ahead is rather between it and the ego vehicle
+            let beyond = stated.iter().any(|(e, t)| {
+                e.relation == RelationKind::Behind
+                    && matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX && b.center_m.x > 6.0)
+            });
+            if beyond && s.p.x < 0.0 {
+                cost += 2.0;
+            }
+            // what comes towards the ego vehicle has not passed it yet
+            let comes = stated.iter().any(|(e, t)| {
+                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                    && e.relation == RelationKind::OppositeDirection
+            });
+            if comes && s.p.x < 4.0 {
+                cost += 2.0;
+            }
             if edges.is_empty() && s.p.x < -2.0 {
                 cost += 0.8; // what is simply there is seen rather ahead
             }

@@ -1,9 +1,13 @@
 //! Edits said as statements, turned into commands before they are read: "the bus should go" is "remove the bus", "the taxi
 //! ought to be a van" is "make the taxi a van", "one pedestrian less" is "keep the pedestrians", with one fewer.
 
+use super::amounts::{arithmetic, counted};
+use super::exchange::exchanged;
+use super::existence::{nobody, sent_off, there};
+use super::foremost::{POLITE, name_people, take_and_put, take_ordinals, topic};
 use super::lexicon::{Sense, look_up};
-use super::restate::{clauses, restate};
 use super::tokens::{Token, TokenKind};
+use super::wishes::{stated, wished};
 use super::words::edits::VERBS;
 
 /// How a number changes.
@@ -26,102 +30,6 @@ pub struct Rephrased {
     pub ordinals: Vec<(usize, usize)>,
 }
 
-const POLITE: &[&[&str]] = &[
-    &["could", "you", "please"],
-    &["can", "you", "please"],
-    &["would", "you", "please"],
-    &["could", "you"],
-    &["can", "you"],
-    &["would", "you"],
-    &["will", "you"],
-    &["can", "we"],
-    &["could", "we"],
-    &["how", "about"],
-    &["what", "if"],
-    &["i", "would", "like", "you", "to"],
-    &["id", "like", "you", "to"],
-    &["i", "want", "you", "to"],
-    &["i", "need", "you", "to"],
-    &["i", "would", "like", "to"],
-    &["id", "like", "to"],
-    &["i", "want", "to"],
-    &["we", "need", "to"],
-    &["we", "should"],
-    &["lets"],
-    &["let", "us"],
-    &["please"],
-    &["now"],
-    &["ok"],
-    &["okay"],
-    &["then"],
-    &["also"],
-    &["maybe"],
-    &["hey"],
-    &["go", "ahead", "and"],
-    &["try", "to"],
-    &["i", "think"],
-    &["id", "rather"],
-    &["i", "would", "rather"],
-    &["i", "d", "rather"],
-    &["i", "wish"],
-    &["i", "suggest"],
-    &["i", "propose"],
-    &["id", "prefer", "it", "if"],
-    &["i", "would", "prefer", "it", "if"],
-    &["i", "prefer", "that"],
-    &["it", "would", "be", "better", "if"],
-    &["it", "is", "better", "if"],
-    &["better", "if"],
-    &["would", "you", "mind"],
-    &["kindly"],
-    &["upon", "closer", "inspection"],
-    &["on", "closer", "inspection"],
-    &["on", "reflection"],
-    &["in", "reality"],
-    &["in", "truth"],
-    &["in", "fact"],
-    &["as", "it", "turns", "out"],
-    &["it", "turns", "out", "that"],
-    &["it", "turned", "out", "that"],
-    &["turns", "out"],
-    &["according", "to", "the", "witness"],
-    &["according", "to", "witnesses"],
-    &["according", "to", "the", "report"],
-    &["according", "to", "the", "driver"],
-    &["correction"],
-    &["rather"],
-    &["do"],
-    &["next"],
-    &["finally"],
-    &["afterwards"],
-    &["after", "that"],
-    &["in", "addition"],
-    &["additionally"],
-    &["oh"],
-    &["and"],
-    &["well"],
-    &["so"],
-    &["but"],
-    &["you", "should"],
-    &["you", "can"],
-    &["you", "may"],
-    &["feel", "free", "to"],
-    &["be", "so", "kind", "as", "to"],
-    &["time", "to"],
-    &["id", "love", "to"],
-    &["id", "love", "it", "if"],
-    &["id", "like", "it", "if"],
-    &["i", "want", "it", "so", "that"],
-    &["ensure", "that"],
-    &["see", "to", "it", "that"],
-    &["actually"],
-    &["on", "second", "thought"],
-    &["on", "second", "thoughts"],
-    &["for", "this", "one"],
-    &["it", "would", "be", "nice", "if"],
-    &["make", "sure", "that"],
-    &["make", "sure"],
-];
 const WISH: &[&[&str]] = &[
     &["i", "would", "like"],
     &["id", "like"],
@@ -153,30 +61,12 @@ const UNWISH: &[&[&str]] = &[
     &["out", "with"],
     &["make", "do", "without"],
 ];
-const MODALS: &[&str] = &[
-    "should", "must", "shall", "ought", "needs", "need", "has", "have", "can", "could", "may", "will", "is",
-    "are", "was", "were", "wants", "would", "might", "belongs", "goes",
-];
-const GONE: &[&str] = &[
-    "gone",
-    "removed",
-    "deleted",
-    "erased",
-    "disappear",
-    "vanish",
-    "go",
-    "away",
-    "out",
-    "leave",
-    "scrapped",
-    "dropped",
-];
 
-fn starts_with(tokens: &[Token], words: &[&str]) -> bool {
+pub fn starts_with(tokens: &[Token], words: &[&str]) -> bool {
     tokens.len() >= words.len() && tokens.iter().zip(words).all(|(t, w)| t.text == *w)
 }
 
-fn strip<'a>(mut tokens: &'a [Token], lists: &[&[&str]]) -> &'a [Token] {
+pub fn strip<'a>(mut tokens: &'a [Token], lists: &[&[&str]]) -> &'a [Token] {
     'again: loop {
         for words in lists {
             if tokens.len() > words.len() && starts_with(tokens, words) {
@@ -188,11 +78,11 @@ fn strip<'a>(mut tokens: &'a [Token], lists: &[&[&str]]) -> &'a [Token] {
     }
 }
 
-fn sense(t: &Token) -> Option<Sense> {
+pub fn sense(t: &Token) -> Option<Sense> {
     look_up(&t.text)
 }
 
-fn number(t: &Token) -> Option<i64> {
+pub fn number(t: &Token) -> Option<i64> {
     match (&t.kind, sense(t)) {
         (TokenKind::Number(v), _) if v.is_finite() && (0.0..1000.0).contains(v) => Some(v.round() as i64),
         (_, Some(Sense::Count(c))) if c.is_exact() => Some(i64::from(c.n)),
@@ -200,19 +90,7 @@ fn number(t: &Token) -> Option<i64> {
     }
 }
 
-fn ordinal(word: &str) -> Option<usize> {
-    Some(match word {
-        "first" => 1,
-        "second" => 2,
-        "third" => 3,
-        "fourth" => 4,
-        "fifth" => 5,
-        "last" => 0,
-        _ => return None,
-    })
-}
-
-fn is_noun(t: &Token) -> bool {
+pub fn is_noun(t: &Token) -> bool {
     matches!(sense(t), Some(Sense::Noun(..)))
 }
 
@@ -223,14 +101,14 @@ pub(super) fn is_verb(t: &Token) -> bool {
     })
 }
 
-fn is_place_word(t: &Token) -> bool {
+pub fn is_place_word(t: &Token) -> bool {
     matches!(
         sense(t),
         Some(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::Across)
     )
 }
 
-fn word(text: &str, at: &Token) -> Token {
+pub fn word(text: &str, at: &Token) -> Token {
     Token {
         kind: TokenKind::Word,
         text: text.to_string(),
@@ -238,7 +116,7 @@ fn word(text: &str, at: &Token) -> Token {
     }
 }
 
-fn with_verb(verb: &str, at: &Token, rest: &[Token]) -> Vec<Token> {
+pub fn with_verb(verb: &str, at: &Token, rest: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = verb.split(' ').map(|w| word(w, at)).collect();
     out.extend_from_slice(rest);
     out
@@ -255,164 +133,28 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         let put_back = topic(body);
         let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        let parts = clauses(&body);
-        for (i, clause) in parts.iter().enumerate() {
-            let Some(first) = clause.first() else {
-                continue;
-            };
-            let (new, change) = one(clause);
+        if let Some(first) = body.first() {
+            let (new, change) = one(&body);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));
             }
             out.tokens.extend(new);
-            if i + 1 < parts.len() {
-                out.tokens.push(Token {
-                    kind: TokenKind::Stop,
-                    ..word(".", first)
-                });
-            }
         }
         out.tokens.extend(stop.cloned());
     }
     out
 }
 
-/// "whatever is behind us, make it a bus" and "the car behind us: drop it": the verb first.
-fn topic(body: &[Token]) -> Option<Vec<Token>> {
-    let first = body.first()?;
-    let open = matches!(
-        first.text.as_str(),
-        "whatever" | "whoever" | "whichever" | "what" | "anything" | "anyone" | "who"
-    );
-    let definite = matches!(
-        first.text.as_str(),
-        "the" | "that" | "this" | "those" | "these" | "both" | "all" | "my"
-    );
-    if !open && !definite {
-        return None;
-    }
-    let cut = (1..body.len()).find(|i| {
-        let mark = body[*i].kind == TokenKind::Comma || body[*i].kind == TokenKind::Mark;
-        let next = i + 1 + strip_len(&body[i + 1..]);
-        if definite
-            && mark
-            && body.get(next).is_some_and(is_verb)
-            && body.get(next + 1).is_none_or(|t| {
-                is_place_word(t) || matches!(t.text.as_str(), "to" | "away" | "out" | "off" | "onto" | "into")
-            })
-        {
-            return true; // "the man on the zebra, kindly shift to the left"
-        }
-        mark && body.get(i + 1).is_some_and(is_verb)
-            && body[i + 1..]
-                .iter()
-                .take(4)
-                .any(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her" | "that" | "this"))
-    })?;
-    let mut np: Vec<Token> = Vec::new();
-    if open {
-        let is = body[..cut].iter().position(|t| {
-            matches!(
-                t.text.as_str(),
-                "is" | "are" | "stands" | "stand" | "sits" | "waits" | "drives" | "comes" | "was"
-            )
-        })?;
-        let people = matches!(first.text.as_str(), "whoever" | "anyone" | "who");
-        np.push(word("the", first));
-        np.push(word(if people { "person" } else { "object" }, first));
-        np.extend_from_slice(&body[is + 1..cut]);
-    } else {
-        np.extend_from_slice(&body[..cut]);
-    }
-    let start = cut + 1 + strip_len(&body[cut + 1..]);
-    let it = (start..body.len()).find(|i| {
-        matches!(
-            body[*i].text.as_str(),
-            "it" | "them" | "him" | "her" | "that" | "this"
-        )
-    });
-    let Some(it) = it else {
-        let verb = body.get(start)?.clone();
-        let mut out = vec![verb];
-        out.extend(np);
-        out.extend_from_slice(&body[start + 1..]);
-        return Some(out);
-    };
-    let mut out = body[start..it].to_vec();
-    out.extend(np);
-    out.extend_from_slice(&body[it + 1..]);
-    Some(out)
-}
-
-/// How many polite words begin a clause.
-fn strip_len(tokens: &[Token]) -> usize {
-    tokens.len() - strip(tokens, POLITE).len()
-}
-
-/// "everyone on the pavement" is "all people on the pavement".
-fn name_people(body: &[Token]) -> Vec<Token> {
-    let mut out = Vec::with_capacity(body.len() + 1);
-    for (i, t) in body.iter().enumerate() {
-        let person = matches!(t.text.as_str(), "everyone" | "everybody" | "anyone" | "anybody");
-        if person && i > 0 {
-            out.push(word("all", t));
-            out.push(word("people", t));
-        } else {
-            out.push(t.clone());
-        }
-    }
-    out
-}
-
-/// "take the barrier and put it behind me" is "put the barrier behind me"; "it" after a second verb is what was named.
-fn take_and_put(body: &[Token]) -> Vec<Token> {
-    let Some(first) = body.first() else {
-        return Vec::new();
-    };
-    let verbs: Vec<usize> = (1..body.len())
-        .filter(|i| is_verb(&body[*i]) && matches!(body[*i - 1].text.as_str(), "and" | "then" | ","))
-        .collect();
-    let (Some(&second), true) = (verbs.first(), is_verb(first)) else {
-        return body.to_vec();
-    };
-    let pronoun = body
-        .get(second + 1)
-        .is_some_and(|t| matches!(t.text.as_str(), "it" | "them" | "him" | "her"));
-    if !pronoun {
-        return body.to_vec();
-    }
-    let mut np_end = second;
-    while np_end > 1
-        && (matches!(body[np_end - 1].text.as_str(), "and" | "then")
-            || body[np_end - 1].kind == TokenKind::Comma)
-    {
-        np_end -= 1;
-    }
-    let noun = body[1..np_end].iter().position(is_noun).map(|i| i + 1);
-    let Some(noun) = noun else {
-        return body.to_vec();
-    };
-    let lift = matches!(first.text.as_str(), "take" | "grab" | "pick" | "lift");
-    let mut out: Vec<Token> = if lift { Vec::new() } else { body[..second].to_vec() };
-    out.push(body[second].clone());
-    out.extend_from_slice(&body[1..=noun]);
-    out.extend_from_slice(&body[second + 2..]);
-    out
-}
-
-/// "the second truck", "the last of the cars": the ordinal goes, its place is kept.
-fn take_ordinals(body: &[Token], out: &mut Rephrased) -> Vec<Token> {
-    let mut kept = Vec::with_capacity(body.len());
-    for (i, t) in body.iter().enumerate() {
-        let the = i > 0 && body[i - 1].text == "the";
-        let noun = body[i + 1..].iter().take(3).any(is_noun);
-        match ordinal(&t.text).filter(|_| the && noun) {
-            Some(n) => out.ordinals.push((t.span.start, n)),
-            None => kept.push(t.clone()),
-        }
-    }
-    kept
+/// A clause as a command, and how a number changes by it; `None` if it is one already or none of these.
+fn restate(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
+    counted(clause).or_else(|| {
+        let found = nobody(clause)
+            .or_else(|| exchanged(clause))
+            .or_else(|| sent_off(clause))
+            .or_else(|| there(clause))?;
+        Some((found, None))
+    })
 }
 
 fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
@@ -642,237 +384,6 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (rest.to_vec(), None);
     }
     (stated(rest).unwrap_or_else(|| rest.to_vec()), None)
-}
-
-/// "double the cars", "half as many cars", "two fewer pedestrians", "one pedestrian less".
-fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
-    let at = |words: &[&str]| -> Option<usize> { (0..rest.len()).find(|i| starts_with(&rest[*i..], words)) };
-    let first = &rest[0];
-    let times = [
-        ("double", 2.0),
-        ("triple", 3.0),
-        ("treble", 3.0),
-        ("quadruple", 4.0),
-        ("halve", 0.5),
-        ("twice", 2.0),
-        ("thrice", 3.0),
-    ];
-    let lead = strip(
-        rest,
-        &[
-            &["make"],
-            &["make", "it"],
-            &["put"],
-            &["add"],
-            &["have"],
-            &["show"],
-        ],
-    );
-    let mut factor = lead
-        .first()
-        .and_then(|t| times.iter().find(|(w, _)| t.text == *w))
-        .map(|(_, f)| *f);
-    if starts_with(lead, &["half", "as", "many"])
-        || starts_with(lead, &["half", "the", "number"])
-        || starts_with(lead, &["cut", "the", "number"]) && at(&["half"]).is_some()
-    {
-        factor = Some(0.5);
-    }
-    if lead.get(1).is_some_and(|t| t.text == "times") {
-        factor = lead.first().and_then(number).map(|n| n as f64);
-    }
-    let noun_from = |tokens: &[Token]| -> Option<usize> { tokens.iter().position(is_noun) };
-    if let Some(f) = factor {
-        let noun = noun_from(lead)?;
-        let double_decker = lead[0].text == "double"
-            && lead
-                .get(1)
-                .is_some_and(|t| t.text == "decker" || t.text == "parked");
-        if double_decker {
-            return None;
-        }
-        // what is said between the number words and the noun belongs to it
-        let small = ["the", "number", "of", "as", "many", "times", "a"];
-        let mut from = noun;
-        while from > 1 && !small.contains(&lead[from - 1].text.as_str()) && number(&lead[from - 1]).is_none()
-        {
-            from -= 1;
-        }
-        let end = lead
-            .iter()
-            .position(|t| matches!(t.text.as_str(), "in" if t.text == "half"))
-            .unwrap_or(lead.len());
-        return Some((
-            with_verb("keep the", first, &lead[from.min(end)..end]),
-            Change::Times(f),
-        ));
-    }
-    // fewer and less; more, where it comes after the noun
-    let fewer = rest
-        .iter()
-        .position(|t| matches!(t.text.as_str(), "fewer" | "less"))?;
-    let n = rest[..fewer]
-        .iter()
-        .rev()
-        .find_map(|t| number(t).or((matches!(t.text.as_str(), "a" | "an")).then_some(1)))
-        .unwrap_or(1);
-    let noun = noun_from(rest)?;
-    let next_to_noun = fewer + 1 == rest.len() || fewer < noun || rest[fewer + 1].text == "please";
-    if !next_to_noun || rest.get(fewer + 1).is_some_and(|t| t.text == "than") {
-        return None;
-    }
-    let mut tokens: Vec<Token> = Vec::new();
-    for (i, t) in rest.iter().enumerate() {
-        let skip = i == fewer
-            || (i < noun
-                && (number(t).is_some()
-                    || matches!(t.text.as_str(), "a" | "an" | "make" | "it" | "one" | "have")));
-        if !skip {
-            tokens.push(t.clone());
-        }
-    }
-    Some((with_verb("keep the", first, &tokens), Change::Plus(-n)))
-}
-
-/// What is wished for: to be gone, elsewhere, something else, or there.
-fn wished(wish: &[Token], first: &Token) -> Vec<Token> {
-    if let Some(new) = stated_with(wish, first) {
-        return new;
-    }
-    // "four people rather than three"
-    let than = (0..wish.len()).find(|i| {
-        starts_with(&wish[*i..], &["rather", "than"])
-            || starts_with(&wish[*i..], &["instead", "of"])
-            || wish[*i].text == "not"
-    });
-    if let Some(than) = than
-        && wish.first().and_then(number).is_some()
-        && wish
-            .get(than + 1..)
-            .is_some_and(|t| t.iter().take(2).any(|t| number(t).is_some()))
-    {
-        return with_verb("keep exactly", first, &wish[..than]);
-    }
-    with_verb("add", first, wish)
-}
-
-fn stated(rest: &[Token]) -> Option<Vec<Token>> {
-    let first = rest.first()?;
-    // "one cyclist is enough"
-    let last = rest.last()?;
-    if number(first).is_some()
-        && matches!(
-            last.text.as_str(),
-            "enough" | "suffices" | "suffice" | "plenty" | "do" | "sufficient" | "only"
-        )
-    {
-        let end = rest.iter().position(|t| {
-            matches!(
-                t.text.as_str(),
-                "is" | "are" | "will" | "would" | "suffices" | "suffice"
-            )
-        })?;
-        return Some(with_verb("keep only", first, &rest[..end]));
-    }
-    let m = rest.iter().position(|t| MODALS.contains(&t.text.as_str()))?;
-    let named = rest[..m]
-        .iter()
-        .any(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"));
-    if !named || m == 0 {
-        // "there should be six cones" is read as it is
-        return None;
-    }
-    stated_with(rest, first)
-}
-
-/// A noun phrase and what shall become of it, as a command.
-fn stated_with(rest: &[Token], first: &Token) -> Option<Vec<Token>> {
-    let noun = rest
-        .iter()
-        .position(|t| is_noun(t) || matches!(t.text.as_str(), "everything" | "everyone"))?;
-    let definite = rest[..noun].iter().any(|t| {
-        matches!(
-            t.text.as_str(),
-            "the" | "my" | "that" | "all" | "both" | "every" | "this"
-        )
-    }) || matches!(rest[noun].text.as_str(), "everything" | "everyone");
-    // Words of the noun phrase end where a modal or a verb begins.
-    let small = [
-        "to", "be", "not", "also", "now", "just", "get", "got", "instead", "rather", "please",
-    ];
-    let modal = (noun..rest.len()).find(|i| MODALS.contains(&rest[*i].text.as_str()));
-    let last_word = rest.iter().rposition(|t| {
-        !matches!(
-            t.text.as_str(),
-            "please" | "now" | "instead" | "from" | "here" | "scene"
-        )
-    })?;
-    let gone = GONE.contains(&rest[last_word].text.as_str());
-    if gone && definite && last_word > noun {
-        let end = modal.unwrap_or(last_word).min(last_word);
-        return Some(with_verb("remove", first, &rest[..end]));
-    }
-    if !definite {
-        return None;
-    }
-    let mut tail_from = match modal {
-        Some(m) => m + 1,
-        // "let the cyclist ride behind me", "I want the bus behind me"
-        None => (noun + 1..rest.len())
-            .find(|i| is_place_word(&rest[*i]) || matches!(sense(&rest[*i]), Some(Sense::State(..))))?,
-    };
-    let np_end = modal.unwrap_or(tail_from);
-    while tail_from < rest.len()
-        && (small.contains(&rest[tail_from].text.as_str()) || MODALS.contains(&rest[tail_from].text.as_str()))
-    {
-        tail_from += 1;
-    }
-    let np = &rest[..np_end];
-    let end = (tail_from..rest.len())
-        .find(|i| {
-            matches!(rest[*i].text.as_str(), "instead" | "please")
-                || starts_with(&rest[*i..], &["rather", "than"])
-        })
-        .unwrap_or(rest.len());
-    let tail = rest.get(tail_from..end)?;
-    let head = tail.first()?;
-    let join = |verb: &str, np: &[Token], tail: &[Token]| {
-        let mut out = with_verb(verb, first, np);
-        out.extend_from_slice(tail);
-        Some(out)
-    };
-    let article = matches!(head.text.as_str(), "a" | "an");
-    if article && tail.iter().any(is_noun) {
-        return join("make", np, tail); // "the taxi ought to be a bus"
-    }
-    if matches!(
-        head.text.as_str(),
-        "face" | "turn" | "look" | "point" | "rotate" | "spin"
-    ) {
-        return join("turn", np, tail);
-    }
-    if matches!(
-        head.text.as_str(),
-        "moved" | "move" | "shifted" | "pushed" | "placed" | "put"
-    ) {
-        return join("move", np, &tail[1..]);
-    }
-    if matches!(sense(head), Some(Sense::State(..))) && tail.get(1).is_some() {
-        // "ride behind me", "stand on the right": where is what matters
-        let from = tail.iter().position(is_place_word)?;
-        return join("move", np, &tail[from..]);
-    }
-    if is_place_word(head) {
-        return join("move", np, tail);
-    }
-    if number(head).is_some()
-        && tail
-            .get(1)
-            .is_some_and(|t| look_up(&t.text).is_some_and(|s| matches!(s, Sense::Unit(_))))
-    {
-        return join("move", np, tail);
-    }
-    None
 }
 
 #[cfg(test)]

@@ -202,6 +202,15 @@ fn judge(
     if d.road.one_way && d.road.kind != Some(Road::Roundabout) {
         lack(role(LaneRole::Oncoming) == 0, "one-way variation");
     }
+    // "I drive in the middle lane of three"
+    if let Some(own) = d.road.own_lane {
+        let (left, right) = (role(LaneRole::Left) > 8, role(LaneRole::Right) > 8);
+        wishes += match own {
+            LaneRole::Left => usize::from(left) + 2 * usize::from(!right),
+            LaneRole::Right => usize::from(right) + 2 * usize::from(!left),
+            _ => 2 * (usize::from(!left) + usize::from(!right)),
+        };
+    }
     if let Some(lanes) = d.road.lanes {
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
         wishes += usize::from((lanes as usize).div_ceil(2) != forward);

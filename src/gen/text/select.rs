@@ -161,7 +161,11 @@ fn fitting_deep(
                 Some(held) => held,
                 None => targets.iter().any(|(t, and)| {
                     !matches!(t, Target::Thing(o) if o.id == b.id)
-                        && holds(map, r.relation, b, t, and.as_ref(), r.distance_m)
+                        && (holds(map, r.relation, b, t, and.as_ref(), r.distance_m)
+                            // who stands near the stripes waits there
+                            || r.relation == RelationKind::WaitingAt
+                                && b.velocity_mps.length() < 0.5
+                                && holds(map, RelationKind::Near, b, t, None, r.distance_m))
                 }),
             }
         });

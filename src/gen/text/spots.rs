@@ -120,6 +120,12 @@ pub fn spots(
                 }
                 _ => g.walks(),
             }
+            let on_junction = |(e, t): &(Edge, Option<Target>)| {
+                matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
+            };
+            if stated.iter().any(on_junction) {
+                g.amid_junction();
+            }
             if (near_thing || thing.is_some()) && !crossing {
                 g.base.anywhere = near_thing;
                 g.base.on_road = true;
@@ -486,6 +492,23 @@ impl Gather<'_, '_> {
             let jitter = self.draw.range(-0.2, 0.2);
             self.out[i].yaw_rad = lane + turn + jitter;
         }
+    }
+
+    /// On the road where the lanes meet: the nearer to the middle, the better.
+    fn amid_junction(&mut self) {
+        let Some(center) = self.map.junction else {
+            return;
+        };
+        let base = self.base;
+        self.base.on_road = true;
+        for ring in 0..9 {
+            for k in 0..12 {
+                self.base.cost = base.cost - 1.5 + 0.15 * f64::from(ring);
+                let turn = DVec2::from_angle(f64::from(k) * PI / 6.0);
+                self.push(center + turn * f64::from(ring), f64::from(k) * PI / 6.0);
+            }
+        }
+        self.base = base;
     }
 
     fn crossing_people(&mut self) {

@@ -169,7 +169,11 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
             }
-            ("pedestrian crossing", _) if next.is_some_and(leads_to_road) => {
+            ("pedestrian crossing", _)
+                if next.is_some_and(leads_to_road)
+                    && !(at_place(out.as_slice())
+                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false)))) =>
+            {
                 // "a pedestrian crossing the road"
                 let cut = item.span.start + "pedestrian".len();
                 out.push(Item {
@@ -328,6 +332,14 @@ pub(super) fn time_of(hour: f64, pm: bool) -> super::description::TimeOfDay {
         h if h < 21.0 => Dusk,
         _ => Night,
     }
+}
+
+/// True after "at the", "on a": a place follows.
+fn at_place(before: &[Item]) -> bool {
+    matches!(
+        before,
+        [.., prep, article] if matches!(article.tag, Tag::Is(Sense::Article(_))) && matches!(prep.tag, Tag::Is(Sense::In | Sense::At | Sense::Rel(_)))
+    )
 }
 
 fn leads_to_road(item: &Item) -> bool {

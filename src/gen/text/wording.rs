@@ -4,7 +4,7 @@ use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 
 /// A word that stands where another stood.
-fn word(text: &str, at: &Token) -> Token {
+pub fn word(text: &str, at: &Token) -> Token {
     Token {
         kind: TokenKind::Word,
         text: text.to_string(),
@@ -107,8 +107,9 @@ const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene 
 pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
-        out.extend_from_slice(without_purpose(sentence));
+        out.extend(without_purpose(sentence));
     }
+    let out = super::inverted::ordered(&super::ellipsis::filled(&out));
     let out = replaced(&out, FRAMES, "");
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let mut out = faced(&out);
@@ -173,6 +174,8 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
+const ABREAST: &str = "side by side|two abreast|abreast|next to each other|next to one another|beside each other|beside one another|alongside each other|alongside one another|shoulder to shoulder|neck and neck|level with each other|level with one another|parallel to each other|one beside the other|one next to the other";
+
 /// "facing each other" in one word, unless it is "face to face with" something.
 fn faced(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
@@ -188,6 +191,13 @@ fn faced(tokens: &[Token]) -> Vec<Token> {
                 out.push(word("facetoface", &tokens[i]));
                 i += n;
             }
+            // ("abreast of us" is a place)
+            None if begins(&tokens[i..], ABREAST)
+                .is_some_and(|n| begins(&tokens[i + n..], "with|of").is_none()) =>
+            {
+                out.push(word("sidebyside", &tokens[i]));
+                i += begins(&tokens[i..], ABREAST).unwrap_or(1);
+            }
             None => {
                 out.push(tokens[i].clone());
                 i += 1;
@@ -198,13 +208,13 @@ fn faced(tokens: &[Token]) -> Vec<Token> {
 }
 
 /// "For the lesson on passing parked vehicles I need a truck": what a scene is for is not in it.
-fn without_purpose(sentence: &[Token]) -> &[Token] {
+fn without_purpose(sentence: &[Token]) -> Vec<Token> {
     let lead = begins(
         sentence,
         "for|to|in order to|so that|as part of|as preparation for|in preparation for",
     );
     let Some(lead) = lead else {
-        return sentence;
+        return sentence.to_vec();
     };
     // "to the left, I need a car" says where
     let place = sentence.get(lead).is_some_and(|t| {
@@ -214,13 +224,13 @@ fn without_purpose(sentence: &[Token]) -> &[Token] {
         )
     });
     if place && begins(sentence, "to").is_some() {
-        return sentence;
+        return sentence.to_vec();
     }
     let near = &sentence[..sentence.len().min(24)];
     let wish = (lead..near.len()).find(|i| {
         begins(
             &near[*i..],
-            "i need|we need|i want|we want|i would like|we would like|id like|i require|we require|please|give me|show me|show us|make me|create|draw|build|set up|lets have|let us have|i am looking for|im looking for",
+            "i need|we need|id need|wed need|i would need|we would need|i could use|we could use|i could do with|we could do with|i want|we want|i would like|we would like|id like|i require|we require|please|give me|show me|show us|make me|create|draw|build|set up|lets have|let us have|i am looking for|im looking for",
         )
         .is_some()
     });
@@ -259,8 +269,17 @@ fn without_purpose(sentence: &[Token]) -> &[Token] {
             )
         });
     match wish {
-        Some(k) if aim => &sentence[k..],
-        _ => sentence,
+        Some(k) if aim => {
+            // "For the foggy roundabout test": what it is to be like is
+            let said = sentence[lead..k].iter().filter(|t| {
+                matches!(
+                    look_up(&t.text),
+                    Some(Sense::Weather(_) | Sense::Time(_) | Sense::RoadKind(..) | Sense::Place(_, Some(_)))
+                )
+            });
+            said.chain(&sentence[k..]).cloned().collect()
+        }
+        _ => sentence.to_vec(),
     }
 }
 

@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 9] = [
+const SETS: [(&str, &str); 12] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -52,6 +52,18 @@ const SETS: [(&str, &str); 9] = [
     (
         "strangers_7.jsonl",
         include_str!("../../../../tests/data/strangers_7.jsonl"),
+    ),
+    (
+        "exam_3.jsonl",
+        include_str!("../../../../tests/data/exam_3.jsonl"),
+    ),
+    (
+        "strangers_8.jsonl",
+        include_str!("../../../../tests/data/strangers_8.jsonl"),
+    ),
+    (
+        "variants.jsonl",
+        include_str!("../../../../tests/data/variants.jsonl"),
     ),
 ];
 

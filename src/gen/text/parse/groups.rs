@@ -7,6 +7,7 @@ use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::{Parser, is_color};
 use crate::scene::Class;
+use crate::scene::graph::RelationKind;
 
 impl Parser<'_> {
     /// A group that a number without a noun can be a part of.
@@ -103,13 +104,14 @@ impl Parser<'_> {
             self.at += 1; // "the first one"
         }
         let Some(parent) = parent else {
+            let single = self.last.first().or(self.before.first()).copied();
             if self.pending.is_none()
-                && !self.last.is_empty()
+                && single.is_some_and(|i| !self.mentions[i].gone && !self.mentions[i].is_anchor)
                 && (span.of(self.prompt).to_lowercase().starts_with("another")
                     || span.of(self.prompt).to_lowercase().starts_with("a "))
             {
                 // "a car on the left and another on the right"
-                let mut twin = self.mentions[self.last[0]].clone();
+                let mut twin = self.mentions[single.unwrap_or(0)].clone();
                 twin.spec.relations.clear();
                 twin.spec.span = span;
                 twin.spec.count = Count::exactly(1);
@@ -283,9 +285,12 @@ impl Parser<'_> {
                     fresh && self.noun_ahead(self.at + 1) && matches!(f, Anchor::Ego | Anchor::Object(_))
                 })
                 .filter(|_| {
-                    self.pending
-                        .as_ref()
-                        .is_some_and(|p| matches!(p.prep, Prep::Rels(_)))
+                    self.pending.as_ref().is_some_and(|p| match &p.prep {
+                        Prep::Rels(kinds) => {
+                            kinds.contains(&RelationKind::LeftOf) || kinds.contains(&RelationKind::RightOf)
+                        }
+                        _ => false,
+                    })
                 });
             let placed_in = self
                 .pending
@@ -296,7 +301,10 @@ impl Parser<'_> {
             // "five to the left of my car and five to the right of it": no group is "it"
             let ego_it = item.words == "it"
                 && !self.edits
-                && self.mentions.iter().all(|m| m.gone || m.spec.count.n > 1)
+                && self
+                    .mentions
+                    .iter()
+                    .all(|m| m.gone || m.spec.count.n > 1 || m.spec.class == Class::Pedestrian)
                 && self
                     .mentions
                     .iter()

@@ -48,6 +48,7 @@ pub(super) struct Parser<'a> {
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
     fronted_state: Option<ObjectState>,
+    fronted_both: Option<bool>,  // "on both sides stand ..."
     pub(super) chain: bool,      // only nouns so far in this clause
     pub(super) list: Vec<usize>, // those nouns
     linked: bool,                // "and" or a comma right before
@@ -106,6 +107,7 @@ impl<'a> Parser<'a> {
             before: Vec::new(),
             fronted: Vec::new(),
             fronted_state: None,
+            fronted_both: None,
             chain: true,
             list: Vec::new(),
             linked: false,
@@ -300,6 +302,7 @@ impl<'a> Parser<'a> {
         self.list.clear();
         self.fronted.clear();
         self.fronted_state = None;
+        self.fronted_both = None;
         self.reversed = None;
         self.relative = false;
         self.ego_subject = false;

@@ -254,6 +254,10 @@ impl Parser<'_> {
             self.head = vec![index];
         }
         self.last = self.head.clone();
+        if let (Some(each), false) = (self.fronted_both, old) {
+            let m = &mut self.mentions[index];
+            m.both = Some(each || m.spec.count.n == 1);
+        }
         if let Some(state) = self.fronted_state
             && self.mentions[index].spec.state.is_none()
         {

@@ -39,6 +39,9 @@ impl Parser<'_> {
         if self.items[self.at].words == "both" && self.both_of_them() {
             return;
         }
+        if self.all_of_them(count) {
+            return;
+        }
         let next_is_part = !self.noun_ahead(self.at + 1);
         if next_is_part
             && !self.edits
@@ -238,7 +241,10 @@ impl Parser<'_> {
             {
                 r.distance_m = Some(metres);
                 used = true;
-            } else if list.is_empty() {
+            } else if list
+                .iter()
+                .all(|r| matches!(r.anchor, Anchor::Lane(_)) && r.distance_m.is_none())
+            {
                 // "in front of me: a car at 10 m, a truck at 20 m": the side holds for all of the list
                 list.push(Stated {
                     relation: listed.unwrap_or(RelationKind::Near),

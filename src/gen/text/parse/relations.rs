@@ -23,7 +23,7 @@ impl Parser<'_> {
             prep,
             span,
             first: None,
-            fresh: self.fresh,
+            fresh: self.fresh && !self.relative,
             anded: self.anded || self.after_and(),
             not,
             finite: self.after_is() && !self.relative,
@@ -101,6 +101,19 @@ impl Parser<'_> {
             self.unread(frag.span, Some("where something is not, is not read".into()));
             return;
         }
+        // "behind a bus that comes towards us, two cars": the bus comes
+        let of_front = match self.fronted.last().map(|f| f.anchor) {
+            Some(Anchor::Object(i))
+                if self.head.is_empty() && !p.fresh && !p.ego && frag.anchor != Anchor::Object(i) =>
+            {
+                Some(i)
+            }
+            _ => None,
+        };
+        if let Some(m) = of_front.and_then(|i| self.mentions.get_mut(i)) {
+            apply(&mut m.spec, &frag);
+            return;
+        }
         let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
         let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
         // "the host trails a truck in its lane"
@@ -149,6 +162,10 @@ impl Parser<'_> {
         let default = match (&p.prep, p.first) {
             (_, Some(first)) => Some(first),
             (Prep::Rels(kinds), None) => match kinds.first() {
+                // "a bus has stopped at the zebra, and five children are walking over"
+                Some(RelationKind::Crossing) if self.last_place == Some(Anchor::Crossing) => {
+                    Some(Anchor::Crossing)
+                }
                 Some(RelationKind::Crossing) => Some(Anchor::Lane(LaneRole::Road)),
                 Some(RelationKind::Blocking) => Some(Anchor::Lane(LaneRole::Ego)),
                 Some(

@@ -29,6 +29,11 @@ impl<'a> Parser<'a> {
                     "is" | "was" if self.pending.is_none() => self.back_to_host(),
                     // "the left lane has two cars in it"
                     "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
+                    // "my lane has been closed off by cones"
+                    "has" | "have"
+                        if self
+                            .item(self.at + 1)
+                            .is_some_and(|n| n.words.starts_with("been")) => {}
                     "with" | "has" | "have" | "having" => {
                         self.with = true;
                         self.topic = None;
@@ -42,6 +47,17 @@ impl<'a> Parser<'a> {
                         if let (Some(host), Some(p)) = (host, self.pending.as_mut()) {
                             p.fresh = true;
                             self.anchor(Anchor::Object(host), span);
+                        }
+                        return false;
+                    }
+                    // "a car park in which eight cars stand"
+                    "which" | "that"
+                        if self.pending.as_ref().is_some_and(|p| p.first.is_none())
+                            && self.last_place.is_some() =>
+                    {
+                        if let (Some(place), Some(p)) = (self.last_place, self.pending.as_mut()) {
+                            p.fresh = true;
+                            self.anchor(place, span);
                         }
                         return false;
                     }
@@ -87,13 +103,33 @@ impl<'a> Parser<'a> {
                     }
                     // "... obstructs the crossing; four people wait there"
                     "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
+                    // "on both pavements stand three people each"
+                    "each"
+                        if self.ends(self.at + 1)
+                            && self.last.iter().any(|i| self.mentions[*i].both.is_some()) =>
+                    {
+                        for i in self.last.clone() {
+                            self.mentions[i].both = self.mentions[i].both.map(|_| true);
+                        }
+                    }
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
                         self.head = self.before.clone();
                         self.last = self.before.clone();
                         self.chain = false;
                     }
-                    "where" => self.end_clause(),
+                    // "a car park where six cars stand"
+                    "where" => {
+                        let place = self.topic.take().filter(|(a, _)| {
+                            matches!(a, Anchor::Crossing | Anchor::Junction)
+                                || matches!(a, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Ego))
+                        });
+                        self.end_clause();
+                        if let Some((place, at)) = place.filter(|_| self.noun_ahead(self.at + 1)) {
+                            self.begin(Prep::In, at);
+                            self.anchor(place, at);
+                        }
+                    }
                     _ => {}
                 }
                 return true;
@@ -335,7 +371,7 @@ impl<'a> Parser<'a> {
                 self.flush();
                 let subjects = self.subjects(false);
                 let ego = self.ego_subject.then_some(Anchor::Ego);
-                let topic = self.topic.take().map(|t| t.0).or(ego);
+                let topic = self.topic.take().map(|t| t.0).filter(|_| ego.is_none()).or(ego);
                 self.reversed = Some((kind, span, subjects, topic));
             }
             Sense::Fixed(kind, anchor) => {
@@ -365,7 +401,14 @@ impl<'a> Parser<'a> {
                 if self.reversed.is_some() {
                     targets.truncate(1); // "flanked by two cones on each side"
                 }
-                if targets.is_empty() {
+                // "and on both sides stand two cars"
+                if self.fresh && self.noun_ahead(self.at + 1) && self.reversed.is_none() {
+                    self.new_clause();
+                    targets.clear();
+                }
+                if targets.is_empty() && self.noun_ahead(self.at + 1) {
+                    self.fronted_both = Some(each);
+                } else if targets.is_empty() {
                     self.unread(span, Some("nothing stands before it".into()));
                 }
                 let each = each || targets.iter().any(|t| self.mentions[*t].spec.count.n == 1);

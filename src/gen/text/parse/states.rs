@@ -4,6 +4,7 @@ use super::super::mention::Prep;
 use super::super::tag::Item;
 use super::super::tokens::Span;
 use super::Parser;
+use crate::scene::Class;
 use crate::scene::graph::{ObjectState, RelationKind};
 
 impl Parser<'_> {
@@ -97,7 +98,24 @@ impl Parser<'_> {
             return;
         }
         for t in targets.iter().copied() {
+            // "a lady cycling ahead of us" is on a bicycle
+            let pedals = item.words.split(' ').any(|w| {
+                matches!(
+                    w,
+                    "cycling"
+                        | "cycles"
+                        | "cycle"
+                        | "cycled"
+                        | "pedalling"
+                        | "pedaling"
+                        | "pedals"
+                        | "biking"
+                )
+            });
             let m = &mut self.mentions[t];
+            if pedals && m.spec.class == Class::Pedestrian && !self.edits {
+                m.mounts(Class::Bicycle);
+            }
             m.spec.state = Some(state);
             if !m.spec.attributes.contains(&item.words) && item.words.len() > 3 {
                 m.spec.attributes.push(item.words.clone());

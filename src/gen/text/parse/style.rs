@@ -28,7 +28,21 @@ impl Parser<'_> {
             && matches!(anchor, Anchor::Lane(_))
             && self.noun_ahead(self.at + 1);
         self.ego_subject &= !of_next;
+        let before = self
+            .item(self.at.wrapping_sub(1))
+            .map_or("", |b| b.words.as_str());
+        let middle = item
+            .words
+            .split(' ')
+            .chain(before.split(' '))
+            .any(|w| matches!(w, "middle" | "centre" | "center"));
+        let own_lane = match anchor {
+            Anchor::Lane(role @ (LaneRole::Left | LaneRole::Right)) => Some(role),
+            Anchor::Lane(LaneRole::Ego) if middle => Some(LaneRole::Ego),
+            _ => None,
+        };
         if self.ego_subject && self.head.is_empty() && self.last.is_empty() && self.pending.is_some() {
+            self.d().road.own_lane = own_lane;
             self.pending = None; // "we stand by the traffic light" sets the stage
         }
         // "in that same lane"

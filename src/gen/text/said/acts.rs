@@ -5,6 +5,7 @@ use super::super::edit_command::{note_definite, parse, target_part};
 use super::super::edit_grammar::{Back, Command, Destination, Turn};
 use super::super::edit_moving::metres_at;
 use super::super::lexicon::Sense;
+use super::super::lexicon::look_up;
 use super::super::tag::{Tag, tag};
 use super::super::tokens::{Span, Token};
 use super::super::words::edits::Verb;
@@ -14,7 +15,7 @@ use super::subject::{Kind, Subject};
 use super::ways::{arrived, settled, step, times, turned, with_named};
 use super::words::{find, first_noun, has_noun, is, led, number, text};
 use super::{Piece, Talk};
-use crate::scene::graph::RelationKind;
+use crate::scene::graph::{ObjectState, RelationKind};
 
 fn span_of(tokens: &[Token]) -> Span {
     tokens.iter().fold(tokens[0].span, |s, t| s.to(t.span))
@@ -71,9 +72,12 @@ pub fn acts(
     let remembered = || meant(about(Verb::Note, s, clause, talk));
     // What is over says nothing of now, if now is said, too; a departure that goes on elsewhere is none.
     let later = |i: usize| {
-        parts[i + 1..]
-            .iter()
-            .any(|p| !p.not && !p.main.is_empty() && (super::predicate::places(&p.main) || p.is_gone()))
+        parts[i + 1..].iter().any(|p| {
+            !p.not
+                && !p.main.is_empty()
+                && !only_points(&p.main)
+                && (super::predicate::places(&p.main) || p.is_gone())
+        })
     };
     // "crosses over and now stands on the left sidewalk": where he ends counts
     let crosses = |p: &Part| {
@@ -216,9 +220,19 @@ pub fn acts(
     if let Some(turn) = turned(&main, &said) {
         let mut c = about(Verb::Turn, s, clause, talk);
         c.turn = Some(turn);
+        let drives = |w: &str| matches!(look_up(w), Some(Sense::State(ObjectState::Moving, _)));
+        c.state = said
+            .iter()
+            .any(|p| p.main.iter().any(|t| drives(text(t))))
+            .then_some(ObjectState::Moving);
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "blocks it": a verb of something that was named before.
+fn only_points(main: &[Token]) -> bool {
+    main.len() == 2 && is(main.get(1), &["it", "them", "him", "her"])
 }
 
 /// Metres that are no step: "behind us", "ahead of the bus".
@@ -345,6 +359,7 @@ fn placed(
             RelationKind::Facing => Turn::ToEgo,
             _ => Turn::FromEgo,
         });
+        c.state = spec.state.filter(|s| *s == ObjectState::Moving);
         return Some(vec![Piece::Meant(Box::new(c), noun)]);
     }
     note_definite(&mut c, &mentions);

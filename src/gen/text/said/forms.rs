@@ -221,22 +221,25 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
             "remove" | "delete" | "take" | "erase" | "drop" | "clear" | "lose" | "scrap" | "bin"
         );
     let end = i + n + first_noun(&inner[i + n..])?.1;
-    let goes = i == 0
-        && inner[end..].iter().any(|t| {
-            matches!(
-                text(t),
-                "go" | "gone"
-                    | "leave"
-                    | "leaves"
-                    | "left"
-                    | "away"
-                    | "removed"
-                    | "disappear"
-                    | "out"
-                    | "off"
-                    | "superfluous"
-            )
-        });
+    // (half of them stay where half of them go)
+    let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
+    let goes = keeps
+        || i == 0
+            && inner[end..].iter().any(|t| {
+                matches!(
+                    text(t),
+                    "go" | "gone"
+                        | "leave"
+                        | "leaves"
+                        | "left"
+                        | "away"
+                        | "removed"
+                        | "disappear"
+                        | "out"
+                        | "off"
+                        | "superfluous"
+                )
+            });
     (removing || goes).then(|| {
         vec![Piece::Plain(led(
             "half the number of",
@@ -384,6 +387,14 @@ pub(super) fn preferred(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> 
         .first()
         .is_some_and(|t| matches!(text(t), "the" | "that" | "this" | "both" | "my" | "those"));
     let end = first_noun(old)?.1;
+    // "rather have a tram than a bus": the only bus
+    let only = is(old.first(), &["a", "an"]) && talk.fits(&old[1..end]) == 1;
+    let the = led("the", &inner[0], &[&old[1..]]);
+    let (old, end, known) = if only {
+        (&the[..], end, true)
+    } else {
+        (old, end, known)
+    };
     (fresh && known && has_noun(new) && first_noun(new)?.0 < 4 && talk.fits(&old[..end]) > 0).then(|| {
         vec![Piece::Plain(led(
             "replace",
@@ -431,7 +442,14 @@ pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) 
                 || look_up(text(&rest[*k]))
                     .is_some_and(|s| matches!(s, Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_)))
         })
-        .last()?;
+        .last()
+        // "on its place comes motorbike"
+        .or((a == 0
+            || !is(
+                rest.get(a - 1),
+                &["the", "that", "this", "my", "both", "those", "these"],
+            ))
+        .then_some(a))?;
     let np = &rest[lead..b];
     let span = inner.iter().fold(inner[0].span, |s: Span, t| s.to(t.span));
     let mut c = Command::new(Verb::Add, talk.text, span);

@@ -161,7 +161,10 @@ fn source(tokens: &[Token]) -> Option<usize> {
 
 /// A short lead before a comma that names nothing: "in my opinion,", "to make it harder,".
 fn lead(tokens: &[Token]) -> Option<usize> {
-    let comma = tokens.iter().take(7).position(|t| t.kind == TokenKind::Comma)?;
+    let comma = tokens
+        .iter()
+        .take(7)
+        .position(|t| t.kind == TokenKind::Comma || text(t) == ":")?;
     if comma == 0 {
         return None;
     }

@@ -119,7 +119,7 @@ lists! {
     REASONS = "because|since|so that we|so we|so that i|so i|as it|as he|as she|as they|for safety|in order to|which is|which means|\
         so as to|to make it|or else|otherwise|to let|to avoid|for whatever|like before|as before|as usual";
     /// In the place of another.
-    IN_PLACE = "there instead|in its place|in their place|in his place|in her place|in the same place|in same place|in that place|\
+    IN_PLACE = "there instead|on its place|on their place|on his place|on her place|on the same place|in its place|in their place|in his place|in her place|in the same place|in same place|in that place|\
         in its stead|in their stead|in his stead|in its spot|in their spot|in the same spot|at the same place|at same place|\
         at the same spot|at the same position|at the same location|in the same position|in its position|in their position|\
         at its place|at their place|at that place|at that spot|at this place|on the same spot|on its spot|to its place|\

@@ -4,20 +4,27 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod exception;
 mod forms;
 mod frame;
-mod lists;
+mod gaps;
+mod idioms;
+pub(super) mod lists;
 mod orders;
 mod parting;
+mod passive;
 mod predicate;
+mod skies;
+mod some_of;
 mod spoken;
 mod subject;
 mod swap;
 #[cfg(test)]
 mod tests;
+mod untouched;
 mod ways;
 mod worded;
-mod words;
+pub(super) mod words;
 
 use super::edit_command::{parse, target_part};
 use super::edit_grammar::{Back, Command};
@@ -28,6 +35,7 @@ use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, SceneBox};
+pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
     takes_place,
@@ -128,7 +136,8 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     let body = &with_ones(&without_feet(body))[..];
     let mut out: Vec<Piece> = Vec::new();
     let mut understood = false;
-    let others = find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
+    let others =
+        talk.others || find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
     let parted = clauses(body, talk);
     let mut lead: Option<Token> = None;
@@ -248,6 +257,44 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     Some(out)
 }
 
+/// What nobody wants of a kind goes, where it was said.
+fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
+    let any = is(
+        inner.first(),
+        &["any", "a", "an", "more", "some", "anybody", "anyone"],
+    );
+    let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
+    let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
+    let mut rest = &inner[b..];
+    for late in ["any more", "anymore", "any longer", "at all", "no more", "now"] {
+        let n = late.split(' ').count();
+        if let Some(cut) = rest
+            .len()
+            .checked_sub(n)
+            .filter(|k| find(&rest[*k..], &[late]).is_some())
+        {
+            rest = &rest[..cut];
+        }
+    }
+    let told = rest.first().is_some_and(|t| {
+        is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to"
+    });
+    let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
+    (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
+        let body = is(inner.get(a), &["anybody", "anyone"]);
+        let np = if body {
+            led("people", first, &[])
+        } else {
+            inner[a..b].to_vec()
+        };
+        vec![Piece::Plain(led(
+            "remove all the",
+            first,
+            &[&np, &rest[2 * verb..]],
+        ))]
+    })
+}
+
 /// A command that does nothing but say what "it" will mean.
 fn remembered(np: &[Token], talk: &Talk<'_>) -> Piece {
     let span = np.iter().fold(np[0].span, |s: Span, t| s.to(t.span));
@@ -349,6 +396,12 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     if let Some(found) = imperative(inner, talk) {
+        return Some(found);
+    }
+    // "I don't want any cars behind me any more"
+    if mood.denied
+        && let Some(found) = unwanted(inner, first)
+    {
         return Some(found);
     }
     if mood.denied

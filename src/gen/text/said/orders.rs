@@ -4,7 +4,7 @@ use super::super::edit_grammar::Back;
 use super::super::tokens::{Token, TokenKind};
 use super::lists::MOVES;
 use super::predicate::parts;
-use super::subject::{Kind, Subject};
+use super::subject::{Kind, Subject, pointing};
 use super::ways::split;
 use super::words::{self, find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
 use super::{Piece, Talk, acts, predicate};
@@ -180,6 +180,9 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         .iter()
         .any(|t| matches!(text(t), "number" | "amount" | "count" | "total"));
     let makes = matches!(text(first), "make" | "have" | "let" | "get");
+    if let Some(found) = made_into(inner, talk).or_else(|| rid_of_others(inner, talk)) {
+        return Some(found);
+    }
     if !MOVES.contains(&text(first)) || counts {
         return None;
     }
@@ -201,7 +204,17 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     }
     let tokens = &inner[from..];
     let pronoun = is(tokens.first(), &["it", "him", "her", "them"]);
-    let (np_end, s) = if pronoun {
+    let others = pointing(tokens).filter(|p| p.0 == Back::Others);
+    let (np_end, s) = if let Some((back, n)) = others {
+        let s = Subject {
+            kind: Kind::Back(back),
+            np: tokens[..n].to_vec(),
+            noun: Vec::new(),
+            pred: n,
+            plural: false,
+        };
+        (n, s)
+    } else if pronoun {
         let back = if is(tokens.first(), &["him", "her"]) {
             Back::Person
         } else {
@@ -283,6 +296,12 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     // "out of my lane and onto the sidewalk"
     let goal = leads(rest, &["out of", "off", "away from", "from"])
         .and_then(|_| (1..rest.len()).find(|i| words::is_goal(&rest[*i..]) || is(rest.get(*i), &["to"])));
+    // "out of the left lane and behind the truck"
+    let goal = goal.or_else(|| {
+        leads(rest, &["out of", "off", "away from", "from"])
+            .and_then(|_| (1..rest.len()).find(|i| text(&rest[*i]) == "and" && is_place(&rest[i + 1..])))
+            .map(|i| i + 1)
+    });
     let rest = &rest[goal.unwrap_or(0)..];
     // "out of my lane and put it on the sidewalk"
     let put = leads(rest, &["out", "off", "away", "from", "up"]).and_then(|_| {
@@ -339,6 +358,84 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         p.main = whole;
     }
     acts::acts(&s, &said, true, inner, talk)
+}
+
+/// "the bus: make it a van", "turn it into a van".
+fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    let first = inner.first()?;
+    let one = first_noun(inner).filter(|n| n.0 > 2 && n.0 < 6 && n.1 == inner.len());
+    let into = usize::from(is(inner.get(2), &["into", "to"]));
+    let makes_of = if into == 1 {
+        is(Some(first), &["turn", "change", "convert", "transform", "make"])
+    } else {
+        text(first) == "make"
+    };
+    if makes_of
+        && is(inner.get(1), &["it", "that", "him", "her"])
+        && is(inner.get(2 + into), &["a", "an"])
+        && one.is_some()
+        && talk.last.is_some()
+    {
+        let s = Subject {
+            kind: Kind::Back(Back::Same),
+            np: inner[1..2].to_vec(),
+            noun: Vec::new(),
+            pred: 2,
+            plural: false,
+        };
+        let part = predicate::Part {
+            main: led("become", first, &[&inner[2 + into..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
+    None
+}
+
+/// "get rid of the other": of the others of a group.
+fn rid_of_others(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    let n = leads(
+        inner,
+        &[
+            "get rid of",
+            "remove",
+            "delete",
+            "erase",
+            "drop",
+            "lose",
+            "take away",
+            "take out",
+            "do away with",
+            "scrap",
+            "bin",
+            "discard",
+            "clear away",
+            "dispose of",
+            "throw out",
+        ],
+    )?;
+    let (back, m) = pointing(&inner[n..])?;
+    if back != Back::Others
+        || trimmed(&inner[n + m..])
+            .iter()
+            .any(|t| !matches!(text(t), "away" | "too" | "please" | "as" | "well" | "off" | "out"))
+    {
+        return None;
+    }
+    let s = Subject {
+        kind: Kind::Back(back),
+        np: inner[n..n + m].to_vec(),
+        noun: Vec::new(),
+        pred: n + m,
+        plural: false,
+    };
+    let part = predicate::Part {
+        main: led("gone", &inner[0], &[]),
+        helped: true,
+        ..predicate::Part::default()
+    };
+    acts::acts(&s, &[part], true, inner, talk)
 }
 
 pub(super) fn predicate_places(rest: &[Token]) -> bool {

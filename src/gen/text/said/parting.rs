@@ -4,7 +4,7 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::frame::unwrapped;
-use super::lists::{HELPERS, PRONOUNS};
+use super::lists::{HELPERS, MOVES, PRONOUNS};
 use super::predicate::in_place;
 use super::subject::{Kind, subject};
 use super::words::{self, find, first_noun, has_noun, is, is_place, leads, number, text};
@@ -32,6 +32,24 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     )
             }) {
                 next += 1;
+            }
+            // "everything but the bus"
+            if text(t) == "but"
+                && is(
+                    body.get(i.wrapping_sub(1)),
+                    &[
+                        "everything",
+                        "everyone",
+                        "everybody",
+                        "all",
+                        "nothing",
+                        "anything",
+                        "nobody",
+                    ],
+                )
+            {
+                i += 1;
+                continue;
             }
             // "all cars but one can go"
             if text(t) == "but"
@@ -159,6 +177,20 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         return true;
     }
     let near = &inner[..inner.len().min(14)];
+    // "and turn the pickup so that it faces us"
+    let orders = is(inner.first(), &MOVES)
+        || is(
+            inner.first(),
+            &["turn", "rotate", "spin", "remove", "delete", "add", "replace"],
+        );
+    if orders
+        && is(
+            inner.get(1),
+            &["the", "it", "them", "him", "her", "both", "all", "my"],
+        )
+    {
+        return true;
+    }
     if let Some(s) = subject(
         near,
         talk,

@@ -3,7 +3,7 @@
 use super::super::edit_grammar::Back;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::lists::{ADVERBS, HELPERS, NEGATED, PRONOUNS};
+use super::lists::{ADVERBS, BECOMES, HELPERS, NEGATED, PRONOUNS};
 use super::words::{first_noun, is, is_finite, is_place, led, number, text};
 
 /// What kind of subject it is.
@@ -33,7 +33,7 @@ pub struct Subject {
     pub plural: bool,
 }
 
-fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
+pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
     let first = tokens.first()?;
     let others = [
         "the other ones",
@@ -158,6 +158,10 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
         {
             return Some(k);
         }
+        // "bicycle change to scooter"
+        if k == from && super::words::leads(&tokens[k..], &BECOMES).is_some() {
+            return Some(k);
+        }
         let helper =
             HELPERS.contains(&w) || NEGATED.contains(&w) || w == "no" && is(tokens.get(k + 1), &["longer"]);
         if helper || is_finite(w, base) && !modifies(tokens, k) {
@@ -253,6 +257,18 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
                 | "only"
                 | "just"
         )
+    {
+        return None;
+    }
+    // "add four cars parked on the right"
+    let orders = matches!(
+        text(first),
+        "add" | "insert" | "include" | "create" | "show" | "remove" | "delete" | "erase" | "replace"
+    );
+    if orders
+        && tokens.get(1).is_some_and(|t| {
+            number(t).is_some() || matches!(text(t), "a" | "an" | "another" | "some" | "the" | "all" | "both")
+        })
     {
         return None;
     }

@@ -395,6 +395,14 @@ pub fn arrived(mut main: Vec<Token>) -> Vec<Token> {
         main.extend(next);
         return main;
     }
+    // "in behind the truck": in its lane
+    if let Some((i, n)) = find(
+        &main,
+        &["in behind", "in after", "tuck in behind", "slot in behind"],
+    ) {
+        let following = led("following", &main[i], &[]);
+        main.splice(i..i + n, following);
+    }
     // "goes from the right lane to the left one"
     if let Some((i, _)) = find(&main, &["from", "out of", "away from"])
         && let Some(goal) =

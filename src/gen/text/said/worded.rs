@@ -11,6 +11,46 @@ const WHOLE: &str =
 const ON_FOOT: &str = "everyone who is on foot|everybody who is on foot|everyone on foot|everybody on foot|anyone on foot|anybody on foot|all who are on foot|all those on foot|those on foot|anyone who is on foot|anybody who is on foot|everyone whos on foot|everybody whos on foot|everyone who walks|everybody who walks|everyone who is walking|everybody who is walking|everyone going on foot|everyone walking|everybody walking|all people on foot|all persons on foot";
 const DRY: &str = "it has stopped raining|it has stopped snowing|it stopped raining|it stopped snowing|its stopped raining|its stopped snowing|it stops raining|it stops snowing|it has ceased raining|it has quit raining|the rain has stopped|the rain stopped|the rain has ended|the rain is over|the rain has gone|the rain is gone|the rain stops|the rain has cleared|the rain has passed|the rain has let up|it no longer rains|it is no longer raining|its no longer raining|it isnt raining any more|it isnt raining anymore|it is not raining any more|it is not raining anymore|no more rain|the snow has stopped|the snowfall has stopped|it no longer snows|it is no longer snowing|the fog has lifted|the fog lifted|the fog has cleared|the fog is gone|the fog has gone|the storm has passed|the shower has passed|the shower is over";
 
+const IF_ONLY: &str =
+    "if only there were|if only there was|i wish there were|i wish there was|if only we had|i wish we had";
+const APPEARS: &str = "turns up|shows up|pops up|comes along|turn up|show up|pop up|appears on|appears in|appears at|comes into view";
+const COMES_UP: &str = "walks up to|goes up to|comes up to|steps up to|runs up to|drives up to|rides up to|walk up to|go up to|come up to|step up to|run up to|drive up to|ride up to|strolls up to|stroll up to";
+
+/// "let the car cut in, so that it sits between us": where it ends counts.
+fn so_that(tokens: &[Token]) -> Vec<Token> {
+    let found = find(
+        tokens,
+        &[
+            "so that it",
+            "so that he",
+            "so that she",
+            "so that they",
+            "so it",
+            "such that it",
+        ],
+    )
+    .filter(|(i, n)| {
+        let next = &tokens[i + n..];
+        let stands = is(
+            next.first(),
+            &[
+                "sits", "stands", "drives", "ends", "sit", "stand", "comes", "rides", "lands", "walks",
+            ],
+        );
+        stands
+            && (1..next.len().min(4)).any(|k| is_place(&next[k..]))
+            && tokens[..*i]
+                .iter()
+                .any(|t| matches!(text(t), "let" | "have" | "make"))
+    });
+    let Some((i, n)) = found else {
+        return tokens.to_vec();
+    };
+    let mut out = super::words::trimmed(&tokens[..i]).to_vec();
+    out.extend(led("and", &tokens[i], &[&tokens[i + n..]]));
+    out
+}
+
 /// A sentence of an edit in plain words; its tokens as they are, if there is nothing to change.
 pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let (body, stop) = match sentence.split_last() {
@@ -20,7 +60,45 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.is_empty() {
         return sentence.to_vec();
     }
-    let mut out = without_order(body);
+    let mut out = super::untouched::cut(body);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
+    out = super::skies::plain(&out);
+    if let Some(new) = second_one(&out) {
+        out = new;
+    }
+    out = replaced(&out, IF_ONLY, "add");
+    out = replaced(&out, "do without|dispense with|spare me|manage without", "remove");
+    let whole = [
+        "empty the scene",
+        "clear the scene",
+        "wipe the scene",
+        "empty the picture",
+        "clear the picture",
+        "empty out the scene",
+        "clear out the scene",
+        "start from scratch",
+        "start from an empty scene",
+        "wipe the slate clean",
+    ];
+    if leads(&out, &whole).is_some_and(|n| n == out.len()) {
+        out = led("remove everything", &out[0], &[]);
+    }
+    out = replaced(&out, APPEARS, "should be");
+    out = replaced(&out, COMES_UP, "goes to");
+    out = so_that(&out);
+    for i in 1..out.len() {
+        let noun = first_noun(&out[i + 1..]).is_some_and(|n| n.0 == 0);
+        if text(&out[i]) == "each" && noun && super::super::rephrase::is_verb(&out[0]) {
+            out[i].text = "every".into();
+        }
+    }
+    out = super::gaps::filled(out);
+    if let Some(new) = super::idioms::plain(&out, talk).or_else(|| super::passive::added(&out, talk)) {
+        out = new;
+    }
+    out = without_order(&out);
     out = replaced(&out, WHOLE, "the scene");
     out = replaced(&out, ON_FOOT, "all pedestrians");
     out = replaced(&out, DRY, "clear weather");
@@ -30,9 +108,6 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     out = beside_me(out);
     out = as_far(out, talk);
     if let Some(new) = one_not_other(&out, talk) {
-        out = new;
-    }
-    if let Some(new) = second_one(&out) {
         out = new;
     }
     out.extend_from_slice(stop);

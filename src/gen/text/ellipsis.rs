@@ -1,0 +1,448 @@
+//! What a later clause leaves out because an earlier one said it, filled in from there: "all but one of the five", "the same
+//! distance behind", "another pair", "at the left kerb and at the right", "the one to my right" of lanes.
+
+use super::description::Anchor;
+use super::lexicon::{Sense, look_up};
+use super::tokens::{Token, TokenKind};
+use super::wording::{begins, replaced, word};
+use crate::scene::graph::LaneRole;
+
+/// A text with what its clauses leave out.
+pub fn filled(tokens: &[Token]) -> Vec<Token> {
+    let mut out = Vec::new();
+    for sentence in sentences(tokens) {
+        let mut s = same_distance(sentence, &out);
+        s = same_side(&s, &out);
+        s = one_lane(&s);
+        s = second_side(&s);
+        s = replaced(
+            &s,
+            "every one of them|every single one of them|each and every one of them|each one of them|the lot of them",
+            "all of them",
+        );
+        s = each_of_both(&s);
+        s = more_groups(&s);
+        s = our_way(&s);
+        s = one_a_side(&s);
+        s = each_has_one(&s);
+        out.extend(s);
+    }
+    all_but(&out)
+}
+
+/// Sentences with their stops; a semicolon does not part what leans on the clause before it.
+fn sentences(tokens: &[Token]) -> impl Iterator<Item = &[Token]> {
+    tokens.split_inclusive(|t| t.kind == TokenKind::Stop && t.text != ";")
+}
+
+/// An exact number.
+pub fn number(t: &Token) -> Option<u32> {
+    match (&t.kind, look_up(&t.text)) {
+        (TokenKind::Number(v), _) if v.is_finite() && (0.0..1000.0).contains(v) => Some(v.round() as u32),
+        (_, Some(Sense::Count(c))) if c.is_exact() => Some(c.n),
+        _ => None,
+    }
+}
+
+/// True for a single word that names objects.
+pub fn is_noun(t: &Token) -> bool {
+    t.kind == TokenKind::Word && matches!(look_up(&t.text), Some(Sense::Noun(..)))
+}
+
+fn is_unit(t: &Token) -> bool {
+    matches!(look_up(&t.text), Some(Sense::Unit(_)))
+}
+
+/// Kerbs, pavements: strips that each side of a road has.
+fn is_strip(word: &str) -> bool {
+    matches!(
+        look_up(word),
+        Some(Sense::Place(
+            Anchor::Lane(LaneRole::Roadside | LaneRole::Sidewalk),
+            _
+        ))
+    )
+}
+
+fn ends(t: Option<&Token>) -> bool {
+    t.is_none_or(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark))
+}
+
+fn digits(n: u32, at: &Token) -> Token {
+    Token {
+        kind: TokenKind::Number(f64::from(n)),
+        text: n.to_string(),
+        span: at.span,
+    }
+}
+
+/// "the same distance behind me": as many metres as were named last.
+fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    const SAME: &str = "the same distance|at the same distance|the very same distance|at an equal distance|an equal distance|just as far|equally far|as far again|the same number of metres|as many metres|that same distance";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let said: Vec<&Token> = before.iter().chain(&out).collect();
+        let metres = said
+            .windows(2)
+            .rev()
+            .find(|w| number(w[0]).is_some() && is_unit(w[1]))
+            .map(|w| [w[0].clone(), w[1].clone()]);
+        match (begins(&sentence[i..], SAME), metres) {
+            (Some(n), Some(metres)) => {
+                out.extend(metres);
+                i += n;
+                i += begins(&sentence[i..], "away from|from|away")
+                    .filter(|_| ends(sentence.get(i + 1)))
+                    .unwrap_or(0);
+            }
+            _ => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "on that same side": the side that was named last.
+fn same_side(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    const SAME: &str = "on that same side|on the same side|on that side|on this side|on the selfsame side|at the same side|to the same side";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let side = out
+            .iter()
+            .chain(before)
+            .rev()
+            .find(|t| matches!(t.text.as_str(), "left" | "right"))
+            .or_else(|| {
+                before
+                    .iter()
+                    .rev()
+                    .find(|t| matches!(t.text.as_str(), "left" | "right"))
+            })
+            .map(|t| t.text.clone());
+        let own =
+            |n: usize| begins(&sentence[i + n..], "of me|of us|of it|of the bus|of my car|as").is_none();
+        match (begins(&sentence[i..], SAME).filter(|n| own(*n)), side) {
+            (Some(n), Some(side)) => {
+                out.extend(["on", "the", &side].map(|w| word(w, &sentence[i])));
+                i += n;
+                i += begins(&sentence[i..], "of the road|of the street|of the carriageway").unwrap_or(0);
+            }
+            _ => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "the lane to my left has a bus in it, the one to my right a taxi": a lane again, which has something again.
+fn one_lane(sentence: &[Token]) -> Vec<Token> {
+    const SIDES: &str = "to my right|to my left|to our right|to our left|on my right|on my left|on our right|on our left|on the right|on the left|to the right|to the left";
+    let Some(lane) = sentence.iter().position(|t| t.text == "lane") else {
+        return sentence.to_vec();
+    };
+    let has = sentence[lane..]
+        .iter()
+        .find(|t| matches!(t.text.as_str(), "has" | "holds" | "contains" | "carries"));
+    let sentence = &replaced(sentence, "holds a|contains a|carries a", "has a")[..];
+    let mut out = sentence[..lane].to_vec();
+    let mut i = lane;
+    while i < sentence.len() {
+        let one =
+            begins(&sentence[i..], "the one|that").filter(|n| begins(&sentence[i + n..], SIDES).is_some());
+        let Some(n) = one else {
+            out.push(sentence[i].clone());
+            i += 1;
+            continue;
+        };
+        let at = out.len();
+        out.extend(["the", "lane"].map(|w| word(w, &sentence[i])));
+        i += n;
+        let side = begins(&sentence[i..], SIDES).unwrap_or(0);
+        out.extend_from_slice(&sentence[i..i + side]);
+        i += side;
+        let fresh = sentence
+            .get(i)
+            .is_some_and(|t| matches!(t.text.as_str(), "a" | "an" | "another") || number(t).is_some());
+        if fresh && has.is_some() {
+            out.push(word("has", &sentence[i]));
+            if let Some(t) = out
+                .get_mut(at.saturating_sub(1))
+                .filter(|t| t.kind == TokenKind::Comma)
+            {
+                t.kind = TokenKind::Stop;
+            }
+        }
+    }
+    out
+}
+
+/// "two at the left kerb and two at the right": the strip again.
+fn second_side(sentence: &[Token]) -> Vec<Token> {
+    let side = |t: &Token| matches!(t.text.as_str(), "left" | "right");
+    let prep = |t: &Token| matches!(t.text.as_str(), "on" | "at" | "along" | "by" | "from");
+    let mut strip: Option<(Token, Token, Token)> = None; // preposition, side, strip
+    let mut out: Vec<Token> = Vec::new();
+    let (mut i, mut named) = (0, 0);
+    while i < sentence.len() {
+        let t = &sentence[i];
+        out.push(t.clone());
+        i += 1;
+        // "on the right kerb, two cars on the left": of the cars nothing was left out
+        named += usize::from(is_noun(t));
+        let led = out.len() > 2
+            && prep(&out[out.len() - 3])
+            && matches!(out[out.len() - 2].text.as_str(), "the" | "my" | "our");
+        if !side(t) || !led {
+            continue;
+        }
+        let lead = out[out.len() - 3].clone();
+        let hand = usize::from(sentence.get(i).is_some_and(|t| t.text == "hand"));
+        if let Some(place) = sentence.get(i + hand).filter(|t| is_strip(&t.text)) {
+            strip = Some((lead, t.clone(), place.clone()));
+            named = 0;
+        } else if let Some((first, other, place)) = &strip
+            && first.text == lead.text
+            && other.text != t.text
+            && named == 0
+            && (ends(sentence.get(i))
+                || sentence
+                    .get(i)
+                    .is_some_and(|t| matches!(t.text.as_str(), "and" | "one" | "too" | "as")))
+        {
+            i += usize::from(sentence.get(i).is_some_and(|t| t.text == "one"));
+            out.push(Token {
+                span: t.span,
+                ..place.clone()
+            });
+        }
+    }
+    out
+}
+
+/// "on each of the two pavements" is "on each pavement".
+fn each_of_both(sentence: &[Token]) -> Vec<Token> {
+    const EACH: &str = "each of the two|each of the|each one of the two|each one of the|either of the two|either of the|each of both|each of our two";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let n = begins(&sentence[i..], EACH).unwrap_or(0);
+        let singular = sentence.get(i + n).and_then(|t| t.text.strip_suffix('s'));
+        match singular.filter(|s| n > 0 && (is_strip(s) || *s == "side")) {
+            Some(s) => {
+                out.extend(["each", s].map(|w| word(w, &sentence[i])));
+                i += n + 1;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "another pair at the right" is "two more".
+fn more_groups(sentence: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let n = begins(&sentence[i..], "another|a second|a further|one more|yet another").unwrap_or(0);
+        let many = sentence.get(i + n).and_then(|t| match t.text.as_str() {
+            "pair" | "couple" | "twosome" | "duo" => Some(2),
+            "trio" | "threesome" => Some(3),
+            "dozen" => Some(12),
+            _ => number(t).filter(|k| *k > 1),
+        });
+        let noun = sentence
+            .get(i + n + 1..)
+            .is_some_and(|rest| begins(rest, "of").is_some() || rest.iter().take(2).any(is_noun));
+        match many.filter(|_| n > 0 && !noun) {
+            Some(k) => {
+                out.push(digits(k, &sentence[i]));
+                out.push(word("more", &sentence[i]));
+                i += n + 1;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "one heading my way, the other the opposite way": beside the opposite way, mine is the way that I go.
+fn our_way(sentence: &[Token]) -> Vec<Token> {
+    const OPPOSITE: &str = "the opposite way|the other way|in the opposite direction|in the other direction|the opposite direction|the other direction";
+    let opposed = (0..sentence.len()).any(|i| begins(&sentence[i..], OPPOSITE).is_some());
+    if !opposed {
+        return sentence.to_vec();
+    }
+    replaced(
+        sentence,
+        "heading my way|heading our way|going my way|going our way|driving my way|driving our way|travelling my way|travelling our way|traveling my way|moving my way|moving our way|goes my way|drives my way|heads my way",
+        "driving in the same direction as me",
+    )
+}
+
+/// "two buses are parked, one on each side": the two of them on both sides.
+fn one_a_side(sentence: &[Token]) -> Vec<Token> {
+    const EACH: &str = "one on each|one on either|one at each|one at either|one along each";
+    let Some(i) = (1..sentence.len()).find(|i| begins(&sentence[*i..], EACH).is_some()) else {
+        return sentence.to_vec();
+    };
+    let two = sentence[..i].windows(3).any(|w| {
+        (number(&w[0]) == Some(2) || matches!(w[0].text.as_str(), "pair" | "couple"))
+            && w[1..].iter().any(is_noun)
+    });
+    let n = begins(&sentence[i..], EACH).unwrap_or(0);
+    let Some(place) = sentence
+        .get(i + n)
+        .filter(|t| two && (t.text == "side" || is_strip(&t.text)))
+    else {
+        return sentence.to_vec();
+    };
+    let mut out = sentence[..i].to_vec();
+    while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+        out.pop();
+    }
+    let both = format!("{}s", place.text);
+    out.extend(["on", "both", &both].map(|w| word(w, &sentence[i])));
+    out.extend_from_slice(&sentence[i + n + 1..]);
+    out
+}
+
+/// "two buses ..., and behind each of them stands a car": behind them stand two cars.
+fn each_has_one(sentence: &[Token]) -> Vec<Token> {
+    const EACH: &str = "each of them|each of the two|each of these|every one of them|each one|each of which|both of them|each";
+    let Some(i) = (2..sentence.len()).find(|i| {
+        let led = matches!(
+            sentence[i - 1].text.as_str(),
+            "behind" | "beside" | "of" | "to" | "near" | "before" | "on" | "following"
+        );
+        led && begins(&sentence[*i..], EACH).is_some_and(|n| {
+            !sentence
+                .get(i + n)
+                .is_some_and(|t| is_noun(t) || is_strip(&t.text) || t.text == "side" || t.text == "other")
+        })
+    }) else {
+        return sentence.to_vec();
+    };
+    let n = begins(&sentence[i..], EACH).unwrap_or(1);
+    let many = (0..i).rev().find_map(|k| {
+        let group =
+            sentence[k + 1..i].iter().take(3).any(is_noun) && !sentence.get(k + 1).is_some_and(is_unit);
+        number(&sentence[k]).filter(|c| group && (2..=12).contains(c))
+    });
+    let one = (i + n..sentence.len().min(i + n + 4))
+        .find(|k| matches!(sentence[*k].text.as_str(), "a" | "an" | "one"));
+    let (Some(many), Some(one)) = (many, one) else {
+        return sentence.to_vec();
+    };
+    let mut out = sentence[..i].to_vec();
+    out.push(word("them", &sentence[i]));
+    out.extend_from_slice(&sentence[i + n..one]);
+    out.push(digits(many, &sentence[one]));
+    out.extend_from_slice(&sentence[one + 1..]);
+    out
+}
+
+/// "Five children. All but one are on the left": four of them are.
+fn all_but(tokens: &[Token]) -> Vec<Token> {
+    const ALL_BUT: &str = "all but|all except|all bar|all save|all except for|all but for|all apart from|everyone but|everybody but|everyone except|everybody except|every one but|all of them but|all of them except|all of them except for|all of them apart from";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let rest = &tokens[i..];
+        let cut = begins(rest, ALL_BUT)
+            .and_then(|n| Some((n, number(rest.get(n)?)?)))
+            .filter(|(n, _)| !rest.get(n + 1).is_some_and(is_noun));
+        let Some((n, less)) = cut else {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        };
+        let mut next = n + 1;
+        // "all but one of the five children"
+        let of = begins(&rest[next..], "of the|of these|of those|of my").unwrap_or(0);
+        let own = rest
+            .get(next + of)
+            .filter(|_| of > 0)
+            .and_then(number)
+            .zip(rest.get(next + of + 1).filter(|t| is_noun(t)));
+        let whole = own.map(|(k, _)| k).or_else(|| {
+            (0..out.len()).rev().find_map(|k| {
+                let group = out[k + 1..].iter().take(3).any(is_noun) && !out.get(k + 1).is_some_and(is_unit);
+                number(&out[k]).filter(|_| group)
+            })
+        });
+        let Some(left) = whole.and_then(|w| w.checked_sub(less)).filter(|l| *l > 0) else {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        };
+        if let Some((k, noun)) = own {
+            out.extend([
+                digits(k, &tokens[i]),
+                noun.clone(),
+                Token {
+                    kind: TokenKind::Comma,
+                    ..word(",", noun)
+                },
+            ]);
+            next += of + 2;
+        } else {
+            next += begins(&rest[next..], "of them").unwrap_or(0);
+        }
+        out.push(digits(left, &tokens[i]));
+        out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+        i += next;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tokens::tokens;
+    use super::*;
+
+    fn said(text: &str) -> String {
+        let list: Vec<String> = filled(&tokens(text)).into_iter().map(|t| t.text).collect();
+        list.join(" ")
+    }
+
+    #[test]
+    fn what_was_left_out_is_filled_in() {
+        assert_eq!(
+            said("Five men. All but two are on the left"),
+            "five men . 3 of them are on the left"
+        );
+        assert_eq!(
+            said("a bus 20 m ahead and a car the same distance behind me"),
+            "a bus 20 m ahead and a car 20 m behind me"
+        );
+        assert_eq!(
+            said("two at the left kerb and another pair at the right"),
+            "two at the left kerb and 2 more at the right kerb"
+        );
+        assert_eq!(
+            said("the lane to my left has a bus in it, the one to my right a taxi"),
+            "the lane to my left has a bus in it , the lane to my right has a taxi"
+        );
+        assert_eq!(said("on each of the two pavements"), "on each pavement");
+        assert_eq!(
+            said("a taxi at the right kerb and a man on the pavement on that same side"),
+            "a taxi at the right kerb and a man on the pavement on the right"
+        );
+        assert_eq!(
+            said("two buses are parked, one on each side of the street"),
+            "two buses are parked on both sides of the street"
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! Places that follow from others that were said: what is parked behind something parked stands in the same strip, what drives
+//! behind an oncoming bus comes towards us, too, what is drawn hangs on what draws it.
+
+use super::description::{Anchor, Stated};
+use super::mention::Mention;
+use crate::scene::Class;
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind as R};
+
+/// Middle of a trailer behind the middle of what draws it, m.
+fn hitch_m(class: Class) -> f64 {
+    if class == Class::Car { 8.5 } else { 11.0 }
+}
+
+/// So far ahead of the ego vehicle that another stands between them, m.
+fn room_m(front: Class, behind: Class) -> f64 {
+    let long = |c: Class| match c {
+        Class::Bus | Class::Truck | Class::Trailer | Class::ConstructionVehicle => 11.0,
+        Class::Car => 5.5,
+        _ => 2.5,
+    };
+    9.0 + long(front) / 2.0 + long(behind)
+}
+
+fn is_ahead_of_ego(r: &Stated) -> bool {
+    r.relation == R::InFrontOf && r.anchor == Anchor::Ego
+}
+
+fn is_lane(a: Anchor) -> bool {
+    matches!(a, Anchor::Lane(_))
+}
+
+/// Adds them.
+pub fn infer(mentions: &mut [Mention]) {
+    for i in 0..mentions.len() {
+        blocked_at(&mut mentions[i]);
+        stranded(&mut mentions[i]);
+        let along: Vec<(Stated, usize)> = mentions[i]
+            .spec
+            .relations
+            .iter()
+            .filter_map(|r| match (r.relation, r.anchor) {
+                (R::Behind | R::InFrontOf | R::Following, Anchor::Object(k)) if k != i => Some((*r, k)),
+                _ => None,
+            })
+            .collect();
+        for (r, k) in along {
+            let Some(other) = mentions.get(k).cloned() else {
+                continue;
+            };
+            if let Some(more) = same_strip(&mentions[i], &other).or_else(|| same_way(&mentions[i], &other)) {
+                if more.relation == R::ParkedOn {
+                    mentions[i].spec.state = Some(ObjectState::Parked);
+                }
+                mentions[i].spec.relations.push(Stated { span: r.span, ..more });
+            }
+            drawn(&mut mentions[i], &other, k);
+            let room = mentions[i].spec.class == Class::Trailer;
+            let room_m = room_m(other.spec.class, mentions[i].spec.class);
+            let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
+            if let (Some(far), true, R::Behind | R::Following) =
+                (far, room && other.spec.count.n == 1, r.relation)
+            {
+                far.distance_m = far.distance_m.or(Some(room_m));
+            }
+        }
+    }
+}
+
+/// "a barrier blocks our lane 25 m out": so far ahead.
+fn blocked_at(m: &mut Mention) {
+    let ahead = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
+    let far = m
+        .spec
+        .relations
+        .iter_mut()
+        .find(|r| r.relation == R::Blocking && is_lane(r.anchor) && r.distance_m.is_some());
+    if let Some(r) = far {
+        let stated = Stated {
+            relation: R::InFrontOf,
+            anchor: Anchor::Ego,
+            ..*r
+        };
+        r.distance_m = None;
+        if !ahead {
+            m.spec.relations.push(stated);
+        }
+    }
+}
+
+/// What broke down where the traffic goes is not parked: it stands there.
+fn stranded(m: &mut Mention) {
+    let there = m.spec.relations.iter().any(|r| {
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Junction
+                    | Anchor::Crossing
+                    | Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+    });
+    if there && m.spec.state == Some(ObjectState::Parked) {
+        m.spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// The strip in which something parked before or behind this stands.
+fn same_strip(m: &Mention, other: &Mention) -> Option<Stated> {
+    // ("behind that a second one": alike in this, too)
+    let alike = m.spec.state.is_none() && m.spec.class == other.spec.class && m.spec.relations.len() == 1;
+    let parked =
+        (alike || m.spec.state == Some(ObjectState::Parked)) && other.spec.state == Some(ObjectState::Parked);
+    let placed = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| matches!(r.relation, R::On | R::ParkedOn) && is_lane(r.anchor));
+    let strip = other.spec.relations.iter().find(|r| {
+        matches!(r.relation, R::On | R::ParkedOn)
+            && matches!(
+                r.anchor,
+                Anchor::Lane(
+                    LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Roadside | LaneRole::Carpark
+                )
+            )
+    })?;
+    (parked && !placed && m.spec.class.is_vehicle()).then_some(Stated {
+        relation: R::ParkedOn,
+        distance_m: None,
+        ..*strip
+    })
+}
+
+/// The way that something oncoming before or behind this goes.
+fn same_way(m: &Mention, other: &Mention) -> Option<Stated> {
+    let drives =
+        |m: &Mention| m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let ways = |r: &&Stated| {
+        matches!(r.relation, R::OppositeDirection | R::SameDirection) && r.anchor == Anchor::Ego
+    };
+    let told = m.spec.relations.iter().any(|r| {
+        ways(&r)
+            || r.anchor == Anchor::Ego
+                && matches!(r.relation, R::Facing | R::FacingAway | R::InFrontOf | R::Behind)
+            || is_lane(r.anchor)
+    });
+    let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
+    let way = other.spec.relations.iter().find(ways)?;
+    (drives(m) && drives(other) && !told && !still).then_some(Stated {
+        distance_m: None,
+        ..*way
+    })
+}
+
+/// A trailer hangs close behind what draws it; how far that is says nothing of the trailer.
+fn drawn(m: &mut Mention, other: &Mention, by: usize) {
+    if m.spec.class != Class::Trailer || !other.spec.class.is_vehicle() {
+        return;
+    }
+    let theirs: Vec<Option<f64>> = other.spec.relations.iter().map(|r| r.distance_m).collect();
+    for r in &mut m.spec.relations {
+        if r.relation == R::Following && r.anchor == Anchor::Object(by) {
+            r.distance_m = r.distance_m.or(Some(hitch_m(other.spec.class)));
+        } else if r.anchor == Anchor::Ego && r.distance_m.is_some() && theirs.contains(&r.distance_m) {
+            r.distance_m = None;
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Weather and light as edits speak of them: "lift the fog", "broad daylight rather than this darkness".
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::Token;
+use super::words::{find, is, leads, led, text};
+
+const ENDS: &[&str] = &[
+    "lift",
+    "lose",
+    "drop",
+    "disperse",
+    "stop",
+    "end",
+    "dispel",
+    "get rid of",
+    "take away",
+    "do away with",
+    "let up",
+    "clear",
+    "clear away",
+    "blow away",
+    "switch off",
+    "turn off",
+    "remove",
+];
+const SKIES: &[&str] = &[
+    "fog",
+    "mist",
+    "rain",
+    "snow",
+    "haze",
+    "storm",
+    "sandstorm",
+    "drizzle",
+    "snowfall",
+    "rainfall",
+    "downpour",
+    "clouds",
+    "murk",
+];
+
+fn is_style(t: &Token) -> bool {
+    matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)))
+}
+
+/// The sentence with its weather in plain words.
+pub fn plain(tokens: &[Token]) -> Vec<Token> {
+    let mut out = tokens.to_vec();
+    if let Some((i, n)) = find(&out, ENDS) {
+        let article = usize::from(is(out.get(i + n), &["the", "this", "that", "all"]));
+        if is(out.get(i + n + article), SKIES) && (i == 0 || !is(out.get(i - 1), &["to", "not", "dont"])) {
+            let clear = led("clear weather", &out[i], &[]);
+            out.splice(i..=i + n + article, clear);
+        }
+    }
+    unwanted(out)
+}
+
+/// "daylight instead of this darkness": the one that is wished for.
+fn unwanted(tokens: Vec<Token>) -> Vec<Token> {
+    let prefers = tokens
+        .iter()
+        .any(|t| matches!(text(t), "prefer" | "rather" | "like" | "want" | "better"));
+    let cut = (1..tokens.len()).find_map(|i| {
+        let n = leads(
+            &tokens[i..],
+            &["instead of", "rather than", "in place of", "and not", "not"],
+        )
+        .or_else(|| leads(&tokens[i..], &["to", "over", "than"]).filter(|_| prefers))?;
+        let mut k = i + n;
+        while is(tokens.get(k), &["the", "this", "that", "all", "a", "such"]) {
+            k += 1;
+        }
+        (tokens.get(k).is_some_and(is_style) && tokens[..i].iter().any(is_style)).then_some((i, k + 1))
+    });
+    match cut {
+        Some((i, end)) => [&tokens[..i], &tokens[end..]].concat(),
+        None => tokens,
+    }
+}

@@ -1,0 +1,204 @@
+//! What only says that nothing else changes: "everything else as it is", "same thing again, only", "leave the objects alone".
+
+use super::super::tokens::{Token, TokenKind};
+use super::words::{begins, is, leads, trimmed};
+
+const LEADS: &[&str] = &[
+    "with",
+    "and",
+    "but",
+    "leave",
+    "keep",
+    "leaving",
+    "keeping",
+    "while",
+    "let",
+    "have",
+    "just",
+    "please",
+    "only",
+    "otherwise",
+];
+const ALL_ELSE: &[&str] = &[
+    "everything else",
+    "all else",
+    "all the rest",
+    "the rest",
+    "everything",
+    "the other things",
+    "the objects",
+    "all objects",
+    "all the objects",
+    "all other things",
+    "the scene",
+    "the rest of the scene",
+    "the other objects",
+    "it all",
+    "all of it",
+];
+const STAYS: &[&str] = &[
+    "as it is",
+    "as it was",
+    "as is",
+    "as they are",
+    "just as it is",
+    "exactly as it is",
+    "just as they are",
+    "exactly as they are",
+    "the way it is",
+    "the way they are",
+    "the way it was",
+    "untouched",
+    "unchanged",
+    "alone",
+    "the same",
+    "exactly the same",
+    "in place",
+    "where it is",
+    "where they are",
+    "as before",
+    "like it is",
+    "like before",
+    "the same as before",
+    "intact",
+    "put",
+    "in its place",
+    "as it stands",
+];
+const BE: &[&str] = &[
+    "is",
+    "are",
+    "be",
+    "being",
+    "stays",
+    "stay",
+    "remains",
+    "remain",
+    "should",
+    "must",
+    "shall",
+    "to",
+    "staying",
+    "remaining",
+    "may",
+    "can",
+    "just",
+    "exactly",
+    "left",
+    "kept",
+];
+const NOTHING: &[&str] = &[
+    "nothing else changes",
+    "nothing else should change",
+    "nothing else changed",
+    "nothing else needs to change",
+    "nothing else",
+    "no other changes",
+    "no other change",
+    "without changing anything else",
+    "without any other changes",
+    "otherwise the same",
+    "otherwise unchanged",
+    "otherwise identical",
+    "dont change anything else",
+    "do not change anything else",
+    "dont touch anything else",
+    "do not touch anything else",
+    "dont change the objects",
+    "do not change the objects",
+    "dont touch the objects",
+    "do not touch the objects",
+    "dont move anything",
+    "do not move anything",
+    "dont change the rest",
+    "dont alter the objects",
+    "dont change the cars or people",
+    "dont move the objects",
+    "dont touch the rest",
+    "leave it at that",
+    "the objects stay",
+    "everything else stays",
+];
+const SAME: &[&str] = &[
+    "the same thing",
+    "same thing",
+    "the same scene",
+    "same scene",
+    "the same picture",
+    "same picture",
+    "the same situation",
+    "same situation",
+    "the same again",
+    "same again",
+    "same as before",
+    "the same as before",
+    "all the same",
+    "same layout",
+    "the same layout",
+    "the same",
+];
+
+fn edge(t: Option<&Token>) -> bool {
+    t.is_none_or(|t| t.kind != TokenKind::Word)
+}
+
+/// How many tokens of such a phrase begin here.
+fn phrase(tokens: &[Token]) -> Option<usize> {
+    let mut n = 0;
+    while is(tokens.get(n), LEADS) {
+        n += 1;
+    }
+    if let Some(m) = leads(&tokens[n..], NOTHING).filter(|m| edge(tokens.get(n + m))) {
+        return Some(n + m);
+    }
+    let mut k = n + leads(&tokens[n..], ALL_ELSE)?;
+    while is(tokens.get(k), BE) {
+        k += 1;
+    }
+    let stays = leads(&tokens[k..], STAYS).map(|m| k + m).or_else(|| {
+        is(
+            tokens.get(k.checked_sub(1)?),
+            &["stays", "stay", "remains", "remain"],
+        )
+        .then_some(k)
+    })?;
+    edge(tokens.get(stays)).then_some(stays)
+}
+
+/// The sentence without such phrases; empty if it was nothing else.
+pub fn cut(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    let mut cut = false;
+    while i < tokens.len() {
+        let open = i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i), LEADS);
+        match phrase(&tokens[i..]).filter(|_| open) {
+            // ("leave everything as it is" may part a list of commands, too)
+            Some(n) => {
+                cut = true;
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    if let Some(n) = leads(&out, SAME) {
+        let rest = trimmed(&out[n..]);
+        let again = begins(rest, "again").unwrap_or(0);
+        let rest = trimmed(&rest[again..]);
+        let only = leads(
+            rest,
+            &["only", "but", "just", "except", "this time", "only this time"],
+        );
+        if let Some(m) = only {
+            return trimmed(&rest[m..]).to_vec();
+        }
+    }
+    if cut {
+        trimmed(&out).to_vec()
+    } else {
+        tokens.to_vec()
+    }
+}
