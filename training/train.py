@@ -205,7 +205,7 @@ def train_dit(args, device, dtype):
     model = OccDit(DitConfig(width=args.width, depth=args.depth)).to(device)
     if args.init:
         begin_with(model, args.init)
-    run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=300)
+    run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=100)
     rng = np.random.default_rng([args.seed, run.step])
 
     def make():
