@@ -7,6 +7,8 @@ cd "$(dirname "$0")"
 while read -r package; do
   .venv/bin/pip install --quiet "$package" || echo "could not install $package: its comparisons will say that they lack it" >&2
 done < requirements.txt
+# Open3D loads libusb and libGL.
+if [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then apt-get install -y -qq libusb-1.0-0 libgl1 libgomp1 > /dev/null || true; fi
 .venv/bin/python - <<'PY'
 import importlib.util
 for name in ("numpy", "torch", "safetensors", "diffusers", "open3d"):

@@ -186,7 +186,7 @@ impl Default for ToolState {
             voxels: Vec::new(),
             region: RedrawMask::default(),
             region_brush: false,
-            region_strength: 0.8,
+            region_strength: 1.0,
             region_draws: 0,
             variants: BTreeMap::new(),
             layers_locked: 0,

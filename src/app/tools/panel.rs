@@ -248,6 +248,7 @@ pub fn region(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     let area_m2 = n as f64 * 2.56;
     caption(ui, &format!("{area_m2:.0} m² marked"));
     slider(ui, "Strength", &mut state.tools.region_strength, 0.05..=1.0);
+    caption(ui, "1: all of it new. Less is a variation of what is there.");
     ui.horizontal(|ui| {
         if button(ui, "Draw anew", "each time from other noise", n > 0) {
             commands.push(Command::Generate { full: false });
