@@ -58,6 +58,9 @@ done
 sleep "${SETTLED_S:-60}"
 shot 130
 # Before and after, in every view at once.
+at 1428 778
+xdotool click 1 # versions lie behind history
+sleep 1
 at 1440 870
 xdotool click --repeat 12 --delay 60 5 # to the first version: as opened
 sleep 1
