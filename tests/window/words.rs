@@ -115,3 +115,20 @@ fn variants_and_what_memory_goes_by_are_pictures() {
         b.harness.query_by_label(says).is_some()
     });
 }
+
+#[test]
+fn what_was_carried_out_is_not_said_to_be_not_understood() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "remove the cars ahead of me");
+    bench.key(Modifiers::NONE, Key::Enter);
+    bench.steps(3);
+    assert_eq!(bench.history(), ["Open", "“remove the cars ahead of me”"]);
+    assert_eq!(
+        bench
+            .harness
+            .query_all_by_label_contains("Not understood")
+            .count(),
+        0
+    );
+}

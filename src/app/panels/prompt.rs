@@ -40,6 +40,8 @@ pub struct PromptPane {
     wants_focus: bool,
     offered: Option<Completion>,
     is_sent: bool, // and not changed since
+    /// The words carried out last as a change of the scene.
+    changed_by: String,
     plan: Plan,
 }
 
@@ -277,6 +279,7 @@ impl PromptPane {
     /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
     fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
+        self.changed_by.clone_from(&self.prompt);
         let EditReading {
             edits,
             questions,
@@ -291,8 +294,9 @@ impl PromptPane {
             .and_then(|r| r.description.road.kind);
         if let Some(road) = road {
             let name = format!("{road:?}").to_lowercase();
-            self.notes
-                .push(format!("The road stays as it is: “New scene” makes a {name}."));
+            self.notes.push(format!(
+                "The road stays as it is: “New scene” makes the road: {name}."
+            ));
         }
         self.questions = questions;
         let edits: Vec<_> = edits.iter().flat_map(text::edits).collect();
@@ -369,11 +373,14 @@ impl PromptPane {
                 }
             }
         });
-        for unread_part in &reading.not_understood {
-            warn(ui, &unread(unread_part));
-        }
-        for note in &reading.notes {
-            ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
+        // Carried out as a change, they were read another way, and `notes` says what of it was not understood.
+        if self.changed_by != self.prompt {
+            for unread_part in &reading.not_understood {
+                warn(ui, &unread(unread_part));
+            }
+            for note in &reading.notes {
+                ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
+            }
         }
         if let Some(prompt) = number {
             self.prompt = prompt;

@@ -253,7 +253,7 @@ pub fn take_ordinals(body: &[Token], out: &mut Rephrased) -> Vec<Token> {
     kept
 }
 
-fn ordinal(word: &str) -> Option<usize> {
+pub(super) fn ordinal(word: &str) -> Option<usize> {
     Some(match word {
         "first" => 1,
         "second" => 2,

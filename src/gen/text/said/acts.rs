@@ -4,6 +4,7 @@
 use super::super::edit_command::{note_definite, parse, target_part};
 use super::super::edit_grammar::{Back, Command, Destination, Turn};
 use super::super::edit_moving::metres_at;
+use super::super::foremost;
 use super::super::lexicon::Sense;
 use super::super::lexicon::look_up;
 use super::super::tag::{Tag, tag};
@@ -37,22 +38,12 @@ fn about(verb: Verb, s: &Subject, clause: &[Token], talk: &Talk<'_>) -> Command 
 
 /// "the second truck": the ordinal is taken out.
 fn without_ordinal(np: &[Token]) -> (Vec<Token>, Option<usize>) {
-    let nth = |w: &str| {
-        Some(match w {
-            "first" => 1,
-            "second" => 2,
-            "third" => 3,
-            "fourth" => 4,
-            "fifth" => 5,
-            "last" => 0,
-            _ => return None,
-        })
-    };
-    let at = (1..np.len()).find(|i| nth(text(&np[*i])).is_some() && is(np.get(i - 1), &["the"]));
+    let at =
+        (1..np.len()).find(|i| foremost::ordinal(text(&np[*i])).is_some() && is(np.get(i - 1), &["the"]));
     match at {
         Some(i) => {
             let mut out = np.to_vec();
-            let n = nth(text(&out.remove(i)));
+            let n = foremost::ordinal(text(&out.remove(i)));
             (out, n)
         }
         None => (np.to_vec(), None),
