@@ -65,8 +65,6 @@ pub fn pieces(cells: &[bool], reach: usize) -> Vec<Vec<bool>> {
     groups.into_iter().map(|g| g.0).collect()
 }
 
-/// Latent cells around a touched one that the decoder reads, too.
-const DECODER_HALO_CELLS: usize = 1;
 /// How far the voxels of an object may stand out of its box: one voxel.
 const OVERHANG_M: f64 = GridSpec::VOXEL_M;
 
@@ -75,7 +73,8 @@ const OVERHANG_M: f64 = GridSpec::VOXEL_M;
 pub struct Region {
     /// `[x][y]`, 40,000: columns whose labels come from the generated grid.
     pub columns: Vec<bool>,
-    /// `[i][j]`, 2,500: latent cells that hold such a column, and their neighbours.
+    /// `[i][j]`, 2,500: latent cells that hold such a column. Not their neighbours: columns there keep their labels, so what is
+    /// drawn must go on from those, not from others that nobody will see.
     pub cells: Vec<bool>,
     /// Lowest and highest x and y of the columns, both included; `None` if there are none.
     pub bounds: Option<([usize; 2], [usize; 2])>,
@@ -105,7 +104,7 @@ impl Region {
             *hi = [hi[0].max(x), hi[1].max(y)];
         }
         Self {
-            cells: dilate(&touched, CELLS_PER_SIDE, DECODER_HALO_CELLS),
+            cells: touched,
             columns,
             bounds,
         }
@@ -174,7 +173,7 @@ impl Region {
         self.column_count() as f64 / GridSpec::COLUMNS as f64
     }
 
-    /// Number of latent cells, halo included.
+    /// Number of latent cells.
     pub fn cell_count(&self) -> usize {
         self.cells.iter().filter(|c| **c).count()
     }
@@ -404,7 +403,7 @@ pub(super) mod tests {
         let region = Region::of_edit(&painted, 2);
         assert_eq!(region.bounds, Some(([0, 197], [2, 199])));
         assert_eq!(region.column_count(), 9);
-        assert_eq!(region.cell_count(), 4);
+        assert_eq!(region.cell_count(), 1);
     }
 
     #[test]

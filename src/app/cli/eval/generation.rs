@@ -22,6 +22,8 @@ use crate::scene::{Class, Density, GridSpec, Scene, VoxelGrid, draft};
 const SUBSETS: usize = 8;
 /// Frames that are generated a second time, from another seed.
 const DIVERSITY_FRAMES: usize = 8;
+/// Added to a seed for a draw that has nothing in common with the first.
+const OTHER_SEED: u64 = 1_000_000;
 /// Side of the square that is redrawn with and without its context, columns, how often, and the step of its places.
 const REDRAWN: usize = 28;
 const DRAWS: u64 = 3;
@@ -106,7 +108,7 @@ impl Eval {
             if i < DIVERSITY_FRAMES {
                 let again = Job {
                     params: GenParams {
-                        seed: params.seed.wrapping_add(1_000_000),
+                        seed: params.seed.wrapping_add(OTHER_SEED),
                         ..params
                     },
                     ..job.clone()
@@ -196,8 +198,9 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     squares.max_by_key(count).unwrap_or_default()
 }
 
-/// Redraws the fullest square of a world from fresh noise, and draws a whole scene of the same layout, character and
-/// steps that sees nothing of the world. Of each, IoU of what stands in the square with the world there, and of what
+/// Draws a whole scene of a world's layout, character and steps that sees nothing of the world, puts what it drew into the
+/// world's fullest square, and redraws that square from fresh noise: so nothing, not even the latents around, knows what
+/// stood there. Of the redrawn square and of the whole scene's, IoU of what stands in it with the world there, and of what
 /// stands along its border with the world's columns right outside: walls and hedges should go on. Means of some draws.
 fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
     let frame = job.scene.frame();
@@ -242,10 +245,19 @@ fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2
     let mut mean = [[0.0; 2]; 2];
     for draw in 0..DRAWS {
         job.params.seed = job.params.seed.wrapping_add(draw);
-        job.params.region = RegionMode::Auto;
-        let seen = pipeline.redraw_region(&job, region.clone(), &ctx)?;
         job.params.region = RegionMode::Full;
         let blind = pipeline.run(&job, &ctx)?;
+        let mut other = job.clone();
+        other.params.region = RegionMode::Auto;
+        other.params.seed = job.params.seed.wrapping_add(OTHER_SEED);
+        let frame = Arc::make_mut(&mut other.scene).frame_mut();
+        let source = Arc::make_mut(&mut frame.source);
+        for [x, y] in &square {
+            let drawn = blind.occupancy.column(*x, *y);
+            source.occupancy.column_mut(*x, *y).copy_from_slice(drawn);
+        }
+        frame.occupancy = source.occupancy.clone();
+        let seen = pipeline.redraw_region(&other, region.clone(), &ctx)?;
         for (mean, result) in mean.iter_mut().zip([seen, blind]) {
             for (mean, share) in mean.iter_mut().zip(shares(&result.occupancy)) {
                 *mean += share / DRAWS as f64;
