@@ -48,6 +48,9 @@ pub enum Split {
     Down,
 }
 
+/// How many times the width that its texts need a column of panels gets at most in a wide window.
+const WIDEST: f32 = 1.4;
+
 /// The panes of the window.
 #[derive(Clone, PartialEq)]
 pub struct Dock {
@@ -56,6 +59,8 @@ pub struct Dock {
     pub(super) maximized: Option<TileId>,
     /// Width that the side columns were fitted to, points.
     fitted: f32,
+    /// True if it is as it came, not kept from an earlier session: nobody chose how wide its columns are.
+    fresh: bool,
 }
 
 impl Default for Dock {
@@ -132,6 +137,7 @@ impl Dock {
             tree: Tree::new(egui::Id::unique("dock"), root, t),
             maximized: None,
             fitted: 0.0,
+            fresh: true,
         }
     }
 
@@ -145,13 +151,14 @@ impl Dock {
             tree,
             maximized: None,
             fitted: 0.0,
+            fresh: false,
         };
         let panes: Vec<Pane> = dock.all().map(|(_, pane)| pane).collect();
         let distinct: HashSet<Pane> = panes.iter().copied().collect();
         (!panes.is_empty() && distinct.len() == panes.len() && dock.tree.root.is_some()).then_some(dock)
     }
 
-    /// Gives columns of panels beside the views the width that their texts need, once for each width of the window: what the
+    /// Gives columns of panels beside the views the width that their texts need, and in a fresh dock not much more, once for each width of the window: what the
     /// user drags afterwards stays. In a very narrow window they get a share of it as before.
     pub fn fit(&mut self, width: f32) {
         if width == self.fitted || width <= 0.0 {
@@ -170,21 +177,29 @@ impl Dock {
         let shares: Vec<f32> = children.iter().map(|c| root.shares[*c]).collect();
         let needed: Vec<f32> = children.iter().map(|c| self.width_needed(*c)).collect();
         let (all, sides): (f32, f32) = (shares.iter().sum(), needed.iter().sum());
-        let short = |i: usize| shares[i] / all * width < needed[i];
-        if all <= 0.0 || sides > 0.6 * width || !(0..children.len()).any(short) {
+        // What a column gets if not its share: what it needs, or the most that it has use for.
+        let most = if self.fresh { WIDEST } else { f32::INFINITY };
+        let given = |i: usize| {
+            let (has, needs) = (shares[i] / all * width, needed[i]);
+            match needs > 0.0 {
+                true if has < needs => Some(needs),
+                true if has > most * needs => Some(most * needs),
+                _ => None,
+            }
+        };
+        let given: Vec<Option<f32>> = (0..children.len()).map(given).collect();
+        if all <= 0.0 || sides > 0.6 * width || given.iter().all(Option::is_none) {
             return;
         }
-        // Those that are too narrow get what they need; the others share the rest as they did.
-        let taken: f32 = (0..children.len()).filter(|i| short(*i)).map(|i| needed[i]).sum();
-        let others: f32 = (0..children.len())
-            .filter(|i| !short(*i))
-            .map(|i| shares[i])
-            .sum();
-        let new: Vec<f32> = (0..children.len())
-            .map(|i| match short(i) {
-                true => needed[i],
-                false => shares[i] / others.max(1e-6) * (width - taken),
-            })
+        // The others share the rest as they did.
+        let taken: f32 = given.iter().flatten().sum();
+        let left = given.iter().zip(&shares).filter(|(given, _)| given.is_none());
+        let others: f32 = left.map(|(_, share)| share).sum();
+        let rest = |share: f32| share / others.max(1e-6) * (width - taken);
+        let new: Vec<f32> = given
+            .iter()
+            .zip(&shares)
+            .map(|(given, share)| given.unwrap_or_else(|| rest(*share)))
             .collect();
         let root = self.tree.root.and_then(|r| self.tree.tiles.get_mut(r));
         if let Some(Tile::Container(Container::Linear(root))) = root {
@@ -504,11 +519,16 @@ mod tests {
         );
         let mut wide = Dock::default();
         wide.fit(2560.0);
-        assert_eq!(
-            widths(&wide, 2560.0),
-            widths(&Dock::default(), 2560.0),
-            "they had room"
+        let found = widths(&wide, 2560.0);
+        let most = [230.0, 266.0].map(|needed| needed * WIDEST + 1.0);
+        assert!(
+            found[0] < most[0] && found[2] < most[1],
+            "the views get the rest: {found:?}"
         );
+        // What a user left so wide stays.
+        let mut kept = Dock::from_kept(Dock::default().tree).expect("sound");
+        kept.fit(2560.0);
+        assert_eq!(widths(&kept, 2560.0), widths(&Dock::default(), 2560.0));
     }
 
     #[test]

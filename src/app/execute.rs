@@ -72,7 +72,8 @@ impl SceneloomApp {
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::Generate { full } => self.generate(full),
             Command::CancelGeneration => {
-                if self.live.running.is_some() {
+                if let Some(running) = &mut self.live.running {
+                    running.cancelled = true;
                     self.worker.cancel();
                     let now_s = self.now_s();
                     self.toasts.push(Level::Info, "Generation cancelled", now_s);

@@ -82,6 +82,8 @@ pub struct Running {
     pub extent_m: [f64; 2],
     /// Share of all columns that it redraws.
     pub share: f64,
+    /// True from the moment that the user cancels it until it ends.
+    pub cancelled: bool,
 }
 
 impl Running {
@@ -274,6 +276,7 @@ impl Live {
             progress: None,
             extent_m,
             share,
+            cancelled: false,
         });
     }
 

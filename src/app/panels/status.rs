@@ -11,6 +11,9 @@ use crate::app::state::UiState;
 use crate::app::theme;
 use crate::generation::job::{GenReport, Stage};
 
+/// How often the time that a job runs is shown anew.
+const REPAINT: std::time::Duration = std::time::Duration::from_millis(250);
+
 /// What a finished generation did, for a person.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Receipt {
@@ -223,6 +226,12 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         Purpose::WarmUp => ("Getting ready to edit  ·  ", String::new()),
         _ => ("", format!("  ·  {x:.0} × {y:.0} m")),
     };
+    if running.cancelled {
+        // A stage looks for it between its steps.
+        say(ui, "Cancelling", theme::text());
+        ui.ctx().request_repaint_after(REPAINT);
+        return;
+    }
     say(
         ui,
         &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
@@ -240,8 +249,7 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
     {
         commands.push(Command::CancelAll);
     }
-    ui.ctx()
-        .request_repaint_after(std::time::Duration::from_millis(250));
+    ui.ctx().request_repaint_after(REPAINT);
 }
 
 fn stage_text(stage: Stage) -> &'static str {
