@@ -9,6 +9,8 @@ use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, raster
 const CROSSES_RAD: f64 = 0.44;
 /// How far from its lines a carriageway reaches at most, m. Without lines nearby nobody knows which way it runs.
 const REACH_M: f64 = 8.0;
+/// Share of a crossing from which on it is one of the junction's.
+const CROSSING_WITHIN: f64 = 0.3;
 /// Lines are looked at in steps of this length, m: a quarter of a cell.
 const STEP_M: f64 = 0.1;
 
@@ -69,6 +71,30 @@ impl Ways {
         let apart = GridSpec::center(x, y, 0).distance(GridSpec::center(i, j, 0));
         (apart, self.directions[nearest])
     }
+}
+
+/// The painted crossings that lie in an area by more than [`CROSSING_WITHIN`], whole: nobody crosses within a junction.
+pub(super) fn crossings_in(layout: &BevLayout, area: &Area) -> Vec<[usize; 2]> {
+    let painted = |[x, y]: [usize; 2]| layout.has(BevLayer::PedCrossing, x, y);
+    let columns = (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
+    let (mut seen, mut found) = (vec![false; GridSpec::COLUMNS], Vec::new());
+    for start in columns.filter(|at| painted(*at) && area.holds(*at)) {
+        let (mut crossing, mut open) = (Vec::new(), vec![start]);
+        while let Some(at) = open.pop() {
+            if !painted(at) || std::mem::replace(&mut seen[at[0] * GridSpec::NY + at[1]], true) {
+                continue;
+            }
+            crossing.push(at);
+            let [x, y] = at;
+            open.extend([[x.saturating_sub(1), y], [(x + 1).min(GridSpec::NX - 1), y]]);
+            open.extend([[x, y.saturating_sub(1)], [x, (y + 1).min(GridSpec::NY - 1)]]);
+        }
+        let within = crossing.iter().filter(|at| area.holds(**at)).count();
+        if within as f64 > CROSSING_WITHIN * crossing.len() as f64 {
+            found.extend(crossing);
+        }
+    }
+    found
 }
 
 /// Cells as a set that is asked often.
@@ -143,8 +169,11 @@ fn steps(pair: &[DVec2]) -> usize {
     ((pair[0].distance(pair[1]) / STEP_M).ceil().min(1e5) as usize).max(1)
 }
 
-/// Takes the lines of a layer away where they pass through the cells; crossings are outlines and stay.
+/// Takes the lines of a layer away where they pass through the cells, and the outlines of crossings most of which lies there.
 pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
+    if layer == BevLayer::PedCrossing {
+        return drop_outlines(layout, &Area::new(cells));
+    }
     let kind = match layer {
         BevLayer::RoadDivider => PolylineKind::RoadDivider,
         BevLayer::LaneDivider => PolylineKind::LaneDivider,
@@ -166,4 +195,21 @@ pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize
         }
     }
     layout.polylines = kept.into();
+}
+
+fn drop_outlines(layout: &mut BevLayout, area: &Area) {
+    let is_gone = |l: &Polyline| {
+        let (mut all, mut within) = (0, 0);
+        if l.kind == PolylineKind::PedCrossing {
+            raster::polygon_cells(&l.points_m, |x, y| {
+                all += 1;
+                within += usize::from(area.holds([x, y]));
+            });
+        }
+        2 * within > all
+    };
+    if layout.polylines.iter().any(is_gone) {
+        let kept = layout.polylines.iter().filter(|l| !is_gone(l)).cloned();
+        layout.polylines = kept.collect::<Vec<_>>().into();
+    }
 }

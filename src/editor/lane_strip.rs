@@ -43,7 +43,7 @@ impl LaneStrip {
     }
 
     /// The edits that lay the street along the middle of its carriageway (ego frame, m) on a layout: areas first, then
-    /// lines. Where it crosses a road that is there, the two make a junction: no walkway and no divider of either lies
+    /// lines. Where it crosses a road that is there, the two make a junction: no walkway, divider or crossing lies
     /// on it, and lane centres run through. Empty for fewer than two distinct points, or no lane.
     pub fn edits(&self, middle_m: &[DVec2], layout: &BevLayout) -> Vec<Edit> {
         let middle_m = distinct(middle_m);
@@ -82,6 +82,11 @@ impl LaneStrip {
                 areas.push((BevLayer::Walkway, cells, true));
             }
         }
+        areas.push((
+            BevLayer::PedCrossing,
+            junction::crossings_in(layout, &area),
+            false,
+        ));
         areas.extend([BevLayer::RoadDivider, BevLayer::LaneDivider, BevLayer::StopLine].map(marked));
         areas.retain(|(_, cells, _)| !cells.is_empty());
         let paint = |(layer, cells, value)| Edit::PaintBev {
@@ -266,6 +271,52 @@ mod tests {
             "{dividers:?}"
         );
         assert_eq!(layout.polylines.len(), 8 + 6);
+    }
+
+    #[test]
+    fn crossings_of_a_new_junction_go_and_others_stay() {
+        let strip = LaneStrip::default();
+        let mut scene = laid(&[(strip, [DVec2::new(-30.0, 0.0), DVec2::new(30.0, 0.0)])]);
+        let stripes = |x_m: f64| {
+            [(-1.5, -3.0), (1.5, -3.0), (1.5, 3.0), (-1.5, 3.0)]
+                .map(|(x, y)| DVec2::new(x_m + x, y))
+                .to_vec()
+        };
+        for points_m in [stripes(3.0), stripes(-20.0)] {
+            let shape = Shape::Polygon {
+                points_m: points_m.clone(),
+            };
+            let paint = Edit::PaintBev {
+                layer: BevLayer::PedCrossing,
+                shape,
+                value: true,
+            };
+            let outline = Polyline {
+                kind: PolylineKind::PedCrossing,
+                points_m,
+            };
+            paint.apply(&mut scene).expect("sound");
+            Edit::AddPolylines { lines: vec![outline] }
+                .apply(&mut scene)
+                .expect("sound");
+        }
+        let across = [DVec2::new(2.0, -30.0), DVec2::new(2.0, 30.0)];
+        for edit in &strip.edits(&across, &scene.frame().layout.clone()) {
+            edit.apply(&mut scene).expect("sound");
+        }
+        let layout = &scene.frame().layout;
+        let painted = |x: usize| (0..GridSpec::NY).any(|y| layout.has(BevLayer::PedCrossing, x, y));
+        let painted: Vec<usize> = (0..GridSpec::NX).filter(|x| painted(*x)).collect();
+        assert!(
+            painted.len() > 6 && painted.iter().all(|x| *x < 70),
+            "{painted:?}"
+        );
+        let left: Vec<_> = layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::PedCrossing)
+            .collect();
+        assert!(left.len() == 1 && left[0].points_m[0].x < -10.0, "{left:?}");
     }
 
     #[test]
