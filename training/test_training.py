@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from calibrate import figures, search
 from data import named, turned, turned_heading
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
@@ -122,11 +123,24 @@ def named_numbers():
     assert named(grid, bev) == [1.0, 0, 0, 0.125]
 
 
+def calibration_undoes_a_bias():
+    torch.manual_seed(3)
+    truth = torch.randint(2, (4000,)).to(torch.uint8) * 17  # `others` or free
+    logits = torch.randn(4000, 18) - 8
+    logits[torch.arange(4000), truth.long()] += 1
+    logits[:, 0] += 9  # seen too often
+    logits[:, 17] += 8
+    known = {kind: (logits, truth, torch.zeros(18, 18, dtype=torch.long)) for kind in ("dense", "labels")}
+    shift = search(known)
+    before, after = figures(known, torch.zeros(18)), figures(known, shift)
+    assert (after > before).all() and shift[0] - shift[17] < -0.3, (before, after, shift)
+
+
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../../shared/reference")
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
-    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers):
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, calibration_undoes_a_bias):
         test()
         print(test.__name__, "ok")
