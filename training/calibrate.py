@@ -6,6 +6,7 @@ steps that grow smaller, for mIoU and half of IoU. Held-out figures are printed 
 """
 import argparse
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -96,6 +97,9 @@ def main():
     meta["latents"] = latent_space(args.vae)  # the encoder is the same
     meta["calibrated"] = json.dumps([round(x, 3) for x in shift.tolist()])
     save_file(tensors, args.output, meta)
+    log = Path(args.vae).with_suffix(".csv")
+    if log.exists():
+        shutil.copy(log, Path(args.output).with_suffix(".csv"))
 
 
 if __name__ == "__main__":

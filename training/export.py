@@ -120,7 +120,7 @@ def main():
             raise SystemExit(f"{path}: expected weights of {kind}, found {meta.get('kind')}")
         if kind.startswith("occ_dit") and meta["vae"] != name:
             raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
-        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "distilled_steps", "teacher_steps")
+        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "distilled_steps", "teacher_steps", "calibrated")
         meta = {k: meta[k] for k in keep if k in meta} | ({"name": name} if kind == "occ_vae" else {})
         out = args.weights / f"{kind}.safetensors"
         save_file(halved(tensors), out, meta)
@@ -158,6 +158,7 @@ def main():
         c = card[kind]
         lines += [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.1f} MB; config `{json.dumps(c['config'])}`",
                   f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {float(c['minutes']) / 60:.2f} h",
+                  *([f"- class biases moved by `calibrate.py`: {c['calibrated']}; the figures below are of before"] if "calibrated" in c else []),
                   "- held-out at the end of training: " + (", ".join(f"{k} {v}" for k, v in c["held_out"].items()) or "no log"), ""]
     old_text = (args.weights / "CARD.md").read_text().split("\n## ") if elsewhere else []
     sections = ["## " + part.strip() + "\n" for part in old_text if part.split()[0] in elsewhere]

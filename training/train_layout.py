@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from safetensors.torch import load_file as load_weights
 from safetensors.numpy import load_file
 
 from loop import Run, pick_device
@@ -143,6 +144,7 @@ def main():
     p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards of `dataset layout`")
     p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
+    p.add_argument("--init", help="weights of a network of the same kind to begin with")
     p.add_argument("--resume", action="store_true")
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--optimizer", choices=["adamw", "muon"], default="muon")
@@ -156,6 +158,8 @@ def main():
     torch.manual_seed(args.seed)
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
     model = Layout(LayoutConfig()).to(device)
+    if args.init:
+        model.load_state_dict({k: v.float() for k, v in load_weights(args.init).items()})
     print(f"{sum(v.numel() for v in model.parameters())} parameters, {len(train)} frames, {device}, {amp}", flush=True)
     run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.999, warmup=100)
     rng = np.random.default_rng([args.seed, run.step])
