@@ -170,7 +170,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: tokens(text),
+            tokens: super::common::plain(&tokens(text)),
             at: 0,
             last_noun: None,
         }

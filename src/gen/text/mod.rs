@@ -3,6 +3,8 @@
 mod again;
 mod amounts;
 mod back;
+mod common;
+mod compounds;
 pub mod description;
 pub mod edit;
 mod edit_command;

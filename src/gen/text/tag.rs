@@ -115,7 +115,7 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
         });
         i += n;
     }
-    settle(out)
+    super::compounds::joined(settle(out))
 }
 
 fn as_mine(word: &str) -> &str {
@@ -169,13 +169,14 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
             }
-            ("pedestrian crossing", _)
+            ("pedestrian crossing" | "ped crossing", _)
                 if next.is_some_and(leads_to_road)
                     && !(at_place(out.as_slice())
-                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false)))) =>
+                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false))))
+                    || one_more(out.as_slice()) =>
             {
                 // "a pedestrian crossing the road"
-                let cut = item.span.start + "pedestrian".len();
+                let cut = item.span.start + item.words.find(' ').unwrap_or(0);
                 out.push(Item {
                     tag: look_up("pedestrian").map_or(Tag::Unknown, Tag::Is),
                     words: "pedestrian".into(),
@@ -340,6 +341,16 @@ fn at_place(before: &[Item]) -> bool {
         before,
         [.., prep, article] if matches!(article.tag, Tag::Is(Sense::Article(_))) && matches!(prep.tag, Tag::Is(Sense::In | Sense::At | Sense::Rel(_)))
     )
+}
+
+/// True after "another", where somebody crosses already: no second zebra is meant.
+fn one_more(before: &[Item]) -> bool {
+    let more = before
+        .last()
+        .is_some_and(|b| matches!(b.words.as_str(), "another" | "a second" | "a third" | "one more" | "a further"));
+    more && before
+        .iter()
+        .any(|b| matches!(b.tag, Tag::Is(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian))
 }
 
 fn leads_to_road(item: &Item) -> bool {

@@ -106,6 +106,7 @@ const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene 
 /// A prompt in plain words.
 pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
+    let tokens = &super::common::plain(tokens)[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         out.extend(without_purpose(sentence));
     }

@@ -151,8 +151,15 @@ impl Parser<'_> {
     }
 
     pub(super) fn noun_next(&self) -> bool {
-        self.item(self.at + 1)
-            .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+        let noun = |i: usize| {
+            self.item(i)
+                .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+        };
+        // "a tram-replacement bus"
+        let joined = self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Unknown)
+            && self.pre.article.is_some()
+            && noun(self.at + 2);
+        noun(self.at + 1) || joined
     }
 
     pub(super) fn history_last(&self) -> Option<&usize> {

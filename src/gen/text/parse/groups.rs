@@ -244,6 +244,20 @@ impl Parser<'_> {
         if matches!(item.words.as_str(), "that") {
             self.relative = true;
         }
+        // "on her bike", "behind his van": whose it is, the noun says what
+        let whose = matches!(item.words.as_str(), "his" | "her" | "their" | "its");
+        if whose && !self.edits && self.noun_directly(self.at + 1) {
+            return true;
+        }
+        if self.between_them(&item.words, item.span) {
+            return false;
+        }
+        // "four children standing with her"
+        let with = self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "with");
+        let someone = matches!(item.words.as_str(), "him" | "her" | "them");
+        if with && someone && self.pending.is_none() && !self.edits && !self.last.is_empty() {
+            self.begin(Prep::Rels(vec![RelationKind::NextTo]), item.span);
+        }
         if self.pending.is_some() {
             let targets = self.targets();
             let skip = |i: &usize| targets.contains(i) || self.mentions[*i].gone;

@@ -32,6 +32,9 @@ impl Parser<'_> {
     }
 
     pub(super) fn noun(&mut self, noun: &'static Noun, word: &str, plural: bool, span: Span) {
+        if self.named_together(noun, plural, span) {
+            return;
+        }
         let mut pre = std::mem::take(&mut self.pre);
         let whole = pre.span.map_or(span, |s| s.to(span));
         let zero = pre.count.is_some_and(|c| c.n == 0);
@@ -154,12 +157,9 @@ impl Parser<'_> {
                 self.mentions[index].is_anchor = true;
             }
             let before = self.head.clone();
-            let between = self
-                .pending
-                .as_ref()
-                .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
             self.anchor(Anchor::Object(index), span);
-            if !between && !before.is_empty() && !self.head.is_empty() {
+            let open = self.pending.is_some(); // "between a van and ..."
+            if !open && !before.is_empty() && !self.head.is_empty() {
                 self.last = vec![index];
             }
             self.with = false;

@@ -36,7 +36,7 @@ impl Parser<'_> {
             self.pre = Pre::default();
             return;
         }
-        if self.items[self.at].words == "both" && self.both_of_them() {
+        if self.items[self.at].words == "both" && self.both_of_them() || self.the_two(count.n, span) {
             return;
         }
         if self.all_of_them(count) {
@@ -239,7 +239,19 @@ impl Parser<'_> {
                 .rev()
                 .find(|r| r.distance_m.is_none() && is_directed(r.relation))
             {
-                r.distance_m = Some(metres);
+                let side = matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf);
+                if side && r.anchor == Anchor::Ego && metres > 7.0 {
+                    // "parked on the right, at 18 m": no road is so wide, it is so far ahead
+                    list.push(Stated {
+                        relation: RelationKind::InFrontOf,
+                        anchor: Anchor::Ego,
+                        and: None,
+                        distance_m: Some(metres),
+                        span,
+                    });
+                } else {
+                    r.distance_m = Some(metres);
+                }
                 used = true;
             } else if list
                 .iter()

@@ -110,12 +110,23 @@ impl Parser<'_> {
             }
             _ => None,
         };
-        if let Some(m) = of_front.and_then(|i| self.mentions.get_mut(i)) {
-            apply(&mut m.spec, &frag);
+        if let Some(i) = of_front {
+            // "between a van and a lorry, both at the kerb, ...": of both
+            let whom = if self.relative && self.last.len() == 2 {
+                self.last.clone()
+            } else {
+                vec![i]
+            };
+            for i in whom {
+                apply(&mut self.mentions[i].spec, &frag);
+            }
             return;
         }
         let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
-        let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
+        let new_noun = set_off
+            || self.noun_ahead(self.at + 1)
+            || self.bare_number(self.at + 1)
+            || self.inverted_ahead(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
         if !of_last && (self.head.is_empty() || (p.fresh && new_noun)) {
@@ -189,6 +200,14 @@ impl Parser<'_> {
         let words = span.of(self.prompt).to_string();
         match default {
             Some(anchor) => {
+                let mut p = p;
+                if p.prep == Prep::Rels(vec![RelationKind::Across])
+                    && anchor == Anchor::Ego
+                    && let Some(left) = self.side_of_other()
+                {
+                    // "opposite, ...": on the other side than what was named before
+                    p.prep = if left { Prep::NearSide } else { Prep::FarSide };
+                }
                 self.pending = Some(Pending { first: None, ..p });
                 if self
                     .pending

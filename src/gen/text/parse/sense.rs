@@ -75,6 +75,11 @@ impl<'a> Parser<'a> {
                     "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
                     | "which are" | "thats" | "whos" => {
                         self.relative = true;
+                        // "between a van and a lorry that are parked"
+                        let several = item.words.ends_with("are");
+                        if several && self.pair.len() == 2 && self.last.last() == self.pair.last() {
+                            self.last = self.pair.clone();
+                        }
                         // "a mother and two children who ..."
                         let class = self.last.last().map(|i| self.mentions[*i].spec.class);
                         if self.head.len() > 1
@@ -353,18 +358,21 @@ impl<'a> Parser<'a> {
                 } else if (of || self.takes_object(item)) && self.anchor_ahead(self.at + 1) {
                     self.begin(Prep::Rels(kinds.to_vec()), span);
                 } else {
+                    let fresh = self.fresh;
+                    let by_other = self.by_other(kinds, item);
                     self.begin(Prep::Rels(kinds.to_vec()), span);
                     let host = self
                         .last
                         .first()
                         .and_then(|&i| self.mentions[i].host)
+                        .filter(|_| !fresh)
                         .filter(|_| {
                             matches!(
                                 item.words.as_str(),
                                 "behind" | "in front" | "close behind" | "right behind" | "ahead"
                             )
                         });
-                    self.anchor(host.map_or(Anchor::Ego, Anchor::Object), span);
+                    self.anchor(host.or(by_other).map_or(Anchor::Ego, Anchor::Object), span);
                 }
             }
             Sense::Reversed(kind) => {
@@ -392,7 +400,8 @@ impl<'a> Parser<'a> {
                 self.anchor(Anchor::Lane(LaneRole::Road), span);
             }
             Sense::FarSide => {
-                self.begin(Prep::FarSide, span);
+                let prep = self.other_side(item);
+                self.begin(prep, span);
                 self.anchor(Anchor::Ego, span);
             }
             Sense::BothSides(each) => {

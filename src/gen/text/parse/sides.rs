@@ -1,0 +1,103 @@
+//! Sides of the road that hang on what was named before: "on the other side", "opposite", "nearby", and clauses that
+//! begin with a place.
+
+use super::super::description::Anchor;
+use super::super::lexicon::Sense;
+use super::super::mention::Prep;
+use super::super::tag::{Item, Tag};
+use super::Parser;
+use crate::scene::graph::{LaneRole as L, RelationKind as R};
+
+impl Parser<'_> {
+    /// On which side of the road what was named before stands, if any: true for the left.
+    pub(super) fn side_of_other(&self) -> Option<bool> {
+        let own = self.targets();
+        let side = |i: usize| {
+            self.mentions[i].spec.relations.iter().find_map(|r| match (r.relation, r.anchor) {
+                (R::LeftOf, Anchor::Ego) => Some(true),
+                (R::RightOf, Anchor::Ego) => Some(false),
+                (_, Anchor::Lane(L::LeftRoadside | L::LeftSidewalk | L::Oncoming)) => Some(true),
+                (_, Anchor::Lane(L::RightRoadside | L::RightSidewalk)) => Some(false),
+                _ => None,
+            })
+        };
+        // at the head of a clause the subject is still that of the one before
+        let skip = |i: &usize| own.contains(i) && !self.fresh;
+        (0..self.mentions.len())
+            .rev()
+            .filter(|i| !skip(i) && !self.mentions[*i].gone)
+            .find_map(side)
+    }
+
+    /// "on the other side": of the road, seen from what was named before; from the ego vehicle, if nothing was.
+    pub(super) fn other_side(&self, item: &Item) -> Prep {
+        let other = item.words.contains("other") || item.words.contains("opposite");
+        if other && !self.edits && self.side_of_other() == Some(true) {
+            Prep::NearSide
+        } else {
+            Prep::FarSide
+        }
+    }
+
+    /// "and two workers nearby": near what was named before, if anything was.
+    pub(super) fn by_other(&self, kinds: &[R], item: &Item) -> Option<usize> {
+        let near = kinds == [R::Near] && !item.words.contains("here");
+        let own = self.targets();
+        let earlier = |i: &usize| !own.contains(i) && *i < *own.first().unwrap_or(&0) && !self.mentions[*i].gone;
+        let before = self.before.iter().rev().copied().find(earlier);
+        before
+            .or_else(|| (0..self.mentions.len()).rev().find(earlier))
+            .filter(|_| near && !self.edits && !own.is_empty())
+    }
+
+    /// True if a clause with its subject after the verb goes on here: "(behind us) drives a taxi", "(on the right), close
+    /// to the bus, stands a man".
+    pub(super) fn inverted_ahead(&self, from: usize) -> bool {
+        let mut j = from;
+        while let Some(item) = self.item(j) {
+            match item.tag {
+                Tag::Comma | Tag::Unknown => {}
+                Tag::Number(_) | Tag::Is(Sense::Count(_)) if matches!(self.sense(j + 1), Some(Sense::Unit(_))) => {
+                    j += 1;
+                }
+                Tag::Is(
+                    Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::In
+                    | Sense::At
+                    | Sense::Place(..)
+                    | Sense::Article(true)
+                    | Sense::Ego
+                    | Sense::FarSide
+                    | Sense::Fixed(..)
+                    | Sense::Away
+                    | Sense::Possessed(_),
+                ) => {}
+                Tag::Is(Sense::Pronoun) if !matches!(item.words.as_str(), "that" | "they" | "he" | "she") => {}
+                // a landmark: "close to the bus"
+                Tag::Is(Sense::Noun(..))
+                    if matches!(self.sense(j.wrapping_sub(1)), Some(Sense::Article(true))) => {}
+                Tag::Is(Sense::State(_, true)) => return self.subject_after(j + 1),
+                Tag::Is(Sense::Filler) => match item.words.as_str() {
+                    "is" | "are" | "was" | "were" | "there is" | "there are" => {
+                        return self.subject_after(j + 1);
+                    }
+                    "to" | "from" | "the" | "my" | "our" => {}
+                    _ => return false,
+                },
+                _ => return false,
+            }
+            j += 1;
+        }
+        false
+    }
+
+    /// True if a new subject begins at item `i`: "a taxi", "two men".
+    fn subject_after(&self, i: usize) -> bool {
+        let fresh = matches!(
+            self.item(i).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(false) | Sense::Count(_) | Sense::Part(_)))
+        );
+        fresh && self.noun_ahead(i)
+    }
+}
