@@ -463,14 +463,12 @@ impl Parser<'_> {
             && article
             && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
             && matches!(
-                before.checked_sub(2).and_then(|i| self.sense(i)),
-                Some(Sense::Noun(..))
-            )
-            && self
-                .head
-                .last()
-                .is_some_and(|i| self.mentions[*i].definite && self.mentions[*i].classes == noun.classes);
-        if set_apart {
+                before.checked_sub(2).and_then(|i| self.item(i)).map(|i| i.tag),
+                Some(Tag::Is(Sense::Noun(..)) | Tag::Number(_))
+            );
+        if let Some(&i) = self.head.last().filter(|_| set_apart)
+            && self.described_as(i, noun, word)
+        {
             return true;
         }
         // "three of them are trucks"
@@ -547,12 +545,12 @@ impl Parser<'_> {
 
     /// "cars and buses are there none": takes the list back. True if it was that.
     pub(super) fn none_of_these(&mut self, span: Span) -> bool {
-        let verb = (1..=2).any(|k| {
+        let verb = (0..=2).any(|k| {
             let before = self.at.checked_sub(k).and_then(|i| self.item(i));
             before.is_some_and(|b| {
                 matches!(
                     b.words.as_str(),
-                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are"
+                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are" | "is not" | "are not"
                 )
             })
         });
@@ -574,6 +572,22 @@ impl Parser<'_> {
         self.head.clear();
         self.last.clear();
         true
+    }
+
+    /// True if what follows only says that something is not there: "(are not) allowed", "(are not) to be seen".
+    pub(super) fn refused(&self, i: usize) -> bool {
+        let words: Vec<&str> = self.items[i.min(self.items.len())..]
+            .iter()
+            .take_while(|n| !matches!(n.tag, Tag::Stop | Tag::Comma | Tag::Mark))
+            .map(|n| n.words.as_str())
+            .collect();
+        let said = words.join(" ");
+        let there = [
+            "allowed", "permitted", "present", "wanted", "needed", "visible", "here", "there", "around", "in sight",
+            "to be seen", "admitted", "to be found", "included", "in the scene", "in view", "seen", "shown", "desired",
+            "required", "welcome", "part of the scene", "part of this", "about",
+        ];
+        there.iter().any(|w| said == *w || said == format!("{w} here") || said == format!("{w} there"))
     }
 
     /// "there" at the end of a clause: at the place that was named last.

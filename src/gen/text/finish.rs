@@ -1,6 +1,6 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Stated};
+use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Stated, TimeOfDay};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -77,15 +77,19 @@ fn abreast(mentions: &mut Vec<Mention>) {
         let m = &mut mentions[i];
         let said = m.spec.attributes.iter().any(|a| a == "sidebyside");
         m.spec.attributes.retain(|a| a != "sidebyside");
-        let pair = m.spec.count == Count::exactly(2)
-            && m.both.is_none()
-            && m.spec.state != Some(ObjectState::Parked);
-        let strip = m
-            .spec
-            .relations
-            .iter()
-            .any(|r| matches!(r.anchor, Anchor::Lane(_)));
-        if !said || m.gone || !pair || strip && m.spec.class.is_vehicle() {
+        let pair = m.spec.count == Count::exactly(2) && m.both.is_none();
+        // two cars find no room beside one another in one lane; at the kerb they stand one behind the other
+        let lane = m.spec.relations.iter().any(|r| {
+            matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+        });
+        if said && !m.gone && m.spec.count.n == 1 {
+            one_beside(mentions, i);
+            continue;
+        }
+        if !said || m.gone || !pair || lane && m.spec.class.is_vehicle() {
             continue;
         }
         m.spec.count = Count::exactly(1);
@@ -98,10 +102,30 @@ fn abreast(mentions: &mut Vec<Mention>) {
             span: other.spec.span,
         });
         for r in &mut other.spec.relations {
-            r.distance_m = None; // as far as the first
+            if !matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind) {
+                r.distance_m = None; // as far as the first
+            }
         }
         mentions.push(other);
     }
+}
+
+/// "a motorbike and a scooter stand side by side": the second is beside the first.
+fn one_beside(mentions: &mut [Mention], first: usize) {
+    let Some(second) = (first + 1..mentions.len())
+        .find(|k| !mentions[*k].gone && mentions[*k].spec.attributes.iter().any(|a| a == "sidebyside"))
+    else {
+        return;
+    };
+    let m = &mut mentions[second];
+    m.spec.attributes.retain(|a| a != "sidebyside");
+    m.spec.relations.push(Stated {
+        relation: RelationKind::NextTo,
+        anchor: Anchor::Object(first),
+        and: None,
+        distance_m: None,
+        span: m.spec.span,
+    });
 }
 
 /// What has stopped on the other side of the road stands at its edge.
@@ -125,7 +149,7 @@ fn stopped_across(mentions: &mut [Mention], prompt: &str) {
 
 fn split_sides(mentions: &mut Vec<Mention>) {
     for i in 0..mentions.len() {
-        let Some(each) = mentions[i].both.take() else {
+        let Some(each) = mentions[i].both.take().filter(|_| !mentions[i].gone) else {
             continue;
         };
         let total = mentions[i].spec.count;
@@ -343,6 +367,17 @@ fn share_places(mentions: &mut [Mention]) {
     }
 }
 
+/// The sun shines by day.
+fn sun_shines(reading: &mut Reading) {
+    let sunny = reading.phrases.iter().any(|p| {
+        let words = p.text.to_lowercase();
+        p.became == Became::Weather && words.contains("sun") && !p.meaning.contains("not")
+    });
+    if sunny && reading.description.time_of_day.is_none() {
+        reading.description.time_of_day = Some(TimeOfDay::Day);
+    }
+}
+
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
@@ -366,6 +401,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
             m.gone = true;
         }
     }
+    sun_shines(reading);
     share_places(mentions);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];

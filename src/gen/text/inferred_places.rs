@@ -34,6 +34,8 @@ pub fn infer(mentions: &mut [Mention]) {
     for i in 0..mentions.len() {
         blocked_at(&mut mentions[i]);
         stranded(&mut mentions[i]);
+        waits_for_crossers(mentions, i);
+        goes_with(mentions, i);
         let along: Vec<(Stated, usize)> = mentions[i]
             .spec
             .relations
@@ -104,6 +106,107 @@ fn stranded(m: &mut Mention) {
     });
     if there && m.spec.state == Some(ObjectState::Parked) {
         m.spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// Who has stopped for people on the stripes, or simply waits where people cross them, waits at the crossing.
+fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
+    let crossing = |m: &Mention| {
+        m.spec.class == Class::Pedestrian
+            && !m.gone
+            && m.spec.relations.iter().any(|r| {
+                r.relation == R::On && r.anchor == Anchor::Crossing || r.relation == R::WaitingAt && r.anchor == Anchor::Crossing
+            })
+    };
+    let m = &mentions[i];
+    let drives = m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let waits = m.spec.state == Some(ObjectState::Waiting);
+    let at_crossing = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Crossing && matches!(r.relation, R::Near | R::NextTo));
+    let on_it = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Crossing && matches!(r.relation, R::On | R::WaitingAt | R::Blocking));
+    let placed = m.spec.relations.iter().any(|r| {
+        matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Ego | LaneRole::Oncoming | LaneRole::Left | LaneRole::Right))
+            || r.distance_m.is_some()
+            || matches!(r.anchor, Anchor::Junction)
+            || matches!(r.anchor, Anchor::Object(k) if !mentions.get(k).is_some_and(crossing))
+    });
+    let for_them = m.spec.relations.iter().any(|r| {
+        r.relation == R::NextTo && matches!(r.anchor, Anchor::Object(k) if mentions.get(k).is_some_and(crossing))
+    });
+    let someone = mentions.iter().any(crossing);
+    // told no more than where it comes from
+    let open = m.spec.relations.iter().all(|r| {
+        matches!(r.relation, R::OppositeDirection | R::Facing | R::SameDirection)
+            || r.anchor == Anchor::Lane(LaneRole::Oncoming)
+    });
+    if !drives || on_it || placed || !(for_them || waits && (at_crossing || someone && open)) {
+        return;
+    }
+    let span = m.spec.span;
+    let m = &mut mentions[i];
+    m.spec.relations.retain(|r| {
+        !(matches!(r.relation, R::NextTo | R::Near) && matches!(r.anchor, Anchor::Object(_) | Anchor::Crossing))
+    });
+    m.spec.state = Some(ObjectState::Waiting);
+    m.spec.relations.push(Stated {
+        relation: R::WaitingAt,
+        anchor: Anchor::Crossing,
+        and: None,
+        distance_m: None,
+        span,
+    });
+}
+
+/// Who is with others is where they are; where the companions were said to be, the others are, too.
+fn goes_with(mentions: &mut [Mention], i: usize) {
+    let Some(host) = mentions[i].host.filter(|h| *h < mentions.len() && *h != i) else {
+        return;
+    };
+    let person = |m: &Mention| m.spec.class == Class::Pedestrian && !m.gone;
+    if !person(&mentions[i]) || !person(&mentions[host]) {
+        return;
+    }
+    let span = mentions[i].spec.span;
+    let placed = |m: &Mention| m.spec.relations.iter().any(|r| !matches!(r.anchor, Anchor::Object(_)));
+    if placed(&mentions[i]) && !placed(&mentions[host]) {
+        let theirs: Vec<Stated> = mentions[i].spec.relations.clone();
+        mentions[host].spec.relations.extend(
+            theirs
+                .into_iter()
+                .filter(|r| !matches!(r.anchor, Anchor::Object(k) if k == host)),
+        );
+    } else if !placed(&mentions[i]) && placed(&mentions[host]) {
+        // (a strip is where all of them are; the rest holds for who was named)
+        let strips: Vec<Stated> = mentions[host]
+            .spec
+            .relations
+            .iter()
+            .filter(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing))
+            .copied()
+            .collect();
+        mentions[i].spec.relations.extend(strips);
+    }
+    let near = mentions[i]
+        .spec
+        .relations
+        .iter()
+        .chain(&mentions[host].spec.relations)
+        .any(|r| matches!(r.anchor, Anchor::Object(k) if k == host || k == i));
+    if !near {
+        mentions[i].spec.relations.push(Stated {
+            relation: R::NextTo,
+            anchor: Anchor::Object(host),
+            and: None,
+            distance_m: None,
+            span,
+        });
     }
 }
 

@@ -213,9 +213,10 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
         let whole = begins(&tokens[i..], WHO).and_then(|n| {
             let verb = begins(&tokens[i + n..], LEFT)?;
             let k = i + n + verb;
+            // ("somebody left a trailer standing there": what is left there is told, not who left it)
             let his = tokens
                 .get(k)
-                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their"));
+                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their" | "a" | "an" | "the"));
             let noun = (k + 1..tokens.len().min(k + 5)).find(|j| is_noun(&tokens[*j]))?;
             let more = tokens.get(noun + 1..).is_some_and(|rest| {
                 rest.iter()
@@ -235,7 +236,14 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
             Some((his, noun)) => {
                 out.push(word("a", &tokens[i]));
                 out.extend_from_slice(&tokens[his + 1..=noun]);
-                out.extend(["is", "parked"].map(|w| word(w, &tokens[i])));
+                let stands = tokens.get(noun + 1).is_some_and(|t| {
+                    matches!(
+                        t.text.as_str(),
+                        "standing" | "parked" | "abandoned" | "lying" | "unattended" | "waiting" | "behind"
+                    )
+                });
+                let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
+                out.extend(state.iter().map(|w| word(w, &tokens[i])));
                 i = noun + 1;
             }
             None => {

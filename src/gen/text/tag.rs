@@ -129,7 +129,8 @@ fn as_mine(word: &str) -> &str {
 
 fn is_side(word: &str) -> bool {
     let sides = places::LEFT.split('|').chain(places::RIGHT.split('|'));
-    sides.into_iter().any(|s| s.split(' ').next() == Some(word))
+    let middle = matches!(word, "middle" | "centre" | "center");
+    middle || sides.into_iter().any(|s| s.split(' ').next() == Some(word))
 }
 
 fn number(v: f64, _next: Option<&Token>) -> Tag {
@@ -249,7 +250,14 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             (_, Tag::Number(hour))
                 if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) =>
             {
-                let pm = next.is_some_and(|n| n.words == "pm");
+                // "11 o'clock in the morning"
+                let part = after_next.map_or("", |n| n.words.as_str());
+                let later = matches!(part, "in the evening" | "in the afternoon")
+                    || part == "at night" && hour >= 5.0;
+                if later || matches!(part, "in the morning" | "at night") {
+                    skip = 2;
+                }
+                let pm = later || next.is_some_and(|n| n.words == "pm");
                 out.push(Item {
                     tag: Tag::Is(Sense::Time(time_of(hour, pm))),
                     ..item.clone()

@@ -108,11 +108,13 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let tokens = &super::common::plain(tokens)[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
-        out.extend(without_purpose(sentence));
+        out.extend(without_purpose(&super::titles::without(sentence)));
     }
     let out = super::inverted::ordered(&super::ellipsis::filled(&out));
     let out = replaced(&out, FRAMES, "");
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
+    let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");
+    let out = replaced(&out, super::order::FAR_FIRST, "farfirst");
     let mut out = faced(&out);
     // "the lane directly to our right"
     let mut i = 1;

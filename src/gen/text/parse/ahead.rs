@@ -56,6 +56,14 @@ impl Parser<'_> {
         false
     }
 
+    /// Past "too" and the like.
+    pub(super) fn past_too(&self, i: usize) -> usize {
+        let too = self
+            .item(i)
+            .is_some_and(|n| matches!(n.words.as_str(), "too" | "also" | "as well" | "now" | "already"));
+        i + usize::from(too)
+    }
+
     /// True if something that a relation can end in begins at item `i`.
     pub(super) fn anchor_ahead(&self, i: usize) -> bool {
         let mut j = i;

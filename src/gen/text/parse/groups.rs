@@ -58,9 +58,9 @@ impl Parser<'_> {
         }
         // "two cars ahead and a third behind us" names one more
         let said = span.of(self.prompt).to_lowercase();
-        let nth = ["second", "third", "fourth", "fifth", "sixth"]
+        let nth = ["second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"]
             .iter()
-            .position(|w| said.starts_with(&format!("a {w}")))
+            .position(|w| said.starts_with(&format!("a {w}")) || said.starts_with(&format!("an {w}")))
             .map(|k| k as u32 + 1);
         let last = (0..self.mentions.len())
             .rev()
@@ -152,9 +152,12 @@ impl Parser<'_> {
             self.mentions[parent].gone = true;
             return;
         }
+        // "two are crossing, three are still waiting": the rest of the five
+        let rest_of_group = self.whole == Some(parent) && count.n == left.n && left.is_exact();
         if !all
             && !of_them
             && !self.edits
+            && !rest_of_group
             && count.n > 1
             && count.n >= left.n
             && !self.mentions[parent].spec.relations.is_empty()
@@ -309,9 +312,14 @@ impl Parser<'_> {
             let placed_in = self
                 .pending
                 .as_ref()
-                .is_some_and(|p| matches!(p.prep, Prep::In))
+                .is_some_and(|p| {
+                    // "stands in the oncoming lane and obstructs it"
+                    matches!(p.prep, Prep::In) || p.prep == Prep::Rels(vec![RelationKind::Blocking])
+                })
                 .then_some(self.last_place)
                 .flatten();
+            // (one stands on a crossing or in a car park, not on a thing)
+            let holds = matches!(placed_in, Some(Anchor::Crossing | Anchor::Junction | Anchor::Lane(_)));
             // "five to the left of my car and five to the right of it": no group is "it"
             let ego_it = item.words == "it"
                 && !self.edits
@@ -323,10 +331,15 @@ impl Parser<'_> {
                     .mentions
                     .iter()
                     .any(|m| m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego));
+            let antecedent = antecedent.filter(|_| !(self.ego_topic && item.words == "it"));
+            if antecedent.is_none() && item.words == "it" && (self.ego_named || ego_it) {
+                self.ego_topic = true;
+            }
             match antecedent {
+                _ if self.ego_topic && item.words == "it" => self.anchor(Anchor::Ego, item.span),
                 _ if ego_it => self.anchor(Anchor::Ego, item.span),
                 _ if of_front.is_some() => self.anchor(of_front.unwrap_or(Anchor::Ego), item.span),
-                _ if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
+                _ if placed_in.is_some() && item.words == "it" && (holds || self.fronted.is_empty()) => {
                     self.anchor(placed_in.unwrap_or(Anchor::Ego), item.span);
                 }
                 Some(i) => self.anchor(Anchor::Object(i), item.span),

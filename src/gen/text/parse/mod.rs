@@ -6,6 +6,7 @@
 
 mod ahead;
 mod groups;
+mod labels;
 mod nouns;
 mod numbers;
 mod pairs;
@@ -65,6 +66,7 @@ pub(super) struct Parser<'a> {
     pub(super) relative: bool,
     ego_subject: bool,                     // "I am behind a bus"
     ego_named: bool,                       // "the host vehicle": "it" may mean it
+    ego_topic: bool,                       // "it" did mean it in this sentence
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
@@ -72,6 +74,7 @@ pub(super) struct Parser<'a> {
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
+    pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
     denied: bool,                   // what follows says where something is not
     pub(super) listed: Vec<Stated>, // where what a colon introduces stands
 }
@@ -124,6 +127,7 @@ impl<'a> Parser<'a> {
             relative: false,
             ego_subject: false,
             ego_named: false,
+            ego_topic: false,
             last_lane: None,
             last_place: None,
             whole: None,
@@ -131,6 +135,7 @@ impl<'a> Parser<'a> {
             pair: Vec::new(),
             with: false,
             edits,
+            order: None,
             denied: false,
             listed: Vec::new(),
         }
@@ -177,6 +182,8 @@ impl<'a> Parser<'a> {
         let span = item.span;
         match item.tag {
             Tag::Stop => {
+                self.ego_topic = false;
+                self.order = None;
                 self.end_clause();
                 return true;
             }
@@ -235,6 +242,9 @@ impl<'a> Parser<'a> {
                     if !self.noun_ahead(self.at + 1) && self.edits {
                         self.mention_by_id(span);
                     }
+                    return false;
+                }
+                if !self.edits && self.labelled(v) {
                     return false;
                 }
                 let label = self.item(self.at + 1).is_some_and(|n| n.words == ":");

@@ -271,6 +271,9 @@ impl Parser<'_> {
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
         }
+        if !old {
+            self.next_in_order(index);
+        }
         if let Some((metres, dspan)) = self.distance.take() {
             self.mentions[index].spec.relations.push(Stated {
                 relation: RelationKind::Near,
@@ -313,7 +316,9 @@ impl Parser<'_> {
 
     /// An object named before that "the ..." points to.
     pub(super) fn coreferent(&self, new: &Mention) -> Option<usize> {
-        if !new.definite || new.pick.is_some() || self.edits {
+        // "one worker near cones": those that were named
+        let bare = new.bare && new.uncounted && self.pending.is_some() && new.spec.state.is_none();
+        if !(new.definite || bare) || new.pick.is_some() || self.edits {
             return None;
         }
         let fits = |m: &Mention| {

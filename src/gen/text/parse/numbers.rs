@@ -36,10 +36,11 @@ impl Parser<'_> {
             self.pre = Pre::default();
             return;
         }
+        let count = self.bounded(count);
         if self.items[self.at].words == "both" && self.both_of_them() || self.the_two(count.n, span) {
             return;
         }
-        if self.all_of_them(count) {
+        if self.all_of_them(count) || self.part_by_side(count, span) {
             return;
         }
         let next_is_part = !self.noun_ahead(self.at + 1);
@@ -137,6 +138,17 @@ impl Parser<'_> {
         }
         self.pre.count = Some(count);
         self.pre.cover(span);
+    }
+
+    /// "more than four children" are five at least, "fewer than four" three at most.
+    fn bounded(&self, count: Count) -> Count {
+        let before = self.item(self.at.wrapping_sub(1)).map_or("", |b| b.words.as_str());
+        let counts = count.is_exact() && self.noun_ahead(self.at + 1) && count.n < 100;
+        match before {
+            "more than" | "over" | "upwards of" | "in excess of" if counts => Count::exactly(count.n + 1),
+            "less than" | "fewer than" | "under" if counts && count.n > 1 => Count::exactly(count.n - 1),
+            _ => count,
+        }
     }
 
     pub(super) fn try_distance(&mut self, value: f64, span: Span) -> bool {

@@ -113,6 +113,55 @@ impl Parser<'_> {
         self.between_them("two", span)
     }
 
+    /// "we are wedged between two trucks": one ahead, one behind, unless the parts are told one by one. True if it was that.
+    pub(super) fn ego_between(&mut self, first: Anchor, second: Option<Anchor>, span: Span) -> bool {
+        let (Anchor::Object(a), Some(Anchor::Object(b))) = (first, second) else {
+            return false;
+        };
+        let place = |m: &mut super::super::mention::Mention, kind: RelationKind| {
+            m.is_anchor = false;
+            let told = m.spec.relations.iter().any(|r| {
+                r.anchor == Anchor::Ego && matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind)
+            });
+            if !told {
+                m.spec.relations.push(super::super::description::Stated {
+                    relation: kind,
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: None,
+                    span,
+                });
+            }
+        };
+        if a != b {
+            place(&mut self.mentions[a], RelationKind::InFrontOf);
+            place(&mut self.mentions[b], RelationKind::Behind);
+            self.head = vec![a, b];
+        } else {
+            // "..., one in front of us and one behind us" follows
+            let parts = self.items[self.at + 1..]
+                .iter()
+                .take_while(|n| n.tag != super::super::tag::Tag::Stop)
+                .any(|n| matches!(n.words.as_str(), "one" | "the first" | "the other"));
+            self.mentions[a].is_anchor = false;
+            if !parts && self.mentions[a].spec.count.n == 2 {
+                let one = super::super::description::Count::exactly(1);
+                self.mentions[a].spec.count = one;
+                let mut twin = self.mentions[a].clone();
+                place(&mut self.mentions[a], RelationKind::InFrontOf);
+                place(&mut twin, RelationKind::Behind);
+                self.mentions.push(twin);
+                self.head = vec![a, self.mentions.len() - 1];
+            } else {
+                self.head = vec![a];
+            }
+        }
+        self.last = self.head.clone();
+        self.list = self.head.clone();
+        self.chain = false;
+        true
+    }
+
     fn finite_next(&self) -> bool {
         matches!(self.sense(self.at + 1), Some(Sense::State(_, true)))
             || self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "is" | "are" | "there is" | "there are"))

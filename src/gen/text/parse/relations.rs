@@ -67,6 +67,9 @@ impl Parser<'_> {
             self.chain = true;
             return;
         }
+        if p.ego && between && self.ego_between(anchor, and, p.span.to(span)) {
+            return;
+        }
         if let (true, Anchor::Object(i), Prep::Rels(kinds)) = (p.ego && and.is_none(), anchor, &p.prep) {
             // "I am behind a bus": the bus is in front of the ego vehicle.
             let frag = Frag {

@@ -15,6 +15,21 @@ impl<'a> Parser<'a> {
         let span = item.span;
         let prenominal = self.noun_directly(self.at + 1);
         match sense {
+            // "walking down the pavement, away from me"
+            Sense::Away
+                if item.words == "away from"
+                    && self.pending.is_none()
+                    && self.distance.is_none()
+                    && !self.edits
+                    && !matches!(
+                        self.sense(self.at.wrapping_sub(1)),
+                        Some(Sense::Unit(_) | Sense::EgoRel(_) | Sense::Rel(_))
+                    )
+                    && self.item(self.at.wrapping_sub(1)).is_some_and(|b| !matches!(b.words.as_str(), "far" | "not far"))
+                    && matches!(self.sense(self.at + 1), Some(Sense::Ego)) =>
+            {
+                self.begin(Prep::Rels(vec![RelationKind::FacingAway]), span);
+            }
             Sense::Filler | Sense::Unit(_) | Sense::Away | Sense::Bound(_) => {
                 match item.words.as_str() {
                     // "an ambulance with two paramedics beside it is parked"
@@ -107,7 +122,7 @@ impl<'a> Parser<'a> {
                         self.end_list();
                     }
                     // "... obstructs the crossing; four people wait there"
-                    "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
+                    "there" | "over there" if self.ends(self.past_too(self.at + 1)) && !self.edits => self.there(span),
                     // "on both pavements stand three people each"
                     "each"
                         if self.ends(self.at + 1)
@@ -116,6 +131,17 @@ impl<'a> Parser<'a> {
                         for i in self.last.clone() {
                             self.mentions[i].both = self.mentions[i].both.map(|_| true);
                         }
+                    }
+                    "nearfirst" | "farfirst" => self.ordered_by(&item.words),
+                    // "a fire engine is behind me, so both cars have pulled over"
+                    "so" | "because" | "since" | "therefore" | "hence"
+                        if !self.edits
+                            && self.noun_ahead(self.at + 1)
+                            && self
+                                .item(self.at.wrapping_sub(1))
+                                .is_some_and(|b| matches!(b.tag, Tag::Comma | Tag::Mark)) =>
+                    {
+                        self.soft_end();
                     }
                     "each" | "every" => self.pre.each = true,
                     "it is" | "its" | "its a" if self.head.is_empty() => {
@@ -217,6 +243,12 @@ impl<'a> Parser<'a> {
                 if matches!(item.words.as_str(), "not any" | "none" | "absent")
                     && self.ends(self.at + 1)
                     && self.none_of_these(span) => {}
+            // "motor vehicles of any other kind are not permitted"
+            Sense::Not if self.refused(self.at + 1) && self.none_of_these(span) => {
+                while !self.ends(self.at + 1) {
+                    self.at += 1;
+                }
+            }
             // "pedestrians: none"
             Sense::Not if item.words == "none" && self.none_of_it(2, span) => {}
             Sense::Not => {
@@ -235,6 +267,17 @@ impl<'a> Parser<'a> {
                 self.unread(span, Some("how many?".into()));
             }
             Sense::Count(count) => {
+                // "no cars, no nothing, just one man"
+                let just = self
+                    .item(self.at.wrapping_sub(1))
+                    .is_some_and(|b| matches!(b.words.as_str(), "just" | "only" | "simply" | "merely"))
+                    || item.words.starts_with("just ")
+                    || item.words.starts_with("only ");
+                if just {
+                    self.pre.not = false;
+                    self.not_goes_on = false;
+                    self.denied = false;
+                }
                 let unit = matches!(self.sense(self.at + 1), Some(Sense::Unit(_)));
                 if unit && self.try_distance(f64::from(count.n), span) {
                     return self.distance.is_some();

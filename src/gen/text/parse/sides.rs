@@ -1,10 +1,11 @@
 //! Sides of the road that hang on what was named before: "on the other side", "opposite", "nearby", and clauses that
 //! begin with a place.
 
-use super::super::description::Anchor;
+use super::super::description::{Anchor, Count};
 use super::super::lexicon::Sense;
 use super::super::mention::Prep;
 use super::super::tag::{Item, Tag};
+use super::super::tokens::Span;
 use super::Parser;
 use crate::scene::graph::{LaneRole as L, RelationKind as R};
 
@@ -50,6 +51,48 @@ impl Parser<'_> {
             .filter(|_| near && !self.edits && !own.is_empty())
     }
 
+    /// "cones on either side, three on the left and three on the right", "cars on both sides, two on each": the parts say
+    /// how many. True if it was that.
+    pub(super) fn part_by_side(&mut self, count: Count, span: Span) -> bool {
+        let group = (0..self.mentions.len()).rev().find(|i| {
+            let m = &self.mentions[*i];
+            m.both.is_some() && !m.is_anchor && (m.plural || m.gone)
+        });
+        let Some(group) = group.filter(|_| !self.edits && self.pending.is_none()) else {
+            return false;
+        };
+        match self.sense(self.at + 1) {
+            Some(Sense::BothSides(_)) if !self.mentions[group].gone => {
+                let m = &mut self.mentions[group];
+                m.spec.count = count;
+                m.uncounted = false;
+                m.both = Some(true);
+                self.at += 1;
+            }
+            Some(Sense::EgoRel([R::LeftOf] | [R::RightOf])) => {
+                let mut part = self.mentions[group].clone();
+                part.both = None;
+                part.gone = false;
+                part.uncounted = false;
+                part.plural = count.n > 1;
+                part.spec.count = count;
+                part.spec.span = span;
+                part.spec
+                    .relations
+                    .retain(|r| !matches!(r.relation, R::LeftOf | R::RightOf));
+                self.mentions[group].gone = true;
+                self.mentions.push(part);
+                let index = self.mentions.len() - 1;
+                self.head = vec![index];
+                self.last = vec![index];
+                self.chain = false;
+            }
+            _ => return false,
+        }
+        self.pre = super::Pre::default();
+        true
+    }
+
     /// True if a clause with its subject after the verb goes on here: "(behind us) drives a taxi", "(on the right), close
     /// to the bus, stands a man".
     pub(super) fn inverted_ahead(&self, from: usize) -> bool {
@@ -90,6 +133,21 @@ impl Parser<'_> {
             j += 1;
         }
         false
+    }
+
+    /// True if the place right here says without a preposition where something stands: "cone ego lane", "car left lane".
+    pub(super) fn bare_place(&self, anchor: Anchor) -> bool {
+        let place = matches!(anchor, Anchor::Lane(role) if role != L::Road) || anchor == Anchor::Crossing;
+        let before = self.at.checked_sub(1).and_then(|i| self.item(i));
+        let led = before.is_some_and(|b| {
+            matches!(
+                b.tag,
+                Tag::Is(Sense::Noun(..) | Sense::Unit(_) | Sense::EgoRel(_) | Sense::State(_, false) | Sense::Ego)
+            )
+        });
+        // "a bus lane bus", "pedestrians crosswalk sign"
+        let one_word = self.items[self.at].words.contains(' ') || !matches!(anchor, Anchor::Lane(L::Ego));
+        place && led && one_word && !self.last.is_empty() && !self.noun_directly(self.at + 1)
     }
 
     /// True if a new subject begins at item `i`: "a taxi", "two men".

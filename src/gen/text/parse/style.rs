@@ -132,6 +132,12 @@ impl Parser<'_> {
             }
             return;
         }
+        if self.bare_place(anchor) {
+            // "truck 30 m ahead ego lane", "2 peds left sidewalk"
+            self.begin(Prep::In, span);
+            self.anchor(anchor, span);
+            return;
+        }
         let opened = self.item(self.at.wrapping_sub(1)).is_some_and(|b| {
             matches!(
                 b.tag,
