@@ -366,13 +366,11 @@ impl Parser<'_> {
             self.item(self.at + 1).map(|n| n.tag),
             Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
         );
-        if let [m] = self.mentions.as_mut_slice()
-            && listed
-            && m.uncounted
-            && m.bare
-            && !m.plural
-        {
-            m.gone = true;
+        let plain = |m: &Mention| m.uncounted && m.bare && !m.plural;
+        if listed && self.mentions.iter().all(plain) && self.fronted.is_empty() {
+            for m in &mut self.mentions {
+                m.gone = true;
+            }
             self.head.clear();
             self.last.clear();
         }

@@ -9,6 +9,7 @@ const COURTESY: &str = "if it is not too much trouble|if its not too much troubl
 const REMINDERS: &str = "dont forget to|do not forget to|dont forget about|do not forget about|dont forget|do not forget|not to forget|not forgetting|lets not forget|let us not forget";
 const EXACTLY: &str = "no more and no fewer than|no more and no less than|no fewer and no more than|no less and no more than|no more nor fewer than|neither more nor fewer than|neither more nor less than|neither fewer nor more than|neither less nor more than|not more and not less than|not more and not fewer than|no more no less than|precisely|exactly and only|a total of exactly";
 const PARTS: &str = "the back of|the rear of|the rear end of|the tail of|the tail end of|the back end of|the front of|the side of|the silhouette of|the outline of|the shape of|the figure of|the taillights of|the tail lights of|the rear lights of|the headlights of|the form of";
+const ANY_KIND: &str = "of any other kind|of any kind|of any other sort|of any sort|of any other type|of any type|whatsoever|of whatever kind";
 const ORDINALS: [&str; 12] = [
     "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth", "eleventh",
     "twelfth",
@@ -25,6 +26,8 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
+    let out = replaced(&out, ANY_KIND, "");
+    let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = both_the(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
@@ -45,6 +48,9 @@ fn ordinals(tokens: &[Token]) -> Vec<Token> {
         };
         match nth {
             Some(nth) => {
+                if !out.last().is_some_and(|t| matches!(t.text.as_str(), "the" | "a" | "its" | "my")) {
+                    out.push(word("the", &tokens[i]));
+                }
                 out.push(word(nth, &tokens[i]));
                 i += 2;
             }

@@ -326,9 +326,13 @@ impl Editor<'_> {
             Verb::Note => {
                 for m in &c.targets {
                     if let Chosen::These(ids) = choose(&self.map, &self.boxes, m, &c.mentions) {
-                        if m.pick == Some(Pick::Any) {
-                            self.part_of = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
-                        }
+                        // "the other one" is of the same kind
+                        self.part_of = self
+                            .boxes
+                            .values()
+                            .filter(|b| m.classes.contains(&b.class))
+                            .map(|b| b.id)
+                            .collect();
                         self.last = ids;
                     }
                 }

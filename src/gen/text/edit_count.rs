@@ -88,7 +88,12 @@ impl Editor<'_> {
             .iter()
             .map(|id| role_of(&self.map, &self.boxes[id]))
             .collect();
-        let Some(Some(role)) = roles.first().copied().filter(|r| roles.iter().all(|x| x == r)) else {
+        use crate::scene::graph::LaneRole;
+        let all_alike = roles.first().copied().flatten().filter(|r| roles.iter().all(|x| *x == Some(*r)));
+        // where some are parked in a car park, more are
+        let lot = roles.contains(&Some(LaneRole::Carpark)).then_some(LaneRole::Carpark);
+        let parked = spec.state == Some(crate::scene::graph::ObjectState::Parked);
+        let Some(role) = all_alike.or(lot.filter(|_| parked)) else {
             return;
         };
         // "on the sidewalk" is the one where they are

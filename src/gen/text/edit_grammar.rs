@@ -158,6 +158,24 @@ impl Command {
     }
 }
 
+/// "cars: 3, truck: none": each label begins a sentence.
+fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
+    let colon = |t: &Token| t.text == ":";
+    for i in 1..tokens.len() {
+        let label = tokens[i].kind == TokenKind::Comma
+            && tokens[..i].iter().any(colon)
+            && (i + 2..tokens.len().min(i + 5)).any(|k| {
+                colon(&tokens[k])
+                    && tokens[i + 1..k].iter().all(|t| t.kind == TokenKind::Word)
+                    && super::rephrase::is_noun(&tokens[k - 1])
+            });
+        if label {
+            tokens[i].kind = TokenKind::Stop;
+        }
+    }
+    tokens
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
@@ -170,7 +188,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: super::common::plain(&tokens(text)),
+            tokens: labelled_apart(super::common::plain(&tokens(text))),
             at: 0,
             last_noun: None,
         }

@@ -15,6 +15,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = second_side(&s);
+        s = place_again(&s, &out);
         s = replaced(
             &s,
             "every one of them|every single one of them|each and every one of them|each one of them|the lot of them",
@@ -244,6 +245,33 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
                 span: t.span,
                 ..place.clone()
             });
+        }
+    }
+    out
+}
+
+/// "the far pavement is empty, on the right one a mother walks": the pavement again.
+fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    let place = |t: &&Token| is_strip(&t.text) || t.text == "lane";
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in sentence.iter().enumerate() {
+        let sided = t.text == "one"
+            && i > 1
+            && matches!(
+                sentence[i - 1].text.as_str(),
+                "left" | "right" | "hand" | "far" | "near" | "opposite" | "oncoming"
+            )
+            && matches!(sentence[i - 2].text.as_str(), "the" | "my" | "our" | "left" | "right");
+        // (things on the left and on the right are no places)
+        let noun = sided
+            .then(|| out.iter().chain(before).rev().find(|t| place(t) || is_noun(t)))
+            .flatten()
+            .or_else(|| before.iter().rev().find(|t| sided && out.is_empty() && place(t)))
+            .filter(place)
+            .map(|t| t.text.clone());
+        match noun {
+            Some(noun) => out.push(word(&noun, t)),
+            None => out.push(t.clone()),
         }
     }
     out

@@ -1,6 +1,6 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Stated, TimeOfDay};
+use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -367,6 +367,25 @@ fn share_places(mentions: &mut [Mention]) {
     }
 }
 
+/// What is parked in a scene of a car park stands there, if nothing else was said.
+fn in_car_park(mentions: &mut [Mention], reading: &Reading) {
+    if reading.description.road.kind != Some(Road::Parking) {
+        return;
+    }
+    for m in mentions.iter_mut() {
+        let parked = m.spec.state == Some(ObjectState::Parked) && m.spec.class.is_vehicle();
+        if parked && m.spec.relations.is_empty() {
+            m.spec.relations.push(Stated {
+                relation: RelationKind::ParkedOn,
+                anchor: Anchor::Lane(LaneRole::Carpark),
+                and: None,
+                distance_m: None,
+                span: m.spec.span,
+            });
+        }
+    }
+}
+
 /// The sun shines by day.
 fn sun_shines(reading: &mut Reading) {
     let sunny = reading.phrases.iter().any(|p| {
@@ -402,6 +421,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         }
     }
     sun_shines(reading);
+    in_car_park(mentions, reading);
     share_places(mentions);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];

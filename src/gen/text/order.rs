@@ -21,10 +21,23 @@ impl Parser<'_> {
             return;
         };
         self.order = Some((near_first, Some(index)));
+        let m = &mut self.mentions[index];
         let Some(before) = before.filter(|b| *b != index) else {
+            // what is told by distance is seen ahead, if nothing else was said
+            let told = m.spec.relations.iter().any(|r| {
+                r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind | R::OppositeDirection)
+            });
+            if !told {
+                m.spec.relations.push(Stated {
+                    relation: R::InFrontOf,
+                    anchor: Anchor::Ego,
+                    and: None,
+                    distance_m: None,
+                    span: m.spec.span,
+                });
+            }
             return;
         };
-        let m = &mut self.mentions[index];
         // seen from something that faces us, what is farther on is behind it
         let faces_us = m.spec.relations.iter().any(|r| {
             matches!(r.anchor, Anchor::Lane(L::LeftRoadside | L::Oncoming)) || r.relation == R::OppositeDirection

@@ -133,8 +133,26 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         let put_back = topic(body);
         let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        if let Some(first) = body.first() {
-            let (new, change) = one(&body);
+        // "one car fewer, and add a cyclist"
+        let cut = (1..body.len()).find(|i| {
+            matches!(body[i - 1].text.as_str(), "fewer" | "less")
+                && (body[*i].kind == TokenKind::Comma || body[*i].text == "and")
+        });
+        let parts = match cut {
+            Some(i) => vec![&body[..i], strip(&body[i + 1..], &[&["and"], &["then"]])],
+            None => vec![&body[..]],
+        };
+        for (k, body) in parts.into_iter().enumerate() {
+            let Some(first) = body.first() else {
+                continue;
+            };
+            if k > 0 {
+                out.tokens.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", first)
+                });
+            }
+            let (new, change) = one(body);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));

@@ -53,7 +53,7 @@ impl Gather<'_, '_> {
                     (self.base.still, self.base.moves) = (true, false);
                 }
                 self.push(l.p + out * off, l.dir.to_angle());
-                if self.base.still && self.either_way {
+                if still && self.either_way {
                     // parked against the traffic, if that is how it faces
                     self.base.cost += 0.5;
                     self.push(l.p + out * off, l.dir.to_angle() + PI);

@@ -84,7 +84,7 @@ impl Parser<'_> {
             let m = &self.mentions[*w];
             !all && !self.edits
                 && !m.gone
-                && m.spec.relations.is_empty()
+                && (m.spec.relations.is_empty() || m.spec.count.n == count.n && !self.elsewhere(*w))
                 && m.spec.count.is_exact()
                 && m.spec.count.n >= count.n
         };
@@ -136,7 +136,12 @@ impl Parser<'_> {
         }
         // "two buses ahead, one behind", "parked cars: 3 on the left, 2 on the right"
         let other = said.starts_with("the other") || said.starts_with("other");
-        if !all && !of_them && !other && !self.edits && open_whole.is_none() && self.elsewhere(parent) {
+        if !all
+            && !of_them
+            && !other
+            && !self.edits
+            && (self.enumerated || open_whole.is_none() && self.elsewhere(parent))
+        {
             self.again(count, span);
             return;
         }
@@ -148,6 +153,7 @@ impl Parser<'_> {
             && self.mentions[parent].spec.relations.is_empty()
         {
             // "People: two on the left, ..." counts them one after another
+            self.enumerated = true;
             self.again(count, span);
             self.mentions[parent].gone = true;
             return;
@@ -322,6 +328,7 @@ impl Parser<'_> {
             let holds = matches!(placed_in, Some(Anchor::Crossing | Anchor::Junction | Anchor::Lane(_)));
             // "five to the left of my car and five to the right of it": no group is "it"
             let ego_it = item.words == "it"
+                && !holds
                 && !self.edits
                 && self
                     .mentions

@@ -70,6 +70,7 @@ pub(super) struct Parser<'a> {
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
+    enumerated: bool,                      // "People: two on the left, ..." counts them one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
@@ -131,6 +132,7 @@ impl<'a> Parser<'a> {
             last_lane: None,
             last_place: None,
             whole: None,
+            enumerated: false,
             front: None,
             pair: Vec::new(),
             with: false,
@@ -183,6 +185,7 @@ impl<'a> Parser<'a> {
         match item.tag {
             Tag::Stop => {
                 self.ego_topic = false;
+                self.enumerated = false;
                 self.order = None;
                 self.end_clause();
                 return true;
@@ -232,6 +235,15 @@ impl<'a> Parser<'a> {
                 return true;
             }
             Tag::Unknown => {
+                // "on arrival one truck stood there": what the preposition led to is not known
+                let led = self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
+                let fresh = matches!(
+                    self.item(self.at + 1).map(|n| n.tag),
+                    Some(Tag::Number(_) | Tag::Comma | Tag::Is(Sense::Article(_) | Sense::Count(_)))
+                );
+                if led && fresh && !self.edits {
+                    self.pending = None;
+                }
                 self.unread(span, None);
                 return true;
             }

@@ -317,7 +317,12 @@ impl Parser<'_> {
     /// An object named before that "the ..." points to.
     pub(super) fn coreferent(&self, new: &Mention) -> Option<usize> {
         // "one worker near cones": those that were named
-        let bare = new.bare && new.uncounted && self.pending.is_some() && new.spec.state.is_none();
+        let stem = |n: &str| n.trim_end_matches('s').to_string();
+        let bare = new.bare
+            && new.uncounted
+            && self.pending.is_some()
+            && new.spec.state.is_none()
+            && self.mentions.iter().any(|m| stem(&m.spec.noun) == stem(&new.spec.noun));
         if !(new.definite || bare) || new.pick.is_some() || self.edits {
             return None;
         }

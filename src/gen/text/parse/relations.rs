@@ -157,6 +157,19 @@ impl Parser<'_> {
         } else {
             targets
         };
+        // "let the bus and the car in the right lane trade places": the car is there
+        let named = self.edits
+            && !p.fresh
+            && !p.finite
+            && targets.len() > 1
+            && targets
+                .iter()
+                .all(|t| self.mentions[*t].definite && !self.mentions[*t].plural);
+        let targets = if named {
+            targets[targets.len() - 1..].to_vec()
+        } else {
+            targets
+        };
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()

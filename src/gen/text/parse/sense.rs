@@ -132,6 +132,12 @@ impl<'a> Parser<'a> {
                             self.mentions[i].both = self.mentions[i].both.map(|_| true);
                         }
                     }
+                    // "two cars each are parked on both sides"
+                    "each" if !self.edits && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true))) => {
+                        for i in self.last.clone() {
+                            self.mentions[i].spec.attributes.push("each".into());
+                        }
+                    }
                     "nearfirst" | "farfirst" => self.ordered_by(&item.words),
                     // "a fire engine is behind me, so both cars have pulled over"
                     "so" | "because" | "since" | "therefore" | "hence"
@@ -463,7 +469,11 @@ impl<'a> Parser<'a> {
                 } else if targets.is_empty() {
                     self.unread(span, Some("nothing stands before it".into()));
                 }
-                let each = each || targets.iter().any(|t| self.mentions[*t].spec.count.n == 1);
+                let apiece = |t: &usize| {
+                    let spec = &self.mentions[*t].spec;
+                    spec.count.n == 1 || spec.attributes.iter().any(|a| a == "each")
+                };
+                let each = each || targets.iter().any(apiece);
                 self.chain = false;
                 for t in targets {
                     self.mentions[t].both = Some(each);

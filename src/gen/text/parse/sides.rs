@@ -138,6 +138,17 @@ impl Parser<'_> {
     /// True if the place right here says without a preposition where something stands: "cone ego lane", "car left lane".
     pub(super) fn bare_place(&self, anchor: Anchor) -> bool {
         let place = matches!(anchor, Anchor::Lane(role) if role != L::Road) || anchor == Anchor::Crossing;
+        // "has moved over to the right edge of the road"
+        let mut k = self.at;
+        while k > 0 && matches!(self.sense(k - 1), Some(Sense::Article(true))) {
+            k -= 1;
+        }
+        let word = |k: usize| k.checked_sub(1).and_then(|i| self.item(i));
+        let over = word(k).is_some_and(|b| matches!(b.words.as_str(), "to" | "onto"))
+            && word(k - 1).is_some_and(|b| matches!(b.tag, Tag::Is(Sense::State(..))));
+        if place && over && !self.last.is_empty() && !self.edits {
+            return true;
+        }
         let before = self.at.checked_sub(1).and_then(|i| self.item(i));
         let led = before.is_some_and(|b| {
             matches!(

@@ -14,6 +14,7 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod recast;
 mod skies;
 mod some_of;
 mod spoken;
@@ -23,6 +24,7 @@ mod swap;
 mod tests;
 mod untouched;
 mod ways;
+mod which;
 mod worded;
 pub(super) mod words;
 
@@ -140,6 +142,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         talk.others || find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
     let parted = clauses(body, talk);
+    understood |= parted.len() > 1 && parted.iter().any(|c| parting::only_sky(c));
     let mut lead: Option<Token> = None;
     for clause in parted {
         // "put the truck on the left and the car on the right"
@@ -320,6 +323,22 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         && talk.fits(inner) > 0
     {
         return Some(vec![remembered(inner, talk)]);
+    }
+    // "leave the car behind me as it is"
+    if is(inner.first(), &["leave", "keep", "let"])
+        && let Some((i, n)) = find(
+            inner,
+            &[
+                "as it is", "as they are", "where it is", "where they are", "untouched", "unchanged", "alone", "in place",
+                "in peace", "as it was", "where it stands", "where they stand", "as he is", "as she is", "where he is",
+                "where she is", "the way it is", "the way they are", "be", "stay", "in its place", "in their place",
+            ],
+        )
+        && i + n == inner.len()
+        && has_noun(&inner[1..i])
+        && talk.fits(&inner[1..i]) > 0
+    {
+        return Some(vec![remembered(&inner[1..i], talk)]);
     }
     // "I can't see the pedestrian"
     if let Some((i, n)) = find(

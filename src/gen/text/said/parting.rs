@@ -93,6 +93,18 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
             let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            // weather and light are told apart from the rest
+            let next_link = (next..body.len())
+                .find(|k| body[*k].kind == TokenKind::Comma || matches!(text(&body[*k]), "and" | "but" | "while"))
+                .unwrap_or(body.len());
+            let sky = only_sky(&body[from..i]) && next < body.len() && !only_sky(&body[next..])
+                || only_sky(&body[next.min(body.len())..next_link]) && !only_sky(&body[from..i]) && spoken;
+            if sky {
+                out.push(&body[from..i]);
+                from = next;
+                i = next.max(i + 1);
+                continue;
+            }
             if !lead
                 && !lifts
                 && !named
@@ -118,6 +130,15 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
     out.push(&body[from..]);
     out.retain(|c| !c.is_empty());
     out
+}
+
+/// True if these words are of weather and light alone.
+pub(super) fn only_sky(tokens: &[Token]) -> bool {
+    let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    tokens.iter().any(style)
+        && !has_noun(tokens)
+        && !is(tokens.first(), &["where", "instead", "rather"])
+        && !tokens.iter().any(|t| number(t).is_some() || matches!(text(t), "it" | "them" | "he" | "she" | "they"))
 }
 
 /// "where the truck is, put a digger" and "instead of the van, ..." are one clause.
@@ -231,6 +252,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         && talk.carried
         && !near.iter().any(|t| HELPERS.contains(&text(t)))
     {
+        return true;
+    }
+    // "and now only one worker is there"
+    if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
         return true;
     }
     // "two would do"

@@ -53,7 +53,37 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
             out.splice(i..=i + n + article, clear);
         }
     }
-    unwanted(out)
+    changed(unwanted(out))
+}
+
+/// "the snow has turned to rain", "change night to day": what it becomes.
+fn changed(tokens: Vec<Token>) -> Vec<Token> {
+    const CHANGE: &[&str] = &[
+        "has", "have", "turned", "turns", "turn", "turning", "changed", "changes", "change", "is", "was", "being", "becomes",
+        "became", "become", "becoming", "gives", "gave", "given", "way", "replaced", "into", "to", "by", "with", "for", "and",
+        "yields", "yielded", "should", "must", "now", "the", "a", "swapped", "exchanged", "made", "goes", "went", "over",
+    ];
+    const INTO: &[&str] = &["into", "to", "by", "with", "for", "becomes", "became", "become", "becoming"];
+    let cut = (0..tokens.len()).find_map(|i| {
+        if !is_style(&tokens[i]) {
+            return None;
+        }
+        let next = (i + 1..tokens.len().min(i + 8)).find(|k| is_style(&tokens[*k]))?;
+        let between = &tokens[i + 1..next];
+        let plain = between.iter().all(|t| is(Some(t), CHANGE));
+        let into = between.iter().any(|t| is(Some(t), INTO));
+        // "from fog to snow" and "the fog to snow" alike
+        let from = i - usize::from(i > 0 && is(tokens.get(i - 1), &["the", "this", "that", "from"]));
+        (plain && into).then_some((from, next))
+    });
+    match cut {
+        Some((from, next)) => {
+            let lead = is(tokens.get(from.wrapping_sub(1)), &["change", "turn", "switch", "swap", "exchange", "replace", "make", "convert"]);
+            let start = if lead { from - 1 } else { from };
+            [&tokens[..start], &tokens[next..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "daylight instead of this darkness": the one that is wished for.

@@ -155,7 +155,7 @@ pub const NOUNS: &[Noun] = &[
          construction barricade|barier|barrer|concrete wall|work zone barrier|traffic block|police barrier",
     ),
     noun(&[Barrier], "bollard|steel bollard|concrete bollard|plastic bollard|flexible bollard|retractable bollard|illuminated bollard|safety bollard|warning bollard|stanchion|marker post|delimiter post|post|traffic bollard").sized(0.35, 0.35, 1.0).nearest(),
-    noun(VEHICLES, "vehicle|veh|vehs/vehs|motorized vehicle|motorised vehicle|motor traffic|passenger transport vehicle|means of transport|conveyance|automotive vehicle|moving vehicle|motor vehicle|motorist|other vehicle|road user|emergency vehicle|vehical|vehicule|automotive"),
+    noun(VEHICLES, "vehicle|target|target vehicle|veh|vehs/vehs|motorized vehicle|motorised vehicle|motor traffic|passenger transport vehicle|means of transport|conveyance|automotive vehicle|moving vehicle|motor vehicle|motorist|other vehicle|road user|emergency vehicle|vehical|vehicule|automotive"),
     noun(&[Car, Truck, Bus, Trailer, ConstructionVehicle, Motorcycle, Bicycle], "traffic|road traffic|motor vehicle traffic|car traffic|through traffic|passing traffic|cross traffic|vehicular traffic").several(6),
     noun(&[Motorcycle, Bicycle], "two wheelers"),
     noun(&[TrafficCone, Barrier], "obstacle|obstruction|hazard"),
