@@ -367,7 +367,7 @@ impl Parser<'_> {
             Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
         );
         let plain = |m: &Mention| m.uncounted && m.bare && !m.plural;
-        if listed && self.mentions.iter().all(plain) && self.fronted.is_empty() {
+        if listed && self.mentions.iter().all(plain) {
             for m in &mut self.mentions {
                 m.gone = true;
             }

@@ -13,7 +13,7 @@ use super::said::{Piece, Talk, except, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
-use super::words::edits::Verb;
+use super::words::edits::{Pick, Verb};
 use crate::scene::graph::{LaneRole, ObjectState};
 use crate::scene::{BoxId, Class, SceneBox};
 
@@ -169,6 +169,13 @@ fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
                     && tokens[i + 1..k].iter().all(|t| t.kind == TokenKind::Word)
                     && super::rephrase::is_noun(&tokens[k - 1])
             });
+        // "van to the right lane, buses to the left lane"
+        let sends = |part: &[Token]| {
+            let to = part.iter().take(4).position(|t| matches!(t.text.as_str(), "to" | "onto" | "into"));
+            to.is_some_and(|k| k > 0 && super::rephrase::is_noun(&part[k - 1]) && part[..k].iter().all(|t| t.kind == TokenKind::Word))
+        };
+        let start = (0..i).rev().find(|k| tokens[*k].kind == TokenKind::Stop).map_or(0, |k| k + 1);
+        let label = label || tokens[i].kind == TokenKind::Comma && sends(&tokens[start..i]) && sends(&tokens[i + 1..]);
         if label {
             tokens[i].kind = TokenKind::Stop;
         }
@@ -235,7 +242,7 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let whole = &self.tokens[from..end];
+        let whole = &super::said::spared(&self.tokens[from..end])[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();
@@ -255,7 +262,7 @@ impl<'t> Reader<'t> {
             target_part(self.text, &tag(&np), &mut spared);
             for c in out
                 .iter_mut()
-                .filter(|c| c.targets.iter().any(|t| t.plural))
+                .filter(|c| c.targets.iter().any(|t| t.plural || t.pick == Some(Pick::All)))
                 .take(1)
             {
                 c.except.clone_from(&spared.targets);

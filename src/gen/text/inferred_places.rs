@@ -182,7 +182,7 @@ fn goes_with(mentions: &mut [Mention], i: usize) {
                 .into_iter()
                 .filter(|r| !matches!(r.anchor, Anchor::Object(k) if k == host)),
         );
-    } else if !placed(&mentions[i]) && placed(&mentions[host]) {
+    } else if !mentions[i].spec.relations.iter().any(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing | Anchor::Junction)) && placed(&mentions[host]) {
         // (a strip is where all of them are; the rest holds for who was named)
         let strips: Vec<Stated> = mentions[host]
             .spec

@@ -125,7 +125,14 @@ fn fitting_deep(
     // "vehicles" and the like mean every class of the list, a plain noun its own.
     if let Some(state) = m.spec.state {
         let strict: Vec<&SceneBox> = fit.iter().copied().filter(|b| state_of(map, b, state)).collect();
-        fit = strict;
+        // ("the man who stands by the bus" may take a step)
+        let loose = strict.is_empty()
+            && state == ObjectState::Waiting
+            && m.spec.class == Class::Pedestrian
+            && !m.spec.relations.is_empty();
+        if !loose {
+            fit = strict;
+        }
     }
     for r in &m.spec.relations {
         let targets: Vec<(Target, Option<SceneBox>)> = match r.anchor {

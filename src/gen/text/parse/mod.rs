@@ -70,6 +70,7 @@ pub(super) struct Parser<'a> {
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
+    sentence: usize,                       // the first mention of the sentence
     enumerated: bool,                      // "People: two on the left, ..." counts them one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
@@ -132,6 +133,7 @@ impl<'a> Parser<'a> {
             last_lane: None,
             last_place: None,
             whole: None,
+            sentence: 0,
             enumerated: false,
             front: None,
             pair: Vec::new(),
@@ -186,6 +188,7 @@ impl<'a> Parser<'a> {
             Tag::Stop => {
                 self.ego_topic = false;
                 self.enumerated = false;
+                self.sentence = self.mentions.len();
                 self.order = None;
                 self.end_clause();
                 return true;

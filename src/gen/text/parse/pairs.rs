@@ -113,6 +113,32 @@ impl Parser<'_> {
         self.between_them("two", span)
     }
 
+    /// ", all in our lane": of all that the sentence named so far. True if it was that.
+    pub(super) fn all_named(&mut self) -> bool {
+        let comma = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.tag == super::super::tag::Tag::Comma);
+        let mut next = self.at + 1;
+        while self.item(next).is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom" | "are" | "is")) {
+            next += 1;
+        }
+        let placed = matches!(
+            self.sense(next),
+            Some(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_) | Sense::State(_, false))
+        );
+        let all: Vec<usize> = (self.sentence..self.mentions.len())
+            .filter(|i| !self.mentions[*i].gone && !self.mentions[*i].is_anchor)
+            .collect();
+        if self.edits || !comma || !placed || self.pending.is_some() || all.len() < 2 {
+            return false;
+        }
+        self.last = all;
+        self.relative = true;
+        self.fresh = false;
+        self.chain = false;
+        true
+    }
+
     /// "we are wedged between two trucks": one ahead, one behind, unless the parts are told one by one. True if it was that.
     pub(super) fn ego_between(&mut self, first: Anchor, second: Option<Anchor>, span: Span) -> bool {
         let (Anchor::Object(a), Some(Anchor::Object(b))) = (first, second) else {

@@ -191,6 +191,8 @@ impl<'a> Parser<'a> {
                         self.pending = None;
                         return false;
                     }
+                    // "one car 10 m ahead and one 20 m ahead, all in our lane"
+                    Pick::All if item.words == "all" && self.all_named() => return false,
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);

@@ -135,10 +135,23 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
 /// True if these words are of weather and light alone.
 pub(super) fn only_sky(tokens: &[Token]) -> bool {
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    // "clear the kerb" is no weather
+    let clears = is(tokens.first(), &["clear"])
+        && is(
+            tokens.get(1),
+            &["the", "my", "our", "all", "away", "out", "up", "off", "every", "that", "this", "both"],
+        );
+    let points = (0..tokens.len()).any(|i| {
+        is(tokens.get(i), &["it", "them", "he", "she", "they"])
+            && !is(tokens.get(i + 1), &["be", "is", "should", "becomes", "gets", "has", "was", "turns", "starts", "begins", "must"])
+            && !is(tokens.get(i.wrapping_sub(1)), &["make", "let"])
+    });
     tokens.iter().any(style)
+        && !clears
         && !has_noun(tokens)
         && !is(tokens.first(), &["where", "instead", "rather"])
-        && !tokens.iter().any(|t| number(t).is_some() || matches!(text(t), "it" | "them" | "he" | "she" | "they"))
+        && !points
+        && !tokens.iter().any(|t| number(t).is_some())
 }
 
 /// "where the truck is, put a digger" and "instead of the van, ..." are one clause.

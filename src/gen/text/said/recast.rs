@@ -16,12 +16,20 @@ use crate::scene::graph::LaneRole as L;
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, "together with|along with|and also|as well as", "and");
     let out = replaced(&out, "not just|not only|not merely", "not");
-    let out = without_care(out);
+    let out = replaced(
+        &out,
+        "further along the road , away from us|further along the road , away from me|further along the road|further down the road|further up the road|farther along the road|farther down the road|further on down the road|further along the street|further down the street|further along|farther along",
+        "further away",
+    );
+    let out = left_over(without_care(out));
     let out = another_so_far(out);
     let out = to_so_far(out);
     let out = caused(out);
+    let out = caused_later(out);
     let out = let_be(out);
+    let out = so_many_not(out, talk);
     let out = takes_over(out);
+    let out = place_first(out);
     let out = topic(out, talk);
     let out = gapped(out);
     let out = other_strip(out, talk);
@@ -50,6 +58,25 @@ fn without_care(tokens: Vec<Token>) -> Vec<Token> {
         .map_or(tokens.len(), |k| k + 1);
     let out = [&tokens[..i], &tokens[end..]].concat();
     if has_noun(&out) { trimmed(&out).to_vec() } else { tokens }
+}
+
+/// "only one pedestrian left on the crossing": left over, not on the left.
+fn left_over(tokens: Vec<Token>) -> Vec<Token> {
+    let few = tokens
+        .iter()
+        .any(|t| matches!(text(t), "only" | "just" | "should" | "must" | "exactly" | "no" | "one"));
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let noun = i > 0 && matches!(look_up(text(&tokens[i - 1])), Some(Sense::Noun(..)));
+        let next = tokens.get(i + 1).is_none_or(|n| {
+            n.kind != TokenKind::Word || matches!(text(n), "on" | "in" | "at" | "there" | "here" | "standing" | "please")
+        });
+        let be = tokens[..i].iter().any(|t| matches!(text(t), "be" | "have" | "want" | "need" | "is" | "are" | "only"));
+        if !(text(t) == "left" && noun && next && few && be) {
+            out.push(t.clone());
+        }
+    }
+    out
 }
 
 /// "by another 10 metres": by 10 metres.
@@ -94,12 +121,15 @@ fn command(t: &Token) -> Option<String> {
     if let Some(c) = command_of(text(t)) {
         return Some(c.to_string());
     }
-    (matches!(text(t), "put" | "set" | "cut" | "kept" | "left") && is_verb(t)).then(|| text(t).to_string())
+    (matches!(text(t), "put") && is_verb(t)).then(|| text(t).to_string())
 }
 
 /// "have the taxi replaced by a bus", "I'd like every bus removed, the motorcycle kept, and a lorry put behind us".
 fn caused(tokens: Vec<Token>) -> Vec<Token> {
     let (inner, mood) = unwrapped(&tokens);
+    if is(tokens.first(), &["let", "lets"]) {
+        return tokens;
+    }
     let lead = is(inner.first(), &["have", "get", "see", "want"]) || leads(inner, &["to have", "to see", "to get"]).is_some();
     let from = match (lead, mood.caused) {
         (true, _) => leads(inner, &["to have", "to see", "to get"]).unwrap_or(1),
@@ -139,9 +169,51 @@ fn caused(tokens: Vec<Token>) -> Vec<Token> {
             out.push(word("and", &part[0]));
         }
         let rest = trimmed(&part[at + 1..]);
+        if matches!(verb.as_str(), "keep" | "leave" | "retain" | "preserve") && parts.len() > 1 {
+            let stays = led("as it is", &part[at], &[]);
+            out.extend(led("leave", &part[at], &[&part[..at], &stays]));
+            continue;
+        }
         out.extend(led(&verb, &part[at], &[&part[..at], rest]));
     }
     if out.is_empty() { tokens } else { out }
+}
+
+/// "let it be dawn, and have the motorcycle replaced by a bicycle": the second half.
+fn caused_later(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["have", "get"])
+            && is(tokens.get(k - 1), &["and", "then", "to", "also", "please"])
+            && is(tokens.get(k + 1), &["the", "all", "both", "every", "my", "one", "that", "these"])
+    });
+    let Some(k) = found else {
+        return tokens;
+    };
+    let tail = tokens[k..].to_vec();
+    let new = caused(tail.clone());
+    if new == tail {
+        return tokens;
+    }
+    let before = if is(tokens.get(k - 1), &["to"]) { k - 1 } else { k };
+    [&tokens[..before], &new[..]].concat()
+}
+
+/// "we need three barriers in our lane, not just one": exactly three there.
+fn so_many_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["not", "instead of", "rather than", "and not"]).filter(|x| x.0 > 2) else {
+        return tokens;
+    };
+    let from = i + n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
+    let closes = tokens.get(from).is_some_and(|t| number(t).is_some())
+        && tokens.get(from + 1).is_none_or(|t| t.kind != TokenKind::Word);
+    let before = trimmed(&tokens[..i]);
+    let (inner, _) = unwrapped(before);
+    let counted = inner.first().is_some_and(|t| number(t).is_some());
+    let placed = first_noun(inner).is_some_and(|x| x.0 < 4 && is_place(&inner[x.1..]) && talk.fits(&inner[x.0..x.1]) > 0);
+    if !(closes && counted && placed) {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[inner, &tokens[from + 1..]])
 }
 
 /// True if "the motorcycle kept" or a command begins here.
@@ -180,6 +252,18 @@ fn let_be(tokens: Vec<Token>) -> Vec<Token> {
     let from = usize::from(is(inner.first(), &["let", "may", "shall", "should", "could", "can"]));
     let body = &inner[from..];
     let fresh = is(body.first(), &["a", "an", "another", "one", "some"]) || body.first().is_some_and(|t| number(t).is_some());
+    // "let two children be with the pedestrian": two more
+    let be = body.iter().position(|t| text(t) == "be");
+    if let (1, true, Some(k)) = (from, fresh, be)
+        && is(inner.first(), &["let"])
+        && first_noun(&body[..k]).is_some_and(|x| x.1 == k)
+        && (is_place(&body[k + 1..]) || is(body.get(k + 1), &["with"]))
+    {
+        let with = is(body.get(k + 1), &["with"]);
+        let rest = &body[k + 1 + usize::from(with)..];
+        let near = if with { led("next to", &body[0], &[rest]) } else { rest.to_vec() };
+        return led("add", &body[0], &[&body[..k], &near]);
+    }
     let Some((i, n)) = find(body, &["be added", "be put in", "be inserted", "to be added", "be placed", "be put"]) else {
         return tokens;
     };
@@ -195,6 +279,35 @@ fn let_be(tokens: Vec<Token>) -> Vec<Token> {
         out.extend(rest);
     }
     out
+}
+
+/// "across the road, on the right, park a truck": the imperative first.
+fn place_first(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|k| {
+        let fresh = is(tokens.get(k + 1), &["a", "an", "another", "one", "some"])
+            || tokens.get(k + 1).is_some_and(|t| number(t).is_some());
+        let puts = is(tokens.get(k), &["park", "put", "place", "add", "set", "insert", "position"]) && fresh;
+        let from = (0..k)
+            .rev()
+            .find(|i| {
+                is(tokens.get(*i), &["and", "then"])
+                    || tokens[*i].kind == TokenKind::Comma && !is_place(&tokens[i + 1..k])
+            })
+            .map_or(0, |i| i + 1);
+        let end = (k + 1..tokens.len())
+            .find(|i| tokens[*i].kind == TokenKind::Comma || text(&tokens[*i]) == "and")
+            .unwrap_or(tokens.len());
+        let bare = first_noun(&tokens[k + 1..end]).is_some_and(|n| k + 1 + n.1 == end);
+        (puts && from < k && is_place(&tokens[from..k]) && bare).then_some((from, k, end))
+    });
+    match found {
+        Some((from, k, end)) => {
+            let place: Vec<Token> = tokens[from..k].iter().filter(|t| t.kind != TokenKind::Comma).cloned().collect();
+            // ("across the road on the right roadside": the last place is the one)
+            [&tokens[..from], &tokens[k..end], &place, &tokens[end..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "a parked lorry replaces the bus": replace the bus with it.
@@ -347,7 +460,9 @@ fn other_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     ];
     let found = (1..tokens.len()).find_map(|i| {
         let the = is(tokens.get(i - 1), &["the"]) && is(tokens.get(i), &["other", "opposite", "far"]);
-        let n = leads(tokens.get(i + 1..)?, STRIPS).filter(|_| the)?;
+        // ("has reached the opposite pavement" is read as a whole)
+        let led = i > 1 && is(tokens.get(i - 2), &["to", "onto", "on", "at", "along"]);
+        let n = leads(tokens.get(i + 1..)?, STRIPS).filter(|_| the && led)?;
         Some((i, n))
     });
     let Some((i, n)) = found else {

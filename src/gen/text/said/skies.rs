@@ -53,6 +53,15 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
             out.splice(i..=i + n + article, clear);
         }
     }
+    // "instead of the fog let there be snow"
+    if let Some(n) = leads(&out, &["instead of", "rather than", "in place of"]) {
+        let article = usize::from(is(out.get(n), &["the", "this", "that"]));
+        let end = n + article + 1;
+        if out.get(n + article).is_some_and(is_style) && out[end..].iter().any(is_style) {
+            let comma = out.get(end).is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma);
+            out.drain(..end + usize::from(comma));
+        }
+    }
     changed(unwanted(out))
 }
 
@@ -71,7 +80,12 @@ fn changed(tokens: Vec<Token>) -> Vec<Token> {
         let next = (i + 1..tokens.len().min(i + 8)).find(|k| is_style(&tokens[*k]))?;
         let between = &tokens[i + 1..next];
         let plain = between.iter().all(|t| is(Some(t), CHANGE));
-        let into = between.iter().any(|t| is(Some(t), INTO));
+        let swapped = tokens
+            .iter()
+            .any(|t| is(Some(t), &["replace", "replaced", "swap", "swapped", "exchange", "exchanged", "substitute"]));
+        let into = between.iter().any(|t| {
+            is(Some(t), INTO) && (swapped || !is(Some(t), &["by", "with", "for"]))
+        });
         // "from fog to snow" and "the fog to snow" alike
         let from = i - usize::from(i > 0 && is(tokens.get(i - 1), &["the", "this", "that", "from"]));
         (plain && into).then_some((from, next))

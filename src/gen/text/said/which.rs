@@ -34,7 +34,6 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = by_relative(out);
     let out = comparative(out, talk);
     let out = the_one(out, talk);
-    let out = spared_pick(out);
     any_so_many(out, talk)
 }
 
@@ -181,8 +180,9 @@ fn singular(noun: &[Token]) -> Vec<Token> {
 }
 
 /// "every car but the nearest": the nearest car.
-fn spared_pick(tokens: Vec<Token>) -> Vec<Token> {
+pub fn spared(tokens: &[Token]) -> Vec<Token> {
     let ends = tokens.len();
+    let tokens = tokens.to_vec();
     let found = (2..ends).find_map(|i| {
         let but = leads(&tokens[i..], &["but", "except for", "except", "apart from", "save for", "save", "bar", "other than"])?;
         let from = i + but;
