@@ -448,7 +448,10 @@ impl Editor<'_> {
             }
         }
         for spared in &c.except {
-            let ids = super::select::fitting(&self.map, &self.boxes, spared, &c.except);
+            let ids = match choose(&self.map, &self.boxes, spared, &c.except) {
+                Chosen::These(ids) => ids,
+                _ => super::select::fitting(&self.map, &self.boxes, spared, &c.except),
+            };
             all.retain(|id| !ids.contains(id));
         }
         all.sort_unstable();

@@ -128,7 +128,13 @@ pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
     let p = b.center_m.truncate();
     let walks = [L::LeftSidewalk, L::RightSidewalk];
     let lanes = [L::Ego, L::Left, L::Right, L::Oncoming, L::Cross];
-    let strips = [L::Carpark, L::LeftRoadside, L::RightRoadside];
+    // (parking strips at the edge of the road are roadsides)
+    let lot = in_role(map, L::Carpark, p) && map.nearest(p).is_none_or(|l| l.p.distance(p) > 4.5);
+    let strips = if lot {
+        [L::Carpark, L::LeftRoadside, L::RightRoadside]
+    } else {
+        [L::LeftRoadside, L::RightRoadside, L::Carpark]
+    };
     let all: Vec<L> = match b.class {
         Class::Pedestrian => walks.to_vec(),
         // A driver is in a lane, what stands beside one at the edge.

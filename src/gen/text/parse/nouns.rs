@@ -323,7 +323,20 @@ impl Parser<'_> {
             && self.pending.is_some()
             && new.spec.state.is_none()
             && self.mentions.iter().any(|m| stem(&m.spec.noun) == stem(&new.spec.noun));
-        if !(new.definite || bare) || new.pick.is_some() || self.edits {
+        // "A bulldozer blocks my lane. Bulldozer facing away from me."
+        let opens = self
+            .item(self.at.wrapping_sub(1))
+            .is_none_or(|b| b.tag == Tag::Stop);
+        let faces = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Rel(RelationKind::Facing | RelationKind::FacingAway))
+        );
+        let again = new.bare
+            && !new.plural
+            && opens
+            && faces
+            && self.mentions.iter().filter(|m| m.spec.noun == new.spec.noun && !m.gone).count() == 1;
+        if !(new.definite || bare || again) || new.pick.is_some() || self.edits {
             return None;
         }
         let fits = |m: &Mention| {

@@ -26,17 +26,32 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = to_so_far(out);
     let out = caused(out);
     let out = caused_later(out);
-    let out = let_be(out);
+    let out = in_parts(out, &["let", "may", "could"], let_be);
     let out = so_many_not(out, talk);
     let out = takes_over(out);
     let out = place_first(out);
     let out = topic(out, talk);
-    let out = gapped(out);
+    let out = of_group(gapped(out));
     let out = other_strip(out, talk);
     let out = instead(out, talk);
     let out = for_each(out, talk);
     let out = sent(out, talk);
     not_those(out, talk)
+}
+
+/// The same for what begins after "and" or a comma with one of these words.
+fn in_parts(tokens: Vec<Token>, begin: &[&str], recast: fn(Vec<Token>) -> Vec<Token>) -> Vec<Token> {
+    let mut out = recast(tokens);
+    for k in 1..out.len() {
+        let begins = is(out.get(k), begin)
+            && (out[k - 1].kind == TokenKind::Comma || is(out.get(k - 1), &["and", "then", "but"]));
+        if begins {
+            let tail = out.split_off(k);
+            out.extend(recast(tail));
+            return out;
+        }
+    }
+    out
 }
 
 /// "without touching the bus, add a taxi": what is not to change.
@@ -418,6 +433,30 @@ fn singular_of(noun: &[Token]) -> Vec<Token> {
     out
 }
 
+/// "of the parked cars keep only one, and ...": the group after the verb, if more follows.
+fn of_group(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["of the", "of these", "of those", "of my", "out of the", "from the", "among the"]) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let np = &tokens[n..n + b];
+    let k = n + b + usize::from(tokens.get(n + b).is_some_and(|t| t.kind == TokenKind::Comma));
+    let keeps = is(tokens.get(k), &["keep", "leave", "retain", "spare"]);
+    let takes = is(tokens.get(k), &["remove", "delete", "take", "erase", "drop", "scrap"]);
+    let m = k + 1 + usize::from(is(tokens.get(k + 1), &["only", "just"]));
+    let (Some(many), true) = (tokens.get(m).filter(|t| number(t).is_some()), keeps || takes) else {
+        return tokens;
+    };
+    let end = m + 1 + usize::from(is(tokens.get(m + 1), &["away", "out", "there"]));
+    if tokens.get(end).is_none() {
+        return tokens;
+    }
+    let verb = if keeps { "keep exactly" } else { "remove any" };
+    led(verb, &tokens[0], &[std::slice::from_ref(many), np, &tokens[end..]])
+}
+
 /// "turn one of the workers into a cyclist and the car into a motorcycle": the verb again.
 fn gapped(tokens: Vec<Token>) -> Vec<Token> {
     let (inner, _) = unwrapped(&tokens);
@@ -573,6 +612,14 @@ fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "1 worker to the ego lane": so many of those that are there go.
 fn sent(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    // "buses to the left lane"
+    if let Some((0, b)) = first_noun(&tokens)
+        && super::words::is_goal(&tokens[b..])
+        && !is_verb(&tokens[0])
+        && talk.fits(&tokens[..b]) > 0
+    {
+        return led("move the", &tokens[0], &[&tokens]);
+    }
     let counted = tokens.first().is_some_and(|t| number(t).is_some());
     let Some((a, b)) = first_noun(&tokens).filter(|n| counted && n.0 < 4) else {
         return tokens;
