@@ -192,8 +192,12 @@ impl Parser<'_> {
         while before > 0
             && matches!(
                 self.sense(before - 1),
-                Some(Sense::Article(_) | Sense::Pronoun | Sense::Attribute(_) | Sense::Color(_))
+                Some(Sense::Article(_) | Sense::Pronoun | Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_))
             )
+            || before > 0
+                && self
+                    .item(before - 1)
+                    .is_some_and(|i| matches!(i.words.as_str(), "his" | "their" | "her" | "its"))
         {
             before -= 1;
         }

@@ -7,7 +7,7 @@ use super::existence::{nobody, sent_off, there};
 use super::foremost::{POLITE, name_people, take_and_put, take_ordinals, topic};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wishes::{stated, wished};
+use super::wishes::{SPEAKER, stated, wished};
 use super::words::edits::VERBS;
 
 /// How a number changes.
@@ -30,21 +30,6 @@ pub struct Rephrased {
     pub ordinals: Vec<(usize, usize)>,
 }
 
-const WISH: &[&[&str]] = &[
-    &["i", "would", "like"],
-    &["id", "like"],
-    &["i", "want"],
-    &["i", "need"],
-    &["we", "need"],
-    &["we", "want"],
-    &["i", "wish", "for"],
-    &["let", "me", "have"],
-    &["can", "i", "have"],
-    &["could", "i", "have"],
-    &["id", "prefer"],
-    &["i", "prefer"],
-    &["id", "rather", "have"],
-];
 const UNWISH: &[&[&str]] = &[
     &["i", "dont", "want"],
     &["i", "do", "not", "want"],
@@ -327,7 +312,7 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (tokens, Some(change));
     }
     // "I want the bus gone", "I'd like two more people"
-    if let Some(list) = WISH.iter().find(|l| rest.len() > l.len() && starts_with(rest, l)) {
+    if let Some(list) = SPEAKER.iter().find(|l| rest.len() > l.len() && starts_with(rest, l)) {
         let wish = &rest[list.len()..];
         return (wished(wish, first), None);
     }

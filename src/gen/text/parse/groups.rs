@@ -107,8 +107,14 @@ impl Parser<'_> {
             let single = self.last.first().or(self.before.first()).copied();
             if self.pending.is_none()
                 && single.is_some_and(|i| !self.mentions[i].gone && !self.mentions[i].is_anchor)
-                && (span.of(self.prompt).to_lowercase().starts_with("another")
-                    || span.of(self.prompt).to_lowercase().starts_with("a "))
+                && (said.starts_with("another")
+                    || said.starts_with("a ")
+                    // "the nearest car is 10 m ahead, the next one 20 m ahead"
+                    || !self.edits
+                        && ["the next", "the last", "the second", "the third", "the fourth", "the other", "the farthest", "the furthest"]
+                            .iter()
+                            .any(|w| said.starts_with(w))
+                        && single.is_some_and(|i| !self.mentions[i].spec.relations.is_empty()))
             {
                 // "a car on the left and another on the right"
                 let mut twin = self.mentions[single.unwrap_or(0)].clone();

@@ -20,7 +20,8 @@ impl<'a> Parser<'a> {
                 if item.words == "away from"
                     && self.pending.is_none()
                     && self.distance.is_none()
-                    && !self.edits
+                    && (!self.edits
+                        || matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::State(ObjectState::Moving, _))))
                     && !matches!(
                         self.sense(self.at.wrapping_sub(1)),
                         Some(Sense::Unit(_) | Sense::EgoRel(_) | Sense::Rel(_))

@@ -69,6 +69,20 @@ impl Parser<'_> {
                 m.both = Some(true);
                 self.at += 1;
             }
+            // "on opposite pavements, two on each"
+            Some(Sense::In | Sense::At)
+                if !self.mentions[group].gone
+                    && self
+                        .item(self.at + 2)
+                        .is_some_and(|n| matches!(n.words.as_str(), "each" | "either" | "each one" | "each of them"))
+                    && self.ends(self.at + 3) =>
+            {
+                let m = &mut self.mentions[group];
+                m.spec.count = count;
+                m.uncounted = false;
+                m.both = Some(true);
+                self.at += 2;
+            }
             Some(Sense::EgoRel([R::LeftOf] | [R::RightOf])) => {
                 let mut part = self.mentions[group].clone();
                 part.both = None;

@@ -36,7 +36,114 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = instead(out, talk);
     let out = for_each(out, talk);
     let out = sent(out, talk);
-    not_those(out, talk)
+    let out = no_more_than(out, talk);
+    let out = off_with(out);
+    let out = cleared_of(out);
+    let out = own_side(out);
+    super::which::any_so_many(not_those(out, talk), talk)
+}
+
+/// "there shouldn't be more than one parked car": exactly one, if there are more.
+fn no_more_than(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["more than", "over", "at most", "no more than", "not more than", "a maximum of"]) else {
+        return tokens;
+    };
+    let denied = is(tokens.get(i), &["no", "not", "at"])
+        || tokens[..i].iter().any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "never" | "no"));
+    let be = tokens[..i].iter().any(|t| matches!(text(t), "be" | "want" | "have" | "need" | "like" | "are" | "is"))
+        || tokens[i + n..].iter().any(|t| matches!(text(t), "should" | "may" | "must" | "stay" | "remain"));
+    let Some(many) = tokens.get(i + n).and_then(number).filter(|_| denied && be) else {
+        return tokens;
+    };
+    let rest = &tokens[i + n + 1..];
+    let Some((_, b)) = first_noun(rest).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    if talk.fits(&rest[..b]) <= many.max(0) as usize {
+        return tokens;
+    }
+    let end = (b..rest.len())
+        .find(|k| rest[*k].kind != TokenKind::Word || is(rest.get(*k), &["and", "should", "may", "must", "here", "there", "any"]))
+        .unwrap_or(rest.len());
+    led("keep exactly", &tokens[0], &[&tokens[i + n..=i + n], &rest[..end]])
+}
+
+/// "everybody off the pavement", "all cars out of my lane": who is there goes.
+fn off_with(tokens: Vec<Token>) -> Vec<Token> {
+    let all = is(tokens.first(), &["everybody", "everyone", "all", "every"]);
+    let Some((i, n)) = find(&tokens, &["off", "out of", "away from"]).filter(|x| all && x.0 > 0 && x.0 < 6) else {
+        return tokens;
+    };
+    let place = super::words::longest(&tokens[(i + n + usize::from(is(tokens.get(i + n), &["the", "my", "our"]))).min(tokens.len())..]);
+    let own = super::words::longest(&tokens[(i + n).min(tokens.len())..]);
+    let named = [place, own].into_iter().flatten().any(|p| matches!(p.0, Sense::Place(..)));
+    let verb = tokens.iter().any(|t| matches!(text(t), "to" | "onto" | "into" | "is" | "are" | "should" | "must" | "goes" | "move"));
+    if !named || verb {
+        return tokens;
+    }
+    let who = if is(tokens.first(), &["everybody", "everyone"]) {
+        led("pedestrians", &tokens[0], &[&tokens[1..i]])
+    } else {
+        tokens[1..i].to_vec()
+    };
+    let lane = tokens[i + n..].iter().any(|t| text(t) == "lane");
+    let place = led(if lane { "in" } else { "on" }, &tokens[i], &[&tokens[i + n..]]);
+    led("remove all", &tokens[0], &[&who, &place])
+}
+
+/// "clear the junction of cars": the cars there go.
+fn cleared_of(tokens: Vec<Token>) -> Vec<Token> {
+    let verb = is(tokens.first(), &["clear", "empty", "free", "rid", "sweep", "strip", "relieve"]);
+    let Some(of) = tokens.iter().position(|t| text(t) == "of").filter(|k| verb && *k > 1) else {
+        return tokens;
+    };
+    let what = &tokens[of + 1..];
+    // "the left side of the road" has its own "of"
+    let last = (of..tokens.len()).rev().find(|k| text(&tokens[*k]) == "of").unwrap_or(of);
+    let (place, what) = if has_noun(what) && !is(what.first(), &["the", "my", "our"]) {
+        (&tokens[1..of], what)
+    } else {
+        (&tokens[1..last], &tokens[last + 1..])
+    };
+    if !first_noun(what).is_some_and(|n| n.0 < 4) || has_noun(place) || place.is_empty() {
+        return tokens;
+    }
+    let article = usize::from(is(place.first(), &["the", "my", "our"]));
+    let prep = match super::words::longest(&place[article..]).map(|p| p.0) {
+        Some(Sense::Place(super::super::description::Anchor::Junction, _)) => "at",
+        Some(Sense::Place(super::super::description::Anchor::Lane(role), _)) if !matches!(role, L::Sidewalk | L::LeftSidewalk | L::RightSidewalk | L::Road) => "in",
+        _ => "on",
+    };
+    let skip = usize::from(is(what.first(), &["all", "any"]));
+    led("remove all", &tokens[0], &[&what[skip..], &led(prep, &tokens[0], &[place])])
+}
+
+/// "into the lane on its right": one lane to the right.
+fn own_side(tokens: Vec<Token>) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = leads(
+            &tokens[i..],
+            &["into the lane", "to the lane", "onto the lane", "in the lane", "over to the lane", "over into the lane"],
+        );
+        let side = n.and_then(|n| {
+            let m = leads(&tokens[i + n..], &["on its", "to its", "on his", "to his", "on her", "to her", "on their", "to their"])?;
+            let side = tokens.get(i + n + m).filter(|t| matches!(text(t), "left" | "right"))?;
+            Some((n + m + 1, text(side).to_string()))
+        });
+        match side {
+            Some((n, side)) => {
+                out.extend(led(&format!("one lane to the {side}"), &tokens[i], &[]));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 /// The same for what begins after "and" or a comma with one of these words.

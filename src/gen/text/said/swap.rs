@@ -19,6 +19,9 @@ const PLACES: &[&str] = &[
     "sides",
     "order",
     "slots",
+    "lanes",
+    "lane",
+    "seats",
 ];
 
 /// Where each noun phrase is, with its article and what describes it.

@@ -34,7 +34,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = by_relative(out);
     let out = comparative(out, talk);
     let out = the_one(out, talk);
-    any_so_many(out, talk)
+    out
 }
 
 /// "whichever truck is farthest from us": the farthest truck.
@@ -189,7 +189,8 @@ pub fn spared(tokens: &[Token]) -> Vec<Token> {
         let the = usize::from(is(tokens.get(from), &["the"]));
         let (pick, n) = pick(tokens.get(from + the..)?)?;
         let end = from + the + n;
-        let closes = tokens.get(end).is_none_or(|t| t.kind != TokenKind::Word) || is(tokens.get(end), &["one", "and"]);
+        let closes = tokens.get(end).is_none_or(|t| t.kind != TokenKind::Word) || is(tokens.get(end), &["one", "and"])
+            || super::lists::HELPERS.contains(&text(&tokens[end]));
         let (a, b) = first_noun(&tokens[..i])?;
         closes.then(|| (from, end + usize::from(is(tokens.get(end), &["one"])), pick, tokens[a..b].to_vec()))
     });
@@ -205,7 +206,7 @@ pub fn spared(tokens: &[Token]) -> Vec<Token> {
 }
 
 /// "remove one of the two parked cars", "ditch three of the cars", "remove one cone": any so many of those.
-fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+pub fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -218,7 +219,9 @@ fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 .rev()
                 .take(3)
                 .any(|t| super::some_of::removes(Some(t)) || is(Some(t), &["rid", "ditch", "scrap", "kick", "throw", "chuck", "dump", "lose"]));
-        let many = tokens.get(i).and_then(number);
+        let many = tokens
+            .get(i)
+            .and_then(|t| number(t).or(matches!(text(t), "a" | "an").then_some(1)));
         let Some(many) = many.filter(|n| verb && (1..40).contains(n)) else {
             continue;
         };
@@ -236,7 +239,12 @@ fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         }
         let any = word("any", &tokens[i]);
         out.push(any);
-        out.push(tokens[i].clone());
+        // ("a car" is any one car)
+        if number(&tokens[i]).is_some() {
+            out.push(tokens[i].clone());
+        } else {
+            out.push(word("one", &tokens[i]));
+        }
         i = from;
     }
     out
