@@ -10,6 +10,7 @@ const REMINDERS: &str = "dont forget to|do not forget to|dont forget about|do no
 const EXACTLY: &str = "no more and no fewer than|no more and no less than|no fewer and no more than|no less and no more than|no more nor fewer than|neither more nor fewer than|neither more nor less than|neither fewer nor more than|neither less nor more than|not more and not less than|not more and not fewer than|no more no less than|precisely|exactly and only|a total of exactly";
 const PARTS: &str = "the back of|the rear of|the rear end of|the tail of|the tail end of|the back end of|the front of|the side of|the silhouette of|the outline of|the shape of|the figure of|the taillights of|the tail lights of|the rear lights of|the headlights of|the form of";
 const ANY_KIND: &str = "of any other kind|of any kind|of any other sort|of any sort|of any other type|of any type|whatsoever|of whatever kind";
+const FREE: &str = "my lane is free and|our lane is free and|my lane is free ,|our lane is free ,|my own lane is free ,|our own lane is free ,|the ego lane is free ,|my lane is clear ,|our lane is clear ,|my lane is empty ,|our lane is empty ,|my lane is free .|our lane is free .|my lane is empty .";
 const ORDINALS: [&str; 12] = [
     "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth", "eleventh",
     "twelfth",
@@ -28,6 +29,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, EXACTLY, "exactly");
     let out = replaced(&out, ANY_KIND, "");
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
+    let out = replaced(&out, FREE, "");
     let out = both_the(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
@@ -90,7 +92,7 @@ fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
-/// "on both the sides": on both sides; "both the bus and the car" stays.
+/// "on both the sides": on both sides; "both the bus and the car": the bus and the car.
 fn both_the(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     for (i, t) in tokens.iter().enumerate() {
@@ -104,6 +106,14 @@ fn both_the(tokens: &[Token]) -> Vec<Token> {
                     || matches!(look_up(&t.text), Some(Sense::Noun(_, true)))
                     || matches!(look_up(&t.text), Some(Sense::Place(..))) && t.text.ends_with('s')
             });
+        let two = tokens[i + 1..].iter().take(7).position(|t| t.text == "and").is_some_and(|k| {
+            tokens
+                .get(i + 2 + k)
+                .is_some_and(|t| matches!(t.text.as_str(), "the" | "that" | "those"))
+        });
+        if after && two && !many {
+            out.pop();
+        }
         if !(after && many) {
             out.push(t.clone());
         }
@@ -216,7 +226,7 @@ mod tests {
         );
         assert_eq!(said("no more and no fewer than two cars"), "exactly two cars");
         assert_eq!(said("on both the sides"), "on both sides");
-        assert_eq!(said("both the bus and the car"), "both the bus and the car");
+        assert_eq!(said("both the bus and the car"), "the bus and the car");
         assert_eq!(said("two vans lhs"), "two vans on the left side");
         assert_eq!(
             said("one more motorcycle, but this one is following us"),

@@ -39,6 +39,22 @@ impl Editor<'_> {
 
     /// "only two cars": removes the farthest or adds.
     pub(super) fn keep(&mut self, c: &Command) {
+        // "keep only the van and the woman"
+        let named = |m: &super::mention::Mention| m.definite && !m.plural;
+        if c.change.is_none() && c.targets.len() > 1 && c.targets.iter().any(named) {
+            let mut stay = Vec::new();
+            for m in &c.targets {
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => stay.extend(ids),
+                    _ => {
+                        self.note(format!("{:?}: which are to stay was not clear", c.text));
+                        return;
+                    }
+                }
+            }
+            self.keep_only(&stay);
+            return;
+        }
         for m in &c.targets {
             let fitting = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
             let wanted = match c.change {

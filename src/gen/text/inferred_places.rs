@@ -34,6 +34,7 @@ pub fn infer(mentions: &mut [Mention]) {
     for i in 0..mentions.len() {
         blocked_at(&mut mentions[i]);
         stranded(&mut mentions[i]);
+        comes_towards(&mut mentions[i]);
         waits_for_crossers(mentions, i);
         goes_with(mentions, i);
         let along: Vec<(Stated, usize)> = mentions[i]
@@ -79,7 +80,7 @@ fn blocked_at(m: &mut Mention) {
         .spec
         .relations
         .iter_mut()
-        .find(|r| r.relation == R::Blocking && is_lane(r.anchor) && r.distance_m.is_some());
+        .find(|r| matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some());
     if let Some(r) = far {
         let stated = Stated {
             relation: R::InFrontOf,
@@ -106,6 +107,28 @@ fn stranded(m: &mut Mention) {
     });
     if there && m.spec.state == Some(ObjectState::Parked) {
         m.spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// Who drives towards the ego vehicle comes from ahead, the other way, if nothing else was said.
+fn comes_towards(m: &mut Mention) {
+    let drives = m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let told = m.spec.relations.iter().any(|r| {
+        r.anchor == Anchor::Ego
+            && matches!(
+                r.relation,
+                R::Behind | R::LeftOf | R::RightOf | R::SameDirection | R::OppositeDirection
+            )
+            || matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Oncoming))
+            || r.relation == R::Crossing
+    });
+    if !drives || told || m.spec.state != Some(ObjectState::Moving) {
+        return;
+    }
+    for r in &mut m.spec.relations {
+        if r.relation == R::Facing && r.anchor == Anchor::Ego {
+            r.relation = R::OppositeDirection;
+        }
     }
 }
 
@@ -169,6 +192,24 @@ fn goes_with(mentions: &mut [Mention], i: usize) {
     let Some(host) = mentions[i].host.filter(|h| *h < mentions.len() && *h != i) else {
         return;
     };
+    // "a van with a trailer drives in front of us": the trailer hangs on the van
+    let hangs = mentions[i].spec.class == Class::Trailer
+        && mentions[host].spec.class.is_vehicle()
+        && !mentions[i].spec.relations.iter().any(|r| matches!(r.anchor, Anchor::Object(_)));
+    if hangs {
+        let span = mentions[i].spec.span;
+        let theirs = mentions[host].spec.relations.clone();
+        let m = &mut mentions[i].spec;
+        m.relations.retain(|r| !theirs.iter().any(|t| (t.relation, t.anchor) == (r.relation, r.anchor)));
+        m.relations.push(Stated {
+            relation: R::Following,
+            anchor: Anchor::Object(host),
+            and: None,
+            distance_m: None,
+            span,
+        });
+        return;
+    }
     let person = |m: &Mention| m.spec.class == Class::Pedestrian && !m.gone;
     if !person(&mentions[i]) || !person(&mentions[host]) {
         return;

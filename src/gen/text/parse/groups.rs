@@ -213,7 +213,11 @@ impl Parser<'_> {
         let m = &self.mentions[i];
         let host = m
             .host
-            .filter(|h| m.spec.count.n > 1 && self.mentions[*h].spec.count.n == 1);
+            .filter(|h| {
+                // ("a bus with a cyclist on its right is waiting": the bus is)
+                let beside = m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(*h));
+                (m.spec.count.n > 1 || beside) && self.mentions[*h].spec.count.n == 1
+            });
         if let Some(host) = host {
             self.flush();
             self.head = vec![host];

@@ -207,7 +207,13 @@ impl Parser<'_> {
             return;
         }
         // A new subject, or one more of a list.
-        let host = self.head.first().copied().filter(|_| self.with);
+        // "a mother holds her child's hand": the child is with her
+        let hers = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "his" | "her" | "their"))
+            && mention.spec.class == Class::Pedestrian
+            && matches!(self.head.as_slice(), [h] if self.mentions[*h].spec.class == Class::Pedestrian && *h != index);
+        let host = self.head.first().copied().filter(|_| self.with || hers && !self.edits);
         self.with = false;
         if !old {
             self.mentions[index].host = host;

@@ -241,8 +241,14 @@ impl<'a> Parser<'a> {
             // "deserted except for a bicycle"
             Sense::Not
                 if item.words.starts_with("except")
-                    && (self.d().density == Some(Density::Empty) || !self.d().absent.is_empty()) =>
+                    && (self.d().density == Some(Density::Empty)
+                        || !self.d().absent.is_empty()
+                        || self.mentions.is_empty() && !self.edits) =>
             {
+                // "everything is quiet except for one lorry": nothing else is there
+                if self.mentions.is_empty() && self.d().absent.is_empty() && !self.edits {
+                    self.d().density = Some(Density::Empty);
+                }
                 self.denied = false;
                 self.not_goes_on = false;
                 return true;

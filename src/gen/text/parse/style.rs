@@ -129,6 +129,12 @@ impl Parser<'_> {
                     self.phrase(span, Became::Road, &item.words);
                 }
                 self.anchor(anchor, span);
+                // "in my lane ahead"
+                let ahead = item.words.ends_with(" ahead") || item.words.ends_with(" in front of me");
+                if ahead && matches!(anchor, Anchor::Lane(LaneRole::Ego)) && !self.edits {
+                    self.begin(Prep::Rels(vec![RelationKind::InFrontOf]), span);
+                    self.anchor(Anchor::Ego, span);
+                }
             }
             return;
         }

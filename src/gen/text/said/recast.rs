@@ -21,7 +21,17 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "further along the road , away from us|further along the road , away from me|further along the road|further down the road|further up the road|farther along the road|farther down the road|further on down the road|further along the street|further down the street|further along|farther along",
         "further away",
     );
-    let out = left_over(without_care(out));
+    let out = replaced(&out, "drop all|ditch all", "remove all");
+    let out = replaced(&out, "drop both|ditch both", "remove both");
+    let out = replaced(&out, "drop every|ditch every", "remove every");
+    let out = replaced(
+        &out,
+        "everything stays except that|everything stays the same except that|everything stays as it is except that|everything remains except that|nothing changes except that|all stays as it is except that|all stays the same except that|the only change is that|the only difference is that|the one change is that|what changes is that",
+        "",
+    );
+    let out = gets(left_over(without_care(out)));
+    let out = now_there(out, talk);
+    let out = pushed_away(half_of(out));
     let out = another_so_far(out);
     let out = to_so_far(out);
     let out = caused(out);
@@ -180,6 +190,84 @@ fn without_care(tokens: Vec<Token>) -> Vec<Token> {
         .map_or(tokens.len(), |k| k + 1);
     let out = [&tokens[..i], &tokens[end..]].concat();
     if has_noun(&out) { trimmed(&out).to_vec() } else { tokens }
+}
+
+/// "the van gets a trailer": a trailer behind it.
+fn gets(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &["gets a", "receives a", "is given a", "should have a", "should get a", "tows a", "now tows a", "should tow a", "pulls a", "should pull a", "has a", "now has a"],
+    ) else {
+        return tokens;
+    };
+    let known = is(tokens.first(), &["the", "my", "that"]) && first_noun(&tokens[..i]).is_some_and(|x| x.0 < 5);
+    let trailer = super::words::longest(&tokens[i + n..]).is_some_and(
+        |l| matches!(l.0, Sense::Noun(k, _) if k.classes[0] == crate::scene::Class::Trailer),
+    );
+    if !(known && trailer) {
+        return tokens;
+    }
+    let end = (i + n..tokens.len())
+        .find(|k| tokens[*k].kind == TokenKind::Comma || text(&tokens[*k]) == "and")
+        .unwrap_or(tokens.len());
+    let behind = led("behind", &tokens[i], &[&tokens[..i]]);
+    led("add a", &tokens[0], &[&tokens[i + n..end], &behind, &tokens[end..]])
+}
+
+/// "there are two women now": two in all.
+fn now_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["there are", "there is", "now there are", "now there is", "there are now", "there is now", "we now have", "now we have"])
+    else {
+        return tokens;
+    };
+    let now = tokens.iter().any(|t| text(t) == "now");
+    let many = tokens.get(n).and_then(number);
+    let rest: Vec<Token> = tokens[n..].iter().filter(|t| text(t) != "now").cloned().collect();
+    let bare = first_noun(&rest).is_some_and(|x| x.0 < 4 && trimmed(&rest[x.1..]).is_empty() && talk.fits(&rest[x.0..x.1]) > 0);
+    match many.filter(|_| now && bare) {
+        Some(_) => led("keep exactly", &tokens[0], &[&rest]),
+        None => tokens,
+    }
+}
+
+/// "half the cones": half as many.
+fn half_of(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["half the", "half of the", "only half the", "just half the", "only half of the"]) else {
+        return tokens;
+    };
+    let bare = first_noun(&tokens[n..]).is_some_and(|x| x.0 < 3 && n + x.1 == tokens.len());
+    if bare {
+        led("half as many", &tokens[0], &[&tokens[n..]])
+    } else {
+        tokens
+    }
+}
+
+/// "push it 8 m away": by so much, not to there.
+fn pushed_away(tokens: Vec<Token>) -> Vec<Token> {
+    let verb = tokens
+        .iter()
+        .position(|t| matches!(text(t), "push" | "move" | "shift" | "shove" | "pull" | "drag" | "nudge" | "send" | "drive"));
+    let found = verb.and_then(|v| {
+        (v + 2..tokens.len()).find(|k| {
+            is(tokens.get(*k), &["away"])
+                && is_unit(tokens.get(k - 1))
+                && tokens.get(k - 2).is_some_and(|t| number(t).is_some())
+                && !is(tokens.get(k.wrapping_sub(3)), &["at", "to", "until", "is", "of"])
+                && (tokens.get(k + 1).is_none_or(|t| t.kind != TokenKind::Word)
+                    || is(tokens.get(k + 1), &["from", "and", "please"])
+                        && !is(tokens.get(k + 2), &["the", "a", "it", "him", "her", "them"]))
+        })
+    });
+    match found {
+        Some(k) => {
+            let mut out = tokens[..k].to_vec();
+            out.push(word("further", &tokens[k]));
+            out.extend_from_slice(&tokens[k..]);
+            out
+        }
+        None => tokens,
+    }
 }
 
 /// "only one pedestrian left on the crossing": left over, not on the left.

@@ -49,8 +49,18 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     if let Some((i, n)) = find(&out, ENDS) {
         let article = usize::from(is(out.get(i + n), &["the", "this", "that", "all"]));
         if is(out.get(i + n + article), SKIES) && (i == 0 || !is(out.get(i - 1), &["to", "not", "dont"])) {
-            let clear = led("clear weather", &out[i], &[]);
-            out.splice(i..=i + n + article, clear);
+            let mut clear = led("clear weather", &out[i], &[]);
+            // "get rid of the snow and of the cones"
+            let end = i + n + article + 1;
+            let and = is(out.get(end), &["and"]);
+            let of = usize::from(is(out.get(end + 1), &["of"]));
+            let more = and && is(out.get(end + 1 + of), &["the", "all", "those", "these", "every"]);
+            if more && super::words::has_noun(&out[end + 1..]) {
+                clear.extend(led("and remove", &out[end], &[]));
+                out.splice(i..end + 1 + of, clear);
+            } else {
+                out.splice(i..end, clear);
+            }
         }
     }
     // "instead of the fog let there be snow"
