@@ -140,7 +140,9 @@ impl Editor<'_> {
     pub(super) fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         let wanted = match &c.by {
-            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1) => by.spec.count.n as usize,
+            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1 || said_one(&c.text)) => {
+                by.spec.count.n as usize
+            }
             _ => ids.len(),
         };
         for id in ids.iter().skip(wanted.max(1)) {
@@ -196,6 +198,12 @@ impl Editor<'_> {
 }
 
 /// A box of another kind where one stands or stood.
+/// "by a single truck": one for all of them.
+fn said_one(words: &str) -> bool {
+    let words = words.to_lowercase();
+    ["single", "just one", "only one", " one "].iter().any(|w| words.contains(w))
+}
+
 pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Option<SceneBox> {
     let size_m = DVec3::from_array(spec.size_m.or(spec.class.typical_size_m())?);
     let center_m = old

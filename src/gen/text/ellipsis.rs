@@ -21,6 +21,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
             "every one of them|every single one of them|each and every one of them|each one of them|the lot of them",
             "all of them",
         );
+        s = same_number(&s);
         s = each_of_both(&s);
         s = more_groups(&s);
         s = our_way(&s);
@@ -272,6 +273,32 @@ fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
         match noun {
             Some(noun) => out.push(word(&noun, t)),
             None => out.push(t.clone()),
+        }
+    }
+    out
+}
+
+/// "three people on the left and just as many on the right": three.
+fn same_number(sentence: &[Token]) -> Vec<Token> {
+    const AS_MANY: &str = "just as many|equally many|the same number|as many again|exactly as many|as many";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let n = begins(&sentence[i..], AS_MANY)
+            .filter(|n| !sentence.get(i + n).is_some_and(|t| matches!(t.text.as_str(), "as" | "of")));
+        let many = (0..out.len())
+            .rev()
+            .find(|k| number(&out[*k]).is_some() && !out.get(k + 1).is_some_and(is_unit))
+            .and_then(|k| number(&out[k]));
+        match (n, many) {
+            (Some(n), Some(many)) => {
+                out.push(digits(many, &sentence[i]));
+                i += n;
+            }
+            _ => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
         }
     }
     out

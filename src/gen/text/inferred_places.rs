@@ -122,7 +122,8 @@ fn comes_towards(m: &mut Mention) {
             || matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Oncoming))
             || r.relation == R::Crossing
     });
-    if !drives || told || m.spec.state != Some(ObjectState::Moving) {
+    let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
+    if !drives || told || still {
         return;
     }
     for r in &mut m.spec.relations {

@@ -20,6 +20,11 @@ impl Parser<'_> {
         if self.denied && nobody && !self.edits {
             return;
         }
+        // "a bus with a cyclist beside it is waiting": the bus
+        let singular = ["is ", "was ", "has "].iter().any(|w| item.words.starts_with(w));
+        if finite && singular && !self.relative && self.pending.is_none() && !self.edits {
+            self.back_to_host();
+        }
         self.denied &= !(finite || self.after_is());
         let meant = self
             .item(self.at.wrapping_sub(1))

@@ -21,6 +21,19 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "further along the road , away from us|further along the road , away from me|further along the road|further down the road|further up the road|farther along the road|farther down the road|further on down the road|further along the street|further down the street|further along|farther along",
         "further away",
     );
+    let out = replaced(
+        &out,
+        "have now reached|has now reached|has reached|have reached|has arrived on|have arrived on|has made it to|have made it to|has got to|have got to|has arrived at|have arrived at|have arrived in|has arrived in",
+        "should go to",
+    );
+    let out = replaced(
+        &out,
+        "all that is parked|everything that is parked|everything parked|all that are parked|whatever is parked|anything parked|all things parked|everything which is parked",
+        "all parked vehicles",
+    );
+    let out = replaced(&out, "a single|just a single|only a single", "one");
+    let out = far_times(out);
+    let out = wished_beside(out);
     let out = replaced(&out, "drop all|ditch all", "remove all");
     let out = replaced(&out, "drop both|ditch both", "remove both");
     let out = replaced(&out, "drop every|ditch every", "remove every");
@@ -190,6 +203,47 @@ fn without_care(tokens: Vec<Token>) -> Vec<Token> {
         .map_or(tokens.len(), |k| k + 1);
     let out = [&tokens[..i], &tokens[end..]].concat();
     if has_noun(&out) { trimmed(&out).to_vec() } else { tokens }
+}
+
+/// "make the cyclist twice as far away": it should be so.
+fn far_times(tokens: Vec<Token>) -> Vec<Token> {
+    let made = is(tokens.first(), &["make", "put", "set", "place", "move"]);
+    let times = find(&tokens, &["twice as far", "half as far", "three times as far", "double as far", "twice as close", "half as close"]);
+    match times.filter(|(i, _)| made && first_noun(&tokens[1..*i]).is_some_and(|n| 1 + n.1 == *i)) {
+        Some((i, _)) => {
+            let be = led("should be", &tokens[i], &[&tokens[i..]]);
+            [&tokens[1..i], &be[..]].concat()
+        }
+        None => tokens,
+    }
+}
+
+/// "I want the cyclist on the pavement and another person beside him": the person is new.
+fn wished_beside(tokens: Vec<Token>) -> Vec<Token> {
+    let (inner, mood) = unwrapped(&tokens);
+    let known = is(inner.first(), &["the", "my", "that", "both", "all"]);
+    if !(mood.caused && known) {
+        return tokens;
+    }
+    let lead = tokens.len() - inner.len();
+    let found = (2..inner.len()).find(|k| {
+        let fresh = is(inner.get(k + 1), &["a", "an", "another"])
+            || inner.get(k + 1).is_some_and(|t| number(t).is_some());
+        is(inner.get(*k), &["and"])
+            && fresh
+            && first_noun(&inner[k + 1..]).is_some_and(|n| n.0 < 4 && is_place(&inner[k + 1 + n.1..]))
+            && first_noun(&inner[..*k]).is_some_and(|n| n.0 < 4 && is_place(&inner[n.1..*k]))
+            && !inner[..*k].iter().any(|t| text(t) == "between")
+    });
+    match found {
+        Some(k) => {
+            let mut out = tokens[..=lead + k].to_vec();
+            out.push(word("add", &tokens[lead + k]));
+            out.extend_from_slice(&tokens[lead + k + 1..]);
+            out
+        }
+        None => tokens,
+    }
 }
 
 /// "the van gets a trailer": a trailer behind it.
@@ -473,6 +527,14 @@ fn let_be(tokens: Vec<Token>) -> Vec<Token> {
         let rest = &body[k + 1 + usize::from(with)..];
         let near = if with { led("next to", &body[0], &[rest]) } else { rest.to_vec() };
         return led("add", &body[0], &[&body[..k], &near]);
+    }
+    // "let two taxis come instead"
+    let comes = find(body, &["come instead", "appear instead", "be there instead", "come in instead", "stand there instead"]);
+    if let (1, true, Some((k, n))) = (from, fresh, comes)
+        && first_noun(&body[..k]).is_some_and(|x| x.1 == k)
+    {
+        let place = led("in its place", &body[k], &[&body[k + n..]]);
+        return led("put", &body[0], &[&body[..k], &place]);
     }
     let Some((i, n)) = find(body, &["be added", "be put in", "be inserted", "to be added", "be placed", "be put"]) else {
         return tokens;

@@ -63,6 +63,26 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
             }
         }
     }
+    // "let the rain stop", "the fog should clear"
+    let ended = (0..out.len()).find_map(|i| {
+        is(out.get(i), SKIES).then_some(())?;
+        let helpers = out[i + 1..]
+            .iter()
+            .take_while(|t| is(Some(t), &["should", "must", "has", "to", "will", "can", "may", "is", "finally", "now"]))
+            .count();
+        let verb = is(
+            out.get(i + 1 + helpers),
+            &["stop", "stops", "end", "ends", "ended", "cease", "ceases", "lift", "lifts", "pass", "passes", "vanish", "vanishes", "disappear", "disappears", "disperse", "disperses", "go", "goes", "stopped", "lifted", "over", "gone"],
+        );
+        let from = i - usize::from(i > 0 && is(out.get(i - 1), &["the", "this", "that"]));
+        let lead = is(out.get(from.wrapping_sub(1)), &["let", "make", "have"]);
+        verb.then_some((from - usize::from(lead && from > 0), i + 2 + helpers))
+    });
+    if let Some((from, end)) = ended {
+        let away = usize::from(is(out.get(end), &["away"]));
+        let clear = led("clear weather", &out[from], &[]);
+        out.splice(from..end + away, clear);
+    }
     // "instead of the fog let there be snow"
     if let Some(n) = leads(&out, &["instead of", "rather than", "in place of"]) {
         let article = usize::from(is(out.get(n), &["the", "this", "that"]));

@@ -245,7 +245,10 @@ pub const REVERSED: &[(R, &str)] = &[
     (R::NextTo, "flanked by|accompanied by"),
     (R::Near, "surrounded by"),
     (R::Crossing, "crossed by|is crossed by"),
-    (R::On, "occupied with"),
+    (
+        R::On,
+        "occupied with|lined with|lined by|is lined with|is lined by|are lined with|are lined by|packed with|filled with|crowded with|is full of|are full of",
+    ),
 ];
 
 /// Places said in a whole phrase, without a noun of their own: relation and anchor.
