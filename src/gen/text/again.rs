@@ -192,7 +192,13 @@ impl Parser<'_> {
         while before > 0
             && matches!(
                 self.sense(before - 1),
-                Some(Sense::Article(_) | Sense::Pronoun | Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_))
+                Some(
+                    Sense::Article(_)
+                        | Sense::Pronoun
+                        | Sense::Attribute(_)
+                        | Sense::Color(_)
+                        | Sense::Size(_)
+                )
             )
             || before > 0
                 && self
@@ -552,7 +558,14 @@ impl Parser<'_> {
             before.is_some_and(|b| {
                 matches!(
                     b.words.as_str(),
-                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are" | "is not" | "are not"
+                    "is" | "are"
+                        | "were"
+                        | "was"
+                        | "is there"
+                        | "are there"
+                        | "there are"
+                        | "is not"
+                        | "are not"
                 )
             })
         });
@@ -585,11 +598,34 @@ impl Parser<'_> {
             .collect();
         let said = words.join(" ");
         let there = [
-            "allowed", "permitted", "present", "wanted", "needed", "visible", "here", "there", "around", "in sight",
-            "to be seen", "admitted", "to be found", "included", "in the scene", "in view", "seen", "shown", "desired",
-            "required", "welcome", "part of the scene", "part of this", "about",
+            "allowed",
+            "permitted",
+            "present",
+            "wanted",
+            "needed",
+            "visible",
+            "here",
+            "there",
+            "around",
+            "in sight",
+            "to be seen",
+            "admitted",
+            "to be found",
+            "included",
+            "in the scene",
+            "in view",
+            "seen",
+            "shown",
+            "desired",
+            "required",
+            "welcome",
+            "part of the scene",
+            "part of this",
+            "about",
         ];
-        there.iter().any(|w| said == *w || said == format!("{w} here") || said == format!("{w} there"))
+        there
+            .iter()
+            .any(|w| said == *w || said == format!("{w} here") || said == format!("{w} there"))
     }
 
     /// "there" at the end of a clause: at the place that was named last.

@@ -12,8 +12,8 @@ const PARTS: &str = "the back of|the rear of|the rear end of|the tail of|the tai
 const ANY_KIND: &str = "of any other kind|of any kind|of any other sort|of any sort|of any other type|of any type|whatsoever|of whatever kind";
 const FREE: &str = "my lane is free and|our lane is free and|my lane is free ,|our lane is free ,|my own lane is free ,|our own lane is free ,|the ego lane is free ,|my lane is clear ,|our lane is clear ,|my lane is empty ,|our lane is empty ,|my lane is free .|our lane is free .|my lane is empty .";
 const ORDINALS: [&str; 12] = [
-    "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth", "eleventh",
-    "twelfth",
+    "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
+    "eleventh", "twelfth",
 ];
 
 fn is_number(t: &Token) -> bool {
@@ -50,7 +50,10 @@ fn ordinals(tokens: &[Token]) -> Vec<Token> {
         };
         match nth {
             Some(nth) => {
-                if !out.last().is_some_and(|t| matches!(t.text.as_str(), "the" | "a" | "its" | "my")) {
+                if !out
+                    .last()
+                    .is_some_and(|t| matches!(t.text.as_str(), "the" | "a" | "its" | "my"))
+                {
                     out.push(word("the", &tokens[i]));
                 }
                 out.push(word(nth, &tokens[i]));
@@ -96,21 +99,28 @@ fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
 fn both_the(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     for (i, t) in tokens.iter().enumerate() {
-        let after = i > 0 && tokens[i - 1].text == "both" && matches!(t.text.as_str(), "the" | "these" | "those");
+        let after =
+            i > 0 && tokens[i - 1].text == "both" && matches!(t.text.as_str(), "the" | "these" | "those");
         let many = tokens[i + 1..]
             .iter()
             .take(3)
-            .find(|t| t.text == "sides" || matches!(look_up(&t.text), Some(Sense::Noun(..) | Sense::Place(..))))
+            .find(|t| {
+                t.text == "sides" || matches!(look_up(&t.text), Some(Sense::Noun(..) | Sense::Place(..)))
+            })
             .is_some_and(|t| {
                 t.text == "sides"
                     || matches!(look_up(&t.text), Some(Sense::Noun(_, true)))
                     || matches!(look_up(&t.text), Some(Sense::Place(..))) && t.text.ends_with('s')
             });
-        let two = tokens[i + 1..].iter().take(7).position(|t| t.text == "and").is_some_and(|k| {
-            tokens
-                .get(i + 2 + k)
-                .is_some_and(|t| matches!(t.text.as_str(), "the" | "that" | "those"))
-        });
+        let two = tokens[i + 1..]
+            .iter()
+            .take(7)
+            .position(|t| t.text == "and")
+            .is_some_and(|k| {
+                tokens
+                    .get(i + 2 + k)
+                    .is_some_and(|t| matches!(t.text.as_str(), "the" | "that" | "those"))
+            });
         if after && two && !many {
             out.pop();
         }
@@ -133,8 +143,15 @@ fn sides_in_short(tokens: &[Token]) -> Vec<Token> {
                 continue;
             }
         };
-        let led = i > 0 && matches!(tokens[i - 1].text.as_str(), "the" | "my" | "our" | "on" | "at" | "to");
-        let lead: &[&str] = match (led, i > 0 && tokens[i - 1].text.len() == 2 && tokens[i - 1].text != "my") {
+        let led = i > 0
+            && matches!(
+                tokens[i - 1].text.as_str(),
+                "the" | "my" | "our" | "on" | "at" | "to"
+            );
+        let lead: &[&str] = match (
+            led,
+            i > 0 && tokens[i - 1].text.len() == 2 && tokens[i - 1].text != "my",
+        ) {
             (true, true) => &["the"],
             (true, false) => &[],
             (false, _) => &["on", "the"],
@@ -151,7 +168,9 @@ fn this_one(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        match begins(&tokens[i..], LEAD).filter(|n| begins(&tokens[i + n..], VERB).is_some() && !out.is_empty()) {
+        match begins(&tokens[i..], LEAD)
+            .filter(|n| begins(&tokens[i + n..], VERB).is_some() && !out.is_empty())
+        {
             Some(n) => {
                 out.push(word("which", &tokens[i]));
                 i += n;
@@ -185,7 +204,15 @@ fn part_for_whole(tokens: &[Token]) -> Vec<Token> {
                         Some(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_) | Sense::Across)
                     ) || matches!(
                         t.text.as_str(),
-                        "to" | "from" | "of" | "against" | "for" | "with" | "into" | "turn" | "left" | "right"
+                        "to" | "from"
+                            | "of"
+                            | "against"
+                            | "for"
+                            | "with"
+                            | "into"
+                            | "turn"
+                            | "left"
+                            | "right"
                     )
                 })
         });
@@ -219,7 +246,10 @@ mod tests {
             let list: Vec<String> = plain(&tokens(t)).into_iter().map(|t| t.text).collect();
             list.join(" ")
         };
-        assert_eq!(said("the 1st 15 m, the 2nd 30 m"), "the first 15 m , the second 30 m");
+        assert_eq!(
+            said("the 1st 15 m, the 2nd 30 m"),
+            "the first 15 m , the second 30 m"
+        );
         assert_eq!(
             said("a bus and, if it's not too much trouble, a lorry"),
             "a bus and a lorry"

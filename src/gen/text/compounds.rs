@@ -32,13 +32,17 @@ fn own_vehicle(items: Vec<Item>) -> Vec<Item> {
         let mut k = i + 1;
         while k < items.len()
             && k < i + 4
-            && (matches!(items[k].tag, Tag::Unknown | Tag::Is(Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_)))
-                || is_motor(&items[k]) && items.get(k + 1).is_some_and(is_motor))
+            && (matches!(
+                items[k].tag,
+                Tag::Unknown | Tag::Is(Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_))
+            ) || is_motor(&items[k]) && items.get(k + 1).is_some_and(is_motor))
         {
             k += 1;
         }
         let vehicle = items.get(k).is_some_and(is_motor)
-            && !items.get(k + 1).is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Noun(..))));
+            && !items
+                .get(k + 1)
+                .is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Noun(..))));
         if whose && led && vehicle {
             out.push(Item {
                 tag: look_up("my car").map_or(Tag::Unknown, Tag::Is),
@@ -60,26 +64,42 @@ fn agents(items: Vec<Item>) -> Vec<Item> {
     let person = look_up("pedestrian").map_or(Tag::Unknown, Tag::Is);
     let mut out = items;
     for i in 1..out.len() {
-        let ending = AGENT.iter().any(|e| out[i].words.len() > e.len() + 2 && out[i].words.ends_with(e));
+        let ending = AGENT
+            .iter()
+            .any(|e| out[i].words.len() > e.len() + 2 && out[i].words.ends_with(e));
         if out[i].tag != Tag::Unknown || !ending || THINGS.split('|').any(|w| w == out[i].words) {
             continue;
         }
         let before = (0..i).rev().find(|k| {
-            !matches!(out[*k].tag, Tag::Unknown | Tag::Is(Sense::Noun(_, false) | Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_)))
+            !matches!(
+                out[*k].tag,
+                Tag::Unknown
+                    | Tag::Is(Sense::Noun(_, false) | Sense::Attribute(_) | Sense::Color(_) | Sense::Size(_))
+            )
         });
         let counted = before.is_some_and(|k| {
-            matches!(out[k].tag, Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_))) && i - k < 4
+            matches!(
+                out[k].tag,
+                Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_))
+            ) && i - k < 4
         });
         let mut next = i + 1;
         while out.get(next).is_some_and(|n| {
-            matches!(n.words.as_str(), "is" | "was" | "who" | "that" | "has" | "with" | "just" | "in" | "his" | "her")
+            matches!(
+                n.words.as_str(),
+                "is" | "was" | "who" | "that" | "has" | "with" | "just" | "in" | "his" | "her"
+            )
         }) {
             next += 1;
         }
-        let acts = out
-            .get(next)
-            .is_some_and(|n| matches!(n.tag, Tag::Is(Sense::State(..) | Sense::Rel(_) | Sense::EgoRel(_) | Sense::Fixed(..))))
-            || out.get(i + 1).is_some_and(|n| matches!(n.tag, Tag::Is(Sense::In | Sense::At)));
+        let acts = out.get(next).is_some_and(|n| {
+            matches!(
+                n.tag,
+                Tag::Is(Sense::State(..) | Sense::Rel(_) | Sense::EgoRel(_) | Sense::Fixed(..))
+            )
+        }) || out
+            .get(i + 1)
+            .is_some_and(|n| matches!(n.tag, Tag::Is(Sense::In | Sense::At)));
         if counted && acts {
             out[i].tag = person;
             out[i].read_as = Some("person");

@@ -105,9 +105,15 @@ impl Editor<'_> {
             .map(|id| role_of(&self.map, &self.boxes[id]))
             .collect();
         use crate::scene::graph::LaneRole;
-        let all_alike = roles.first().copied().flatten().filter(|r| roles.iter().all(|x| *x == Some(*r)));
+        let all_alike = roles
+            .first()
+            .copied()
+            .flatten()
+            .filter(|r| roles.iter().all(|x| *x == Some(*r)));
         // where some are parked in a car park, more are
-        let lot = roles.contains(&Some(LaneRole::Carpark)).then_some(LaneRole::Carpark);
+        let lot = roles
+            .contains(&Some(LaneRole::Carpark))
+            .then_some(LaneRole::Carpark);
         let parked = spec.state == Some(crate::scene::graph::ObjectState::Parked);
         let Some(role) = all_alike.or(lot.filter(|_| parked)) else {
             return;
@@ -201,7 +207,9 @@ impl Editor<'_> {
 /// "by a single truck": one for all of them.
 fn said_one(words: &str) -> bool {
     let words = words.to_lowercase();
-    ["single", "just one", "only one", " one "].iter().any(|w| words.contains(w))
+    ["single", "just one", "only one", " one "]
+        .iter()
+        .any(|w| words.contains(w))
 }
 
 pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Option<SceneBox> {

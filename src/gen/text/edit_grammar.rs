@@ -171,11 +171,22 @@ fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
             });
         // "van to the right lane, buses to the left lane"
         let sends = |part: &[Token]| {
-            let to = part.iter().take(4).position(|t| matches!(t.text.as_str(), "to" | "onto" | "into"));
-            to.is_some_and(|k| k > 0 && super::rephrase::is_noun(&part[k - 1]) && part[..k].iter().all(|t| t.kind == TokenKind::Word))
+            let to = part
+                .iter()
+                .take(4)
+                .position(|t| matches!(t.text.as_str(), "to" | "onto" | "into"));
+            to.is_some_and(|k| {
+                k > 0
+                    && super::rephrase::is_noun(&part[k - 1])
+                    && part[..k].iter().all(|t| t.kind == TokenKind::Word)
+            })
         };
-        let start = (0..i).rev().find(|k| tokens[*k].kind == TokenKind::Stop).map_or(0, |k| k + 1);
-        let label = label || tokens[i].kind == TokenKind::Comma && sends(&tokens[start..i]) && sends(&tokens[i + 1..]);
+        let start = (0..i)
+            .rev()
+            .find(|k| tokens[*k].kind == TokenKind::Stop)
+            .map_or(0, |k| k + 1);
+        let label = label
+            || tokens[i].kind == TokenKind::Comma && sends(&tokens[start..i]) && sends(&tokens[i + 1..]);
         if label {
             tokens[i].kind = TokenKind::Stop;
         }

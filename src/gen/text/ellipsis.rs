@@ -92,7 +92,10 @@ const MULTIPLES: [(f64, &str); 4] = [
         3.0,
         "three times that distance|at three times that distance|three times the distance|three times as far|thrice that distance|triple that distance|three times as far away",
     ),
-    (1.5, "one and a half times that distance|one and a half times as far"),
+    (
+        1.5,
+        "one and a half times that distance|one and a half times as far",
+    ),
 ];
 
 /// "the same distance behind me": as many metres as were named last.
@@ -262,7 +265,10 @@ fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
                 sentence[i - 1].text.as_str(),
                 "left" | "right" | "hand" | "far" | "near" | "opposite" | "oncoming"
             )
-            && matches!(sentence[i - 2].text.as_str(), "the" | "my" | "our" | "left" | "right");
+            && matches!(
+                sentence[i - 2].text.as_str(),
+                "the" | "my" | "our" | "left" | "right"
+            );
         // (things on the left and on the right are no places)
         let noun = sided
             .then(|| out.iter().chain(before).rev().find(|t| place(t) || is_noun(t)))
@@ -284,8 +290,11 @@ fn same_number(sentence: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < sentence.len() {
-        let n = begins(&sentence[i..], AS_MANY)
-            .filter(|n| !sentence.get(i + n).is_some_and(|t| matches!(t.text.as_str(), "as" | "of")));
+        let n = begins(&sentence[i..], AS_MANY).filter(|n| {
+            !sentence
+                .get(i + n)
+                .is_some_and(|t| matches!(t.text.as_str(), "as" | "of"))
+        });
         let many = (0..out.len())
             .rev()
             .find(|k| number(&out[*k]).is_some() && !out.get(k + 1).is_some_and(is_unit))

@@ -187,7 +187,8 @@ pub fn holds(
             let held = match relation {
                 // (roads bend: what is far down the road is ahead of the ego vehicle)
                 R::InFrontOf => {
-                    fwd > half.x && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
+                    fwd > half.x
+                        && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
                 }
                 R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
                 // Of the ego vehicle it means the whole side of the street.

@@ -76,11 +76,9 @@ fn blocked_at(m: &mut Mention) {
         .relations
         .iter()
         .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
-    let far = m
-        .spec
-        .relations
-        .iter_mut()
-        .find(|r| matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some());
+    let far = m.spec.relations.iter_mut().find(|r| {
+        matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some()
+    });
     if let Some(r) = far {
         let stated = Stated {
             relation: R::InFrontOf,
@@ -139,7 +137,8 @@ fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
         m.spec.class == Class::Pedestrian
             && !m.gone
             && m.spec.relations.iter().any(|r| {
-                r.relation == R::On && r.anchor == Anchor::Crossing || r.relation == R::WaitingAt && r.anchor == Anchor::Crossing
+                r.relation == R::On && r.anchor == Anchor::Crossing
+                    || r.relation == R::WaitingAt && r.anchor == Anchor::Crossing
             })
     };
     let m = &mentions[i];
@@ -150,11 +149,10 @@ fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
         .relations
         .iter()
         .any(|r| r.anchor == Anchor::Crossing && matches!(r.relation, R::Near | R::NextTo));
-    let on_it = m
-        .spec
-        .relations
-        .iter()
-        .any(|r| r.anchor == Anchor::Crossing && matches!(r.relation, R::On | R::WaitingAt | R::Blocking));
+    let on_it =
+        m.spec.relations.iter().any(|r| {
+            r.anchor == Anchor::Crossing && matches!(r.relation, R::On | R::WaitingAt | R::Blocking)
+        });
     let placed = m.spec.relations.iter().any(|r| {
         matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Ego | LaneRole::Oncoming | LaneRole::Left | LaneRole::Right))
             || r.distance_m.is_some()
@@ -162,7 +160,8 @@ fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
             || matches!(r.anchor, Anchor::Object(k) if !mentions.get(k).is_some_and(crossing))
     });
     let for_them = m.spec.relations.iter().any(|r| {
-        r.relation == R::NextTo && matches!(r.anchor, Anchor::Object(k) if mentions.get(k).is_some_and(crossing))
+        r.relation == R::NextTo
+            && matches!(r.anchor, Anchor::Object(k) if mentions.get(k).is_some_and(crossing))
     });
     let someone = mentions.iter().any(crossing);
     // told no more than where it comes from
@@ -176,7 +175,8 @@ fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
     let span = m.spec.span;
     let m = &mut mentions[i];
     m.spec.relations.retain(|r| {
-        !(matches!(r.relation, R::NextTo | R::Near) && matches!(r.anchor, Anchor::Object(_) | Anchor::Crossing))
+        !(matches!(r.relation, R::NextTo | R::Near)
+            && matches!(r.anchor, Anchor::Object(_) | Anchor::Crossing))
     });
     m.spec.state = Some(ObjectState::Waiting);
     m.spec.relations.push(Stated {
@@ -196,12 +196,20 @@ fn goes_with(mentions: &mut [Mention], i: usize) {
     // "a van with a trailer drives in front of us": the trailer hangs on the van
     let hangs = mentions[i].spec.class == Class::Trailer
         && mentions[host].spec.class.is_vehicle()
-        && !mentions[i].spec.relations.iter().any(|r| matches!(r.anchor, Anchor::Object(_)));
+        && !mentions[i]
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Object(_)));
     if hangs {
         let span = mentions[i].spec.span;
         let theirs = mentions[host].spec.relations.clone();
         let m = &mut mentions[i].spec;
-        m.relations.retain(|r| !theirs.iter().any(|t| (t.relation, t.anchor) == (r.relation, r.anchor)));
+        m.relations.retain(|r| {
+            !theirs
+                .iter()
+                .any(|t| (t.relation, t.anchor) == (r.relation, r.anchor))
+        });
         m.relations.push(Stated {
             relation: R::Following,
             anchor: Anchor::Object(host),
@@ -216,7 +224,12 @@ fn goes_with(mentions: &mut [Mention], i: usize) {
         return;
     }
     let span = mentions[i].spec.span;
-    let placed = |m: &Mention| m.spec.relations.iter().any(|r| !matches!(r.anchor, Anchor::Object(_)));
+    let placed = |m: &Mention| {
+        m.spec
+            .relations
+            .iter()
+            .any(|r| !matches!(r.anchor, Anchor::Object(_)))
+    };
     if placed(&mentions[i]) && !placed(&mentions[host]) {
         let theirs: Vec<Stated> = mentions[i].spec.relations.clone();
         mentions[host].spec.relations.extend(
@@ -224,7 +237,13 @@ fn goes_with(mentions: &mut [Mention], i: usize) {
                 .into_iter()
                 .filter(|r| !matches!(r.anchor, Anchor::Object(k) if k == host)),
         );
-    } else if !mentions[i].spec.relations.iter().any(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing | Anchor::Junction)) && placed(&mentions[host]) {
+    } else if !mentions[i]
+        .spec
+        .relations
+        .iter()
+        .any(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing | Anchor::Junction))
+        && placed(&mentions[host])
+    {
         // (a strip is where all of them are; the rest holds for who was named)
         let strips: Vec<Stated> = mentions[host]
             .spec

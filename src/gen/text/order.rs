@@ -25,7 +25,8 @@ impl Parser<'_> {
         let Some(before) = before.filter(|b| *b != index) else {
             // what is told by distance is seen ahead, if nothing else was said
             let told = m.spec.relations.iter().any(|r| {
-                r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind | R::OppositeDirection)
+                r.anchor == Anchor::Ego
+                    && matches!(r.relation, R::InFrontOf | R::Behind | R::OppositeDirection)
             });
             if !told {
                 m.spec.relations.push(Stated {
@@ -40,7 +41,8 @@ impl Parser<'_> {
         };
         // seen from something that faces us, what is farther on is behind it
         let faces_us = m.spec.relations.iter().any(|r| {
-            matches!(r.anchor, Anchor::Lane(L::LeftRoadside | L::Oncoming)) || r.relation == R::OppositeDirection
+            matches!(r.anchor, Anchor::Lane(L::LeftRoadside | L::Oncoming))
+                || r.relation == R::OppositeDirection
         });
         let behind_us = m
             .spec

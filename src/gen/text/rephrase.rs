@@ -312,7 +312,10 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (tokens, Some(change));
     }
     // "I want the bus gone", "I'd like two more people"
-    if let Some(list) = SPEAKER.iter().find(|l| rest.len() > l.len() && starts_with(rest, l)) {
+    if let Some(list) = SPEAKER
+        .iter()
+        .find(|l| rest.len() > l.len() && starts_with(rest, l))
+    {
         let wish = &rest[list.len()..];
         return (wished(wish, first), None);
     }

@@ -37,9 +37,9 @@ pub(super) struct Gather<'a, 'b> {
     pub(super) draw: &'b mut Draw,
     pub(super) out: Vec<Spot>,
     pub(super) base: Spot,
-    against: bool, // it comes towards the ego
-    with: bool,    // it goes the ego's way
-    own_way: bool, // traffic of the ego's direction is meant
+    against: bool,               // it comes towards the ego
+    with: bool,                  // it goes the ego's way
+    own_way: bool,               // traffic of the ego's direction is meant
     pub(super) either_way: bool, // how it faces was said: what is parked may face against the traffic
 }
 

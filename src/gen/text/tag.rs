@@ -353,12 +353,15 @@ fn at_place(before: &[Item]) -> bool {
 
 /// True after "another", where somebody crosses already: no second zebra is meant.
 fn one_more(before: &[Item]) -> bool {
-    let more = before
-        .last()
-        .is_some_and(|b| matches!(b.words.as_str(), "another" | "a second" | "a third" | "one more" | "a further"));
-    more && before
-        .iter()
-        .any(|b| matches!(b.tag, Tag::Is(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian))
+    let more = before.last().is_some_and(|b| {
+        matches!(
+            b.words.as_str(),
+            "another" | "a second" | "a third" | "one more" | "a further"
+        )
+    });
+    more && before.iter().any(
+        |b| matches!(b.tag, Tag::Is(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian),
+    )
 }
 
 fn leads_to_road(item: &Item) -> bool {

@@ -31,11 +31,31 @@ pub fn without(sentence: &[Token]) -> Vec<Token> {
     let tells = title.iter().any(|t| {
         matches!(
             look_up(&t.text),
-            Some(Sense::Count(_) | Sense::Rel(_) | Sense::EgoRel(_) | Sense::State(_, true) | Sense::Verb(_) | Sense::Nobody | Sense::Not)
+            Some(
+                Sense::Count(_)
+                    | Sense::Rel(_)
+                    | Sense::EgoRel(_)
+                    | Sense::State(_, true)
+                    | Sense::Verb(_)
+                    | Sense::Nobody
+                    | Sense::Not
+            )
         ) || matches!(t.kind, TokenKind::Comma)
             || matches!(
                 t.text.as_str(),
-                "is" | "are" | "there" | "with" | "where" | "has" | "have" | "i" | "we" | "no" | "in" | "on" | "at" | "ahead"
+                "is" | "are"
+                    | "there"
+                    | "with"
+                    | "where"
+                    | "has"
+                    | "have"
+                    | "i"
+                    | "we"
+                    | "no"
+                    | "in"
+                    | "on"
+                    | "at"
+                    | "ahead"
             )
     });
     let article = title.iter().any(|t| matches!(t.text.as_str(), "a" | "an")) && !colon;
@@ -45,7 +65,13 @@ pub fn without(sentence: &[Token]) -> Vec<Token> {
     let said = title.iter().filter(|t| {
         matches!(
             look_up(&t.text),
-            Some(Sense::Weather(_) | Sense::Time(_) | Sense::RoadKind(..) | Sense::Place(_, Some(_)) | Sense::Environment(_))
+            Some(
+                Sense::Weather(_)
+                    | Sense::Time(_)
+                    | Sense::RoadKind(..)
+                    | Sense::Place(_, Some(_))
+                    | Sense::Environment(_)
+            )
         )
     });
     let mut out: Vec<Token> = said.cloned().collect();

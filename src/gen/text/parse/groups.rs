@@ -58,10 +58,12 @@ impl Parser<'_> {
         }
         // "two cars ahead and a third behind us" names one more
         let said = span.of(self.prompt).to_lowercase();
-        let nth = ["second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"]
-            .iter()
-            .position(|w| said.starts_with(&format!("a {w}")) || said.starts_with(&format!("an {w}")))
-            .map(|k| k as u32 + 1);
+        let nth = [
+            "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
+        ]
+        .iter()
+        .position(|w| said.starts_with(&format!("a {w}")) || said.starts_with(&format!("an {w}")))
+        .map(|k| k as u32 + 1);
         let last = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
@@ -211,13 +213,11 @@ impl Parser<'_> {
             return;
         };
         let m = &self.mentions[i];
-        let host = m
-            .host
-            .filter(|h| {
-                // ("a bus with a cyclist on its right is waiting": the bus is)
-                let beside = m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(*h));
-                (m.spec.count.n > 1 || beside) && self.mentions[*h].spec.count.n == 1
-            });
+        let host = m.host.filter(|h| {
+            // ("a bus with a cyclist on its right is waiting": the bus is)
+            let beside = m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(*h));
+            (m.spec.count.n > 1 || beside) && self.mentions[*h].spec.count.n == 1
+        });
         if let Some(host) = host {
             self.flush();
             self.head = vec![host];
@@ -272,7 +272,9 @@ impl Parser<'_> {
             return false;
         }
         // "four children standing with her"
-        let with = self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "with");
+        let with = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.words == "with");
         let someone = matches!(item.words.as_str(), "him" | "her" | "them");
         if with && someone && self.pending.is_none() && !self.edits && !self.last.is_empty() {
             self.begin(Prep::Rels(vec![RelationKind::NextTo]), item.span);
@@ -335,7 +337,10 @@ impl Parser<'_> {
                 .then_some(self.last_place)
                 .flatten();
             // (one stands on a crossing or in a car park, not on a thing)
-            let holds = matches!(placed_in, Some(Anchor::Crossing | Anchor::Junction | Anchor::Lane(_)));
+            let holds = matches!(
+                placed_in,
+                Some(Anchor::Crossing | Anchor::Junction | Anchor::Lane(_))
+            );
             // "five to the left of my car and five to the right of it": no group is "it"
             let ego_it = item.words == "it"
                 && !holds

@@ -12,7 +12,8 @@ impl Parser<'_> {
     pub(super) fn labelled(&mut self, number: f64) -> bool {
         let noun = matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)));
         let small = (1.0..10.0).contains(&number) && number.fract() == 0.0;
-        let times = self.items[self.at.wrapping_sub(1).min(self.at)].span.end + 1 < self.items[self.at].span.start;
+        let times =
+            self.items[self.at.wrapping_sub(1).min(self.at)].span.end + 1 < self.items[self.at].span.start;
         let next = self.item(self.at + 1);
         let told = next.is_some_and(|n| {
             n.tag == Tag::Comma
@@ -21,14 +22,18 @@ impl Parser<'_> {
                     n.tag,
                     Tag::Is(Sense::State(_, true) | Sense::Rel(_) | Sense::EgoRel(_) | Sense::In)
                 )
-                || matches!(n.words.as_str(), "is" | "was" | "has" | "had" | "came" | "comes" | "were")
+                || matches!(
+                    n.words.as_str(),
+                    "is" | "was" | "has" | "had" | "came" | "comes" | "were"
+                )
         });
         let Some(&i) = self.last.last().filter(|_| noun && small && told && !times) else {
             return false;
         };
         let name = format!("{} {number}", self.mentions[i].spec.noun);
         // named before: it is that one
-        let old = (0..i).find(|k| self.mentions[*k].spec.attributes.contains(&name) && !self.mentions[*k].gone);
+        let old =
+            (0..i).find(|k| self.mentions[*k].spec.attributes.contains(&name) && !self.mentions[*k].gone);
         match old {
             Some(old) if i + 1 == self.mentions.len() && !self.mentions[i].is_anchor => {
                 self.mentions.pop();

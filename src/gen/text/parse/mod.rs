@@ -11,8 +11,8 @@ mod nouns;
 mod numbers;
 mod pairs;
 mod relations;
-mod sides;
 mod sense;
+mod sides;
 mod states;
 mod style;
 
@@ -77,8 +77,8 @@ pub(super) struct Parser<'a> {
     with: bool,
     pub(super) edits: bool,
     pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
-    denied: bool,                   // what follows says where something is not
-    pub(super) listed: Vec<Stated>, // where what a colon introduces stands
+    denied: bool,                                    // what follows says where something is not
+    pub(super) listed: Vec<Stated>,                  // where what a colon introduces stands
 }
 
 /// Reads a prompt.
@@ -239,7 +239,10 @@ impl<'a> Parser<'a> {
             }
             Tag::Unknown => {
                 // "on arrival one truck stood there": what the preposition led to is not known
-                let led = self.pending.as_ref().is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
+                let led = self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
                 let fresh = matches!(
                     self.item(self.at + 1).map(|n| n.tag),
                     Some(Tag::Number(_) | Tag::Comma | Tag::Is(Sense::Article(_) | Sense::Count(_)))

@@ -213,7 +213,11 @@ impl Parser<'_> {
             .is_some_and(|b| matches!(b.words.as_str(), "his" | "her" | "their"))
             && mention.spec.class == Class::Pedestrian
             && matches!(self.head.as_slice(), [h] if self.mentions[*h].spec.class == Class::Pedestrian && *h != index);
-        let host = self.head.first().copied().filter(|_| self.with || hers && !self.edits);
+        let host = self
+            .head
+            .first()
+            .copied()
+            .filter(|_| self.with || hers && !self.edits);
         self.with = false;
         if !old {
             self.mentions[index].host = host;
@@ -328,7 +332,10 @@ impl Parser<'_> {
             && new.uncounted
             && self.pending.is_some()
             && new.spec.state.is_none()
-            && self.mentions.iter().any(|m| stem(&m.spec.noun) == stem(&new.spec.noun));
+            && self
+                .mentions
+                .iter()
+                .any(|m| stem(&m.spec.noun) == stem(&new.spec.noun));
         // "A bulldozer blocks my lane. Bulldozer facing away from me."
         let opens = self
             .item(self.at.wrapping_sub(1))
@@ -341,7 +348,12 @@ impl Parser<'_> {
             && !new.plural
             && opens
             && faces
-            && self.mentions.iter().filter(|m| m.spec.noun == new.spec.noun && !m.gone).count() == 1;
+            && self
+                .mentions
+                .iter()
+                .filter(|m| m.spec.noun == new.spec.noun && !m.gone)
+                .count()
+                == 1;
         if !(new.definite || bare || again) || new.pick.is_some() || self.edits {
             return None;
         }

@@ -142,7 +142,9 @@ impl Parser<'_> {
 
     /// "more than four children" are five at least, "fewer than four" three at most.
     fn bounded(&self, count: Count) -> Count {
-        let before = self.item(self.at.wrapping_sub(1)).map_or("", |b| b.words.as_str());
+        let before = self
+            .item(self.at.wrapping_sub(1))
+            .map_or("", |b| b.words.as_str());
         let counts = count.is_exact() && self.noun_ahead(self.at + 1) && count.n < 100;
         match before {
             "more than" | "over" | "upwards of" | "in excess of" if counts => Count::exactly(count.n + 1),

@@ -18,7 +18,8 @@ impl Parser<'_> {
         let mut found = Vec::new();
         for i in (0..self.mentions.len()).rev() {
             let m = &self.mentions[i];
-            let fits = noun.is_none_or(|n| n.classes.contains(&m.spec.class) && m.classes.len() <= n.classes.len());
+            let fits =
+                noun.is_none_or(|n| n.classes.contains(&m.spec.class) && m.classes.len() <= n.classes.len());
             if m.gone || skip(&i) || !fits {
                 continue;
             }
@@ -85,7 +86,15 @@ impl Parser<'_> {
             .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
         let two = matches!(
             words,
-            "them" | "the two of them" | "them both" | "the pair of them" | "those two" | "these" | "those" | "both" | "two"
+            "them"
+                | "the two of them"
+                | "them both"
+                | "the pair of them"
+                | "those two"
+                | "these"
+                | "those"
+                | "both"
+                | "two"
         );
         if self.edits || !between || !two {
             return false;
@@ -106,7 +115,9 @@ impl Parser<'_> {
 
     /// "between the two": true if no noun follows and it was that.
     pub(super) fn the_two(&mut self, count: u32, span: Span) -> bool {
-        let of = self.item(self.at + 1).is_some_and(|n| n.words.starts_with("of them") || n.words == "of");
+        let of = self
+            .item(self.at + 1)
+            .is_some_and(|n| n.words.starts_with("of them") || n.words == "of");
         if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() || of {
             return false;
         }
@@ -119,7 +130,12 @@ impl Parser<'_> {
             .item(self.at.wrapping_sub(1))
             .is_some_and(|b| b.tag == super::super::tag::Tag::Comma);
         let mut next = self.at + 1;
-        while self.item(next).is_some_and(|n| matches!(n.words.as_str(), "of them" | "of which" | "of whom" | "are" | "is")) {
+        while self.item(next).is_some_and(|n| {
+            matches!(
+                n.words.as_str(),
+                "of them" | "of which" | "of whom" | "are" | "is"
+            )
+        }) {
             next += 1;
         }
         let placed = matches!(
@@ -147,7 +163,8 @@ impl Parser<'_> {
         let place = |m: &mut super::super::mention::Mention, kind: RelationKind| {
             m.is_anchor = false;
             let told = m.spec.relations.iter().any(|r| {
-                r.anchor == Anchor::Ego && matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind)
+                r.anchor == Anchor::Ego
+                    && matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind)
             });
             if !told {
                 m.spec.relations.push(super::super::description::Stated {
@@ -190,6 +207,8 @@ impl Parser<'_> {
 
     fn finite_next(&self) -> bool {
         matches!(self.sense(self.at + 1), Some(Sense::State(_, true)))
-            || self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "is" | "are" | "there is" | "there are"))
+            || self
+                .item(self.at + 1)
+                .is_some_and(|n| matches!(n.words.as_str(), "is" | "are" | "there is" | "there are"))
     }
 }

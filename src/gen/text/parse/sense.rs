@@ -21,12 +21,17 @@ impl<'a> Parser<'a> {
                     && self.pending.is_none()
                     && self.distance.is_none()
                     && (!self.edits
-                        || matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::State(ObjectState::Moving, _))))
+                        || matches!(
+                            self.sense(self.at.wrapping_sub(1)),
+                            Some(Sense::State(ObjectState::Moving, _))
+                        ))
                     && !matches!(
                         self.sense(self.at.wrapping_sub(1)),
                         Some(Sense::Unit(_) | Sense::EgoRel(_) | Sense::Rel(_))
                     )
-                    && self.item(self.at.wrapping_sub(1)).is_some_and(|b| !matches!(b.words.as_str(), "far" | "not far"))
+                    && self
+                        .item(self.at.wrapping_sub(1))
+                        .is_some_and(|b| !matches!(b.words.as_str(), "far" | "not far"))
                     && matches!(self.sense(self.at + 1), Some(Sense::Ego)) =>
             {
                 self.begin(Prep::Rels(vec![RelationKind::FacingAway]), span);
@@ -123,7 +128,9 @@ impl<'a> Parser<'a> {
                         self.end_list();
                     }
                     // "... obstructs the crossing; four people wait there"
-                    "there" | "over there" if self.ends(self.past_too(self.at + 1)) && !self.edits => self.there(span),
+                    "there" | "over there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
+                        self.there(span)
+                    }
                     // "on both pavements stand three people each"
                     "each"
                         if self.ends(self.at + 1)
@@ -134,7 +141,10 @@ impl<'a> Parser<'a> {
                         }
                     }
                     // "two cars each are parked on both sides"
-                    "each" if !self.edits && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true))) => {
+                    "each"
+                        if !self.edits
+                            && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, true))) =>
+                    {
                         for i in self.last.clone() {
                             self.mentions[i].spec.attributes.push("each".into());
                         }

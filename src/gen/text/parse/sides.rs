@@ -14,13 +14,17 @@ impl Parser<'_> {
     pub(super) fn side_of_other(&self) -> Option<bool> {
         let own = self.targets();
         let side = |i: usize| {
-            self.mentions[i].spec.relations.iter().find_map(|r| match (r.relation, r.anchor) {
-                (R::LeftOf, Anchor::Ego) => Some(true),
-                (R::RightOf, Anchor::Ego) => Some(false),
-                (_, Anchor::Lane(L::LeftRoadside | L::LeftSidewalk | L::Oncoming)) => Some(true),
-                (_, Anchor::Lane(L::RightRoadside | L::RightSidewalk)) => Some(false),
-                _ => None,
-            })
+            self.mentions[i]
+                .spec
+                .relations
+                .iter()
+                .find_map(|r| match (r.relation, r.anchor) {
+                    (R::LeftOf, Anchor::Ego) => Some(true),
+                    (R::RightOf, Anchor::Ego) => Some(false),
+                    (_, Anchor::Lane(L::LeftRoadside | L::LeftSidewalk | L::Oncoming)) => Some(true),
+                    (_, Anchor::Lane(L::RightRoadside | L::RightSidewalk)) => Some(false),
+                    _ => None,
+                })
         };
         // at the head of a clause the subject is still that of the one before
         let skip = |i: &usize| own.contains(i) && !self.fresh;
@@ -44,7 +48,8 @@ impl Parser<'_> {
     pub(super) fn by_other(&self, kinds: &[R], item: &Item) -> Option<usize> {
         let near = kinds == [R::Near] && !item.words.contains("here");
         let own = self.targets();
-        let earlier = |i: &usize| !own.contains(i) && *i < *own.first().unwrap_or(&0) && !self.mentions[*i].gone;
+        let earlier =
+            |i: &usize| !own.contains(i) && *i < *own.first().unwrap_or(&0) && !self.mentions[*i].gone;
         let before = self.before.iter().rev().copied().find(earlier);
         before
             .or_else(|| (0..self.mentions.len()).rev().find(earlier))
@@ -72,9 +77,9 @@ impl Parser<'_> {
             // "on opposite pavements, two on each"
             Some(Sense::In | Sense::At)
                 if !self.mentions[group].gone
-                    && self
-                        .item(self.at + 2)
-                        .is_some_and(|n| matches!(n.words.as_str(), "each" | "either" | "each one" | "each of them"))
+                    && self.item(self.at + 2).is_some_and(|n| {
+                        matches!(n.words.as_str(), "each" | "either" | "each one" | "each of them")
+                    })
                     && self.ends(self.at + 3) =>
             {
                 let m = &mut self.mentions[group];
@@ -114,7 +119,9 @@ impl Parser<'_> {
         while let Some(item) = self.item(j) {
             match item.tag {
                 Tag::Comma | Tag::Unknown => {}
-                Tag::Number(_) | Tag::Is(Sense::Count(_)) if matches!(self.sense(j + 1), Some(Sense::Unit(_))) => {
+                Tag::Number(_) | Tag::Is(Sense::Count(_))
+                    if matches!(self.sense(j + 1), Some(Sense::Unit(_))) =>
+                {
                     j += 1;
                 }
                 Tag::Is(
@@ -130,7 +137,8 @@ impl Parser<'_> {
                     | Sense::Away
                     | Sense::Possessed(_),
                 ) => {}
-                Tag::Is(Sense::Pronoun) if !matches!(item.words.as_str(), "that" | "they" | "he" | "she") => {}
+                Tag::Is(Sense::Pronoun) if !matches!(item.words.as_str(), "that" | "they" | "he" | "she") => {
+                }
                 // a landmark: "close to the bus"
                 Tag::Is(Sense::Noun(..))
                     if matches!(self.sense(j.wrapping_sub(1)), Some(Sense::Article(true))) => {}
@@ -167,7 +175,9 @@ impl Parser<'_> {
         let led = before.is_some_and(|b| {
             matches!(
                 b.tag,
-                Tag::Is(Sense::Noun(..) | Sense::Unit(_) | Sense::EgoRel(_) | Sense::State(_, false) | Sense::Ego)
+                Tag::Is(
+                    Sense::Noun(..) | Sense::Unit(_) | Sense::EgoRel(_) | Sense::State(_, false) | Sense::Ego
+                )
             )
         });
         // "a bus lane bus", "pedestrians crosswalk sign"

@@ -38,7 +38,6 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, SceneBox};
 pub use exception::except;
-pub use which::spared;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
     takes_place,
@@ -51,6 +50,7 @@ use predicate::{in_place, parts};
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use which::spared;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
 
@@ -330,9 +330,28 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         && let Some((i, n)) = find(
             inner,
             &[
-                "as it is", "as they are", "where it is", "where they are", "untouched", "unchanged", "alone", "in place",
-                "in peace", "as it was", "where it stands", "where they stand", "as he is", "as she is", "where he is",
-                "where she is", "the way it is", "the way they are", "be", "stay", "in its place", "in their place",
+                "as it is",
+                "as they are",
+                "where it is",
+                "where they are",
+                "untouched",
+                "unchanged",
+                "alone",
+                "in place",
+                "in peace",
+                "as it was",
+                "where it stands",
+                "where they stand",
+                "as he is",
+                "as she is",
+                "where he is",
+                "where she is",
+                "the way it is",
+                "the way they are",
+                "be",
+                "stay",
+                "in its place",
+                "in their place",
             ],
         )
         && i + n == inner.len()

@@ -104,7 +104,9 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             }
             // weather and light are told apart from the rest
             let next_link = (next..body.len())
-                .find(|k| body[*k].kind == TokenKind::Comma || matches!(text(&body[*k]), "and" | "but" | "while"))
+                .find(|k| {
+                    body[*k].kind == TokenKind::Comma || matches!(text(&body[*k]), "and" | "but" | "while")
+                })
                 .unwrap_or(body.len());
             let sky = only_sky(&body[from..i]) && next < body.len() && !only_sky(&body[next..])
                 || only_sky(&body[next.min(body.len())..next_link]) && !only_sky(&body[from..i]) && spoken;
@@ -148,11 +150,19 @@ pub(super) fn only_sky(tokens: &[Token]) -> bool {
     let clears = is(tokens.first(), &["clear"])
         && is(
             tokens.get(1),
-            &["the", "my", "our", "all", "away", "out", "up", "off", "every", "that", "this", "both"],
+            &[
+                "the", "my", "our", "all", "away", "out", "up", "off", "every", "that", "this", "both",
+            ],
         );
     let points = (0..tokens.len()).any(|i| {
         is(tokens.get(i), &["it", "them", "he", "she", "they"])
-            && !is(tokens.get(i + 1), &["be", "is", "should", "becomes", "gets", "has", "was", "turns", "starts", "begins", "must"])
+            && !is(
+                tokens.get(i + 1),
+                &[
+                    "be", "is", "should", "becomes", "gets", "has", "was", "turns", "starts", "begins",
+                    "must",
+                ],
+            )
             && !is(tokens.get(i.wrapping_sub(1)), &["make", "let"])
     });
     tokens.iter().any(style)

@@ -9,7 +9,9 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::replaced;
 use super::Talk;
 use super::frame::unwrapped;
-use super::words::{command_of, find, first_noun, has_noun, is, is_place, is_unit, leads, led, number, text, trimmed, word};
+use super::words::{
+    command_of, find, first_noun, has_noun, is, is_place, is_unit, leads, led, number, text, trimmed, word,
+};
 use crate::scene::graph::LaneRole as L;
 
 /// A sentence (without its stop) in plain words.
@@ -31,7 +33,8 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "all that is parked|everything that is parked|everything parked|all that are parked|whatever is parked|anything parked|all things parked|everything which is parked",
         "all parked vehicles",
     );
-    let out = replaced(&out, "a single|just a single|only a single", "one");
+    let out = replaced(&out, "a single one", "one");
+    let out = replaced(&out, "a single", "one");
     let out = far_times(out);
     let out = wished_beside(out);
     let out = replaced(&out, "drop all|ditch all", "remove all");
@@ -68,13 +71,29 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "there shouldn't be more than one parked car": exactly one, if there are more.
 fn no_more_than(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["more than", "over", "at most", "no more than", "not more than", "a maximum of"]) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "more than",
+            "over",
+            "at most",
+            "no more than",
+            "not more than",
+            "a maximum of",
+        ],
+    ) else {
         return tokens;
     };
     let denied = is(tokens.get(i), &["no", "not", "at"])
-        || tokens[..i].iter().any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "never" | "no"));
-    let be = tokens[..i].iter().any(|t| matches!(text(t), "be" | "want" | "have" | "need" | "like" | "are" | "is"))
-        || tokens[i + n..].iter().any(|t| matches!(text(t), "should" | "may" | "must" | "stay" | "remain"));
+        || tokens[..i]
+            .iter()
+            .any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "never" | "no"));
+    let be = tokens[..i]
+        .iter()
+        .any(|t| matches!(text(t), "be" | "want" | "have" | "need" | "like" | "are" | "is"))
+        || tokens[i + n..]
+            .iter()
+            .any(|t| matches!(text(t), "should" | "may" | "must" | "stay" | "remain"));
     let Some(many) = tokens.get(i + n).and_then(number).filter(|_| denied && be) else {
         return tokens;
     };
@@ -86,21 +105,42 @@ fn no_more_than(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let end = (b..rest.len())
-        .find(|k| rest[*k].kind != TokenKind::Word || is(rest.get(*k), &["and", "should", "may", "must", "here", "there", "any"]))
+        .find(|k| {
+            rest[*k].kind != TokenKind::Word
+                || is(
+                    rest.get(*k),
+                    &["and", "should", "may", "must", "here", "there", "any"],
+                )
+        })
         .unwrap_or(rest.len());
-    led("keep exactly", &tokens[0], &[&tokens[i + n..=i + n], &rest[..end]])
+    led(
+        "keep exactly",
+        &tokens[0],
+        &[&tokens[i + n..=i + n], &rest[..end]],
+    )
 }
 
 /// "everybody off the pavement", "all cars out of my lane": who is there goes.
 fn off_with(tokens: Vec<Token>) -> Vec<Token> {
     let all = is(tokens.first(), &["everybody", "everyone", "all", "every"]);
-    let Some((i, n)) = find(&tokens, &["off", "out of", "away from"]).filter(|x| all && x.0 > 0 && x.0 < 6) else {
+    let Some((i, n)) = find(&tokens, &["off", "out of", "away from"]).filter(|x| all && x.0 > 0 && x.0 < 6)
+    else {
         return tokens;
     };
-    let place = super::words::longest(&tokens[(i + n + usize::from(is(tokens.get(i + n), &["the", "my", "our"]))).min(tokens.len())..]);
+    let place = super::words::longest(
+        &tokens[(i + n + usize::from(is(tokens.get(i + n), &["the", "my", "our"]))).min(tokens.len())..],
+    );
     let own = super::words::longest(&tokens[(i + n).min(tokens.len())..]);
-    let named = [place, own].into_iter().flatten().any(|p| matches!(p.0, Sense::Place(..)));
-    let verb = tokens.iter().any(|t| matches!(text(t), "to" | "onto" | "into" | "is" | "are" | "should" | "must" | "goes" | "move"));
+    let named = [place, own]
+        .into_iter()
+        .flatten()
+        .any(|p| matches!(p.0, Sense::Place(..)));
+    let verb = tokens.iter().any(|t| {
+        matches!(
+            text(t),
+            "to" | "onto" | "into" | "is" | "are" | "should" | "must" | "goes" | "move"
+        )
+    });
     if !named || verb {
         return tokens;
     }
@@ -116,13 +156,23 @@ fn off_with(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "clear the junction of cars": the cars there go.
 fn cleared_of(tokens: Vec<Token>) -> Vec<Token> {
-    let verb = is(tokens.first(), &["clear", "empty", "free", "rid", "sweep", "strip", "relieve"]);
-    let Some(of) = tokens.iter().position(|t| text(t) == "of").filter(|k| verb && *k > 1) else {
+    let verb = is(
+        tokens.first(),
+        &["clear", "empty", "free", "rid", "sweep", "strip", "relieve"],
+    );
+    let Some(of) = tokens
+        .iter()
+        .position(|t| text(t) == "of")
+        .filter(|k| verb && *k > 1)
+    else {
         return tokens;
     };
     let what = &tokens[of + 1..];
     // "the left side of the road" has its own "of"
-    let last = (of..tokens.len()).rev().find(|k| text(&tokens[*k]) == "of").unwrap_or(of);
+    let last = (of..tokens.len())
+        .rev()
+        .find(|k| text(&tokens[*k]) == "of")
+        .unwrap_or(of);
     let (place, what) = if has_noun(what) && !is(what.first(), &["the", "my", "our"]) {
         (&tokens[1..of], what)
     } else {
@@ -134,11 +184,19 @@ fn cleared_of(tokens: Vec<Token>) -> Vec<Token> {
     let article = usize::from(is(place.first(), &["the", "my", "our"]));
     let prep = match super::words::longest(&place[article..]).map(|p| p.0) {
         Some(Sense::Place(super::super::description::Anchor::Junction, _)) => "at",
-        Some(Sense::Place(super::super::description::Anchor::Lane(role), _)) if !matches!(role, L::Sidewalk | L::LeftSidewalk | L::RightSidewalk | L::Road) => "in",
+        Some(Sense::Place(super::super::description::Anchor::Lane(role), _))
+            if !matches!(role, L::Sidewalk | L::LeftSidewalk | L::RightSidewalk | L::Road) =>
+        {
+            "in"
+        }
         _ => "on",
     };
     let skip = usize::from(is(what.first(), &["all", "any"]));
-    led("remove all", &tokens[0], &[&what[skip..], &led(prep, &tokens[0], &[place])])
+    led(
+        "remove all",
+        &tokens[0],
+        &[&what[skip..], &led(prep, &tokens[0], &[place])],
+    )
 }
 
 /// "into the lane on its right": one lane to the right.
@@ -148,11 +206,25 @@ fn own_side(tokens: Vec<Token>) -> Vec<Token> {
     while i < tokens.len() {
         let n = leads(
             &tokens[i..],
-            &["into the lane", "to the lane", "onto the lane", "in the lane", "over to the lane", "over into the lane"],
+            &[
+                "into the lane",
+                "to the lane",
+                "onto the lane",
+                "in the lane",
+                "over to the lane",
+                "over into the lane",
+            ],
         );
         let side = n.and_then(|n| {
-            let m = leads(&tokens[i + n..], &["on its", "to its", "on his", "to his", "on her", "to her", "on their", "to their"])?;
-            let side = tokens.get(i + n + m).filter(|t| matches!(text(t), "left" | "right"))?;
+            let m = leads(
+                &tokens[i + n..],
+                &[
+                    "on its", "to its", "on his", "to his", "on her", "to her", "on their", "to their",
+                ],
+            )?;
+            let side = tokens
+                .get(i + n + m)
+                .filter(|t| matches!(text(t), "left" | "right"))?;
             Some((n + m + 1, text(side).to_string()))
         });
         match side {
@@ -189,8 +261,16 @@ fn without_care(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, n)) = find(
         &tokens,
         &[
-            "without touching", "without moving", "without changing", "without altering", "without disturbing",
-            "without removing", "but without touching", "and without touching", "while leaving", "not touching",
+            "without touching",
+            "without moving",
+            "without changing",
+            "without altering",
+            "without disturbing",
+            "without removing",
+            "but without touching",
+            "and without touching",
+            "while leaving",
+            "not touching",
         ],
     ) else {
         return tokens;
@@ -202,13 +282,27 @@ fn without_care(tokens: Vec<Token>) -> Vec<Token> {
         .find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["and", "but"]))
         .map_or(tokens.len(), |k| k + 1);
     let out = [&tokens[..i], &tokens[end..]].concat();
-    if has_noun(&out) { trimmed(&out).to_vec() } else { tokens }
+    if has_noun(&out) {
+        trimmed(&out).to_vec()
+    } else {
+        tokens
+    }
 }
 
 /// "make the cyclist twice as far away": it should be so.
 fn far_times(tokens: Vec<Token>) -> Vec<Token> {
     let made = is(tokens.first(), &["make", "put", "set", "place", "move"]);
-    let times = find(&tokens, &["twice as far", "half as far", "three times as far", "double as far", "twice as close", "half as close"]);
+    let times = find(
+        &tokens,
+        &[
+            "twice as far",
+            "half as far",
+            "three times as far",
+            "double as far",
+            "twice as close",
+            "half as close",
+        ],
+    );
     match times.filter(|(i, _)| made && first_noun(&tokens[1..*i]).is_some_and(|n| 1 + n.1 == *i)) {
         Some((i, _)) => {
             let be = led("should be", &tokens[i], &[&tokens[i..]]);
@@ -250,14 +344,27 @@ fn wished_beside(tokens: Vec<Token>) -> Vec<Token> {
 fn gets(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, n)) = find(
         &tokens,
-        &["gets a", "receives a", "is given a", "should have a", "should get a", "tows a", "now tows a", "should tow a", "pulls a", "should pull a", "has a", "now has a"],
+        &[
+            "gets a",
+            "receives a",
+            "is given a",
+            "should have a",
+            "should get a",
+            "tows a",
+            "now tows a",
+            "should tow a",
+            "pulls a",
+            "should pull a",
+            "has a",
+            "now has a",
+        ],
     ) else {
         return tokens;
     };
-    let known = is(tokens.first(), &["the", "my", "that"]) && first_noun(&tokens[..i]).is_some_and(|x| x.0 < 5);
-    let trailer = super::words::longest(&tokens[i + n..]).is_some_and(
-        |l| matches!(l.0, Sense::Noun(k, _) if k.classes[0] == crate::scene::Class::Trailer),
-    );
+    let known =
+        is(tokens.first(), &["the", "my", "that"]) && first_noun(&tokens[..i]).is_some_and(|x| x.0 < 5);
+    let trailer = super::words::longest(&tokens[i + n..])
+        .is_some_and(|l| matches!(l.0, Sense::Noun(k, _) if k.classes[0] == crate::scene::Class::Trailer));
     if !(known && trailer) {
         return tokens;
     }
@@ -265,19 +372,35 @@ fn gets(tokens: Vec<Token>) -> Vec<Token> {
         .find(|k| tokens[*k].kind == TokenKind::Comma || text(&tokens[*k]) == "and")
         .unwrap_or(tokens.len());
     let behind = led("behind", &tokens[i], &[&tokens[..i]]);
-    led("add a", &tokens[0], &[&tokens[i + n..end], &behind, &tokens[end..]])
+    led(
+        "add a",
+        &tokens[0],
+        &[&tokens[i + n..end], &behind, &tokens[end..]],
+    )
 }
 
 /// "there are two women now": two in all.
 fn now_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["there are", "there is", "now there are", "now there is", "there are now", "there is now", "we now have", "now we have"])
-    else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "there are",
+            "there is",
+            "now there are",
+            "now there is",
+            "there are now",
+            "there is now",
+            "we now have",
+            "now we have",
+        ],
+    ) else {
         return tokens;
     };
     let now = tokens.iter().any(|t| text(t) == "now");
     let many = tokens.get(n).and_then(number);
     let rest: Vec<Token> = tokens[n..].iter().filter(|t| text(t) != "now").cloned().collect();
-    let bare = first_noun(&rest).is_some_and(|x| x.0 < 4 && trimmed(&rest[x.1..]).is_empty() && talk.fits(&rest[x.0..x.1]) > 0);
+    let bare = first_noun(&rest)
+        .is_some_and(|x| x.0 < 4 && trimmed(&rest[x.1..]).is_empty() && talk.fits(&rest[x.0..x.1]) > 0);
     match many.filter(|_| now && bare) {
         Some(_) => led("keep exactly", &tokens[0], &[&rest]),
         None => tokens,
@@ -286,7 +409,16 @@ fn now_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "half the cones": half as many.
 fn half_of(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["half the", "half of the", "only half the", "just half the", "only half of the"]) else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "half the",
+            "half of the",
+            "only half the",
+            "just half the",
+            "only half of the",
+        ],
+    ) else {
         return tokens;
     };
     let bare = first_noun(&tokens[n..]).is_some_and(|x| x.0 < 3 && n + x.1 == tokens.len());
@@ -299,9 +431,12 @@ fn half_of(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "push it 8 m away": by so much, not to there.
 fn pushed_away(tokens: Vec<Token>) -> Vec<Token> {
-    let verb = tokens
-        .iter()
-        .position(|t| matches!(text(t), "push" | "move" | "shift" | "shove" | "pull" | "drag" | "nudge" | "send" | "drive"));
+    let verb = tokens.iter().position(|t| {
+        matches!(
+            text(t),
+            "push" | "move" | "shift" | "shove" | "pull" | "drag" | "nudge" | "send" | "drive"
+        )
+    });
     let found = verb.and_then(|v| {
         (v + 2..tokens.len()).find(|k| {
             is(tokens.get(*k), &["away"])
@@ -326,16 +461,25 @@ fn pushed_away(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "only one pedestrian left on the crossing": left over, not on the left.
 fn left_over(tokens: Vec<Token>) -> Vec<Token> {
-    let few = tokens
-        .iter()
-        .any(|t| matches!(text(t), "only" | "just" | "should" | "must" | "exactly" | "no" | "one"));
+    let few = tokens.iter().any(|t| {
+        matches!(
+            text(t),
+            "only" | "just" | "should" | "must" | "exactly" | "no" | "one"
+        )
+    });
     let mut out: Vec<Token> = Vec::new();
     for (i, t) in tokens.iter().enumerate() {
         let noun = i > 0 && matches!(look_up(text(&tokens[i - 1])), Some(Sense::Noun(..)));
         let next = tokens.get(i + 1).is_none_or(|n| {
-            n.kind != TokenKind::Word || matches!(text(n), "on" | "in" | "at" | "there" | "here" | "standing" | "please")
+            n.kind != TokenKind::Word
+                || matches!(
+                    text(n),
+                    "on" | "in" | "at" | "there" | "here" | "standing" | "please"
+                )
         });
-        let be = tokens[..i].iter().any(|t| matches!(text(t), "be" | "have" | "want" | "need" | "is" | "are" | "only"));
+        let be = tokens[..i]
+            .iter()
+            .any(|t| matches!(text(t), "be" | "have" | "want" | "need" | "is" | "are" | "only"));
         if !(text(t) == "left" && noun && next && few && be) {
             out.push(t.clone());
         }
@@ -364,12 +508,30 @@ fn to_so_far(tokens: Vec<Token>) -> Vec<Token> {
     while i < tokens.len() {
         let way = is(
             tokens.get(i),
-            &["forward", "forwards", "back", "backwards", "out", "up", "on", "ahead", "away", "in", "down"],
+            &[
+                "forward",
+                "forwards",
+                "back",
+                "backwards",
+                "out",
+                "up",
+                "on",
+                "ahead",
+                "away",
+                "in",
+                "down",
+            ],
         );
         let to = is(tokens.get(i + 1), &["to"])
             && tokens.get(i + 2).is_some_and(|t| number(t).is_some())
             && is_unit(tokens.get(i + 3));
-        if way && to && !tokens[i + 4..].iter().take(2).any(|t| is(Some(t), &["left", "right"])) {
+        if way
+            && to
+            && !tokens[i + 4..]
+                .iter()
+                .take(2)
+                .any(|t| is(Some(t), &["left", "right"]))
+        {
             out.extend(led("at a distance of", &tokens[i], &[&tokens[i + 2..i + 4]]));
             i += 4;
         } else {
@@ -394,7 +556,8 @@ fn caused(tokens: Vec<Token>) -> Vec<Token> {
     if is(tokens.first(), &["let", "lets"]) {
         return tokens;
     }
-    let lead = is(inner.first(), &["have", "get", "see", "want"]) || leads(inner, &["to have", "to see", "to get"]).is_some();
+    let lead = is(inner.first(), &["have", "get", "see", "want"])
+        || leads(inner, &["to have", "to see", "to get"]).is_some();
     let from = match (lead, mood.caused) {
         (true, _) => leads(inner, &["to have", "to see", "to get"]).unwrap_or(1),
         (false, true) => 0,
@@ -405,7 +568,9 @@ fn caused(tokens: Vec<Token>) -> Vec<Token> {
     let mut parts: Vec<&[Token]> = Vec::new();
     let mut start = 0;
     for i in 0..=body.len() {
-        let link = body.get(i).is_none_or(|t| t.kind == TokenKind::Comma || text(t) == "and");
+        let link = body
+            .get(i)
+            .is_none_or(|t| t.kind == TokenKind::Comma || text(t) == "and");
         if link {
             let part = trimmed(&body[start.min(i)..i]);
             let whole = participle(part).is_some();
@@ -448,7 +613,10 @@ fn caused_later(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find(|k| {
         is(tokens.get(*k), &["have", "get"])
             && is(tokens.get(k - 1), &["and", "then", "to", "also", "please"])
-            && is(tokens.get(k + 1), &["the", "all", "both", "every", "my", "one", "that", "these"])
+            && is(
+                tokens.get(k + 1),
+                &["the", "all", "both", "every", "my", "one", "that", "these"],
+            )
     });
     let Some(k) = found else {
         return tokens;
@@ -464,7 +632,8 @@ fn caused_later(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "we need three barriers in our lane, not just one": exactly three there.
 fn so_many_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["not", "instead of", "rather than", "and not"]).filter(|x| x.0 > 2) else {
+    let Some((i, n)) = find(&tokens, &["not", "instead of", "rather than", "and not"]).filter(|x| x.0 > 2)
+    else {
         return tokens;
     };
     let from = i + n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
@@ -473,7 +642,8 @@ fn so_many_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let before = trimmed(&tokens[..i]);
     let (inner, _) = unwrapped(before);
     let counted = inner.first().is_some_and(|t| number(t).is_some());
-    let placed = first_noun(inner).is_some_and(|x| x.0 < 4 && is_place(&inner[x.1..]) && talk.fits(&inner[x.0..x.1]) > 0);
+    let placed = first_noun(inner)
+        .is_some_and(|x| x.0 < 4 && is_place(&inner[x.1..]) && talk.fits(&inner[x.0..x.1]) > 0);
     if !(closes && counted && placed) {
         return tokens;
     }
@@ -495,27 +665,31 @@ fn starts_part(tokens: &[Token]) -> bool {
 fn participle(part: &[Token]) -> Option<(usize, String)> {
     let known = is(
         part.first(),
-        &["the", "a", "an", "all", "both", "every", "each", "another", "my", "these", "those", "one"],
+        &[
+            "the", "a", "an", "all", "both", "every", "each", "another", "my", "these", "those", "one",
+        ],
     ) || part.first().is_some_and(|t| number(t).is_some());
     let (_, noun) = first_noun(part).filter(|n| n.0 < 5 && known)?;
     let stop = |t: &Token| matches!(text(t), "that" | "which" | "who" | "is" | "are" | "should");
-    let at = (noun..part.len())
-        .take_while(|k| !stop(&part[*k]))
-        .find(|k| {
-            let word = text(&part[*k]);
-            let describes = matches!(look_up(word), Some(Sense::State(..)))
-                || matches!(word, "parked" | "marked" | "left" | "stopped" | "placed");
-            command(&part[*k]).is_some() && !describes
-        })?;
+    let at = (noun..part.len()).take_while(|k| !stop(&part[*k])).find(|k| {
+        let word = text(&part[*k]);
+        let describes = matches!(look_up(word), Some(Sense::State(..)))
+            || matches!(word, "parked" | "marked" | "left" | "stopped" | "placed");
+        command(&part[*k]).is_some() && !describes
+    })?;
     Some((at, command(&part[at])?))
 }
 
 /// "let a car be added that waits at the zebra": add a car that waits there.
 fn let_be(tokens: Vec<Token>) -> Vec<Token> {
     let (inner, _) = unwrapped(&tokens);
-    let from = usize::from(is(inner.first(), &["let", "may", "shall", "should", "could", "can"]));
+    let from = usize::from(is(
+        inner.first(),
+        &["let", "may", "shall", "should", "could", "can"],
+    ));
     let body = &inner[from..];
-    let fresh = is(body.first(), &["a", "an", "another", "one", "some"]) || body.first().is_some_and(|t| number(t).is_some());
+    let fresh = is(body.first(), &["a", "an", "another", "one", "some"])
+        || body.first().is_some_and(|t| number(t).is_some());
     // "let two children be with the pedestrian": two more
     let be = body.iter().position(|t| text(t) == "be");
     if let (1, true, Some(k)) = (from, fresh, be)
@@ -525,18 +699,36 @@ fn let_be(tokens: Vec<Token>) -> Vec<Token> {
     {
         let with = is(body.get(k + 1), &["with"]);
         let rest = &body[k + 1 + usize::from(with)..];
-        let near = if with { led("next to", &body[0], &[rest]) } else { rest.to_vec() };
+        let near = if with {
+            led("next to", &body[0], &[rest])
+        } else {
+            rest.to_vec()
+        };
         return led("add", &body[0], &[&body[..k], &near]);
     }
     // "let two taxis come instead"
-    let comes = find(body, &["come instead", "appear instead", "be there instead", "come in instead", "stand there instead"]);
+    let comes = find(
+        body,
+        &["come", "appear", "be there", "come in", "stand there", "turn up"],
+    )
+    .filter(|(k, n)| k + n == body.len() && tokens.iter().any(|t| text(t) == "instead"));
     if let (1, true, Some((k, n))) = (from, fresh, comes)
         && first_noun(&body[..k]).is_some_and(|x| x.1 == k)
     {
         let place = led("in its place", &body[k], &[&body[k + n..]]);
         return led("put", &body[0], &[&body[..k], &place]);
     }
-    let Some((i, n)) = find(body, &["be added", "be put in", "be inserted", "to be added", "be placed", "be put"]) else {
+    let Some((i, n)) = find(
+        body,
+        &[
+            "be added",
+            "be put in",
+            "be inserted",
+            "to be added",
+            "be placed",
+            "be put",
+        ],
+    ) else {
         return tokens;
     };
     let short = first_noun(&body[..i]).is_some_and(|x| x.1 == i);
@@ -545,7 +737,9 @@ fn let_be(tokens: Vec<Token>) -> Vec<Token> {
     }
     let mut out = led("add", &body[0], &[&body[..i], &body[i + n..]]);
     // "have the lorry removed" may follow
-    if let Some(k) = (2..out.len()).find(|k| is(out.get(*k), &["and"]) && is(out.get(k + 1), &["have", "get"])) {
+    if let Some(k) =
+        (2..out.len()).find(|k| is(out.get(*k), &["and"]) && is(out.get(k + 1), &["have", "get"]))
+    {
         let rest = caused(out[k + 1..].to_vec());
         out.truncate(k + 1);
         out.extend(rest);
@@ -558,7 +752,10 @@ fn place_first(tokens: Vec<Token>) -> Vec<Token> {
     let found = (1..tokens.len()).find_map(|k| {
         let fresh = is(tokens.get(k + 1), &["a", "an", "another", "one", "some"])
             || tokens.get(k + 1).is_some_and(|t| number(t).is_some());
-        let puts = is(tokens.get(k), &["park", "put", "place", "add", "set", "insert", "position"]) && fresh;
+        let puts = is(
+            tokens.get(k),
+            &["park", "put", "place", "add", "set", "insert", "position"],
+        ) && fresh;
         let from = (0..k)
             .rev()
             .find(|i| {
@@ -574,8 +771,16 @@ fn place_first(tokens: Vec<Token>) -> Vec<Token> {
     });
     match found {
         Some((from, k, end)) => {
-            let place: Vec<Token> = tokens[from..k].iter().filter(|t| t.kind != TokenKind::Comma).cloned().collect();
+            let place: Vec<Token> = tokens[from..k]
+                .iter()
+                .filter(|t| t.kind != TokenKind::Comma)
+                .cloned()
+                .collect();
             // ("across the road on the right roadside": the last place is the one)
+            let vague = leads(&place, &["across the road", "across the street", "over the road"])
+                .filter(|n| is(place.get(*n), &["on", "at", "in"]))
+                .unwrap_or(0);
+            let place = place[vague..].to_vec();
             [&tokens[..from], &tokens[k..end], &place, &tokens[end..]].concat()
         }
         None => tokens,
@@ -584,31 +789,58 @@ fn place_first(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "a parked lorry replaces the bus": replace the bus with it.
 fn takes_over(tokens: Vec<Token>) -> Vec<Token> {
-    let fresh = is(tokens.first(), &["a", "an", "another", "one"]) || tokens.first().is_some_and(|t| number(t).is_some());
+    let fresh = is(tokens.first(), &["a", "an", "another", "one"])
+        || tokens.first().is_some_and(|t| number(t).is_some());
     let found = find(
         &tokens,
         &[
-            "replaces", "replace", "takes over from", "stands in for", "substitutes for", "supersedes", "will replace",
-            "should replace", "is to replace", "takes the place of", "take the place of", "is there instead of",
-            "comes instead of", "stands there instead of", "comes in the place of", "is put in place of", "ousts",
+            "replaces",
+            "replace",
+            "takes over from",
+            "stands in for",
+            "substitutes for",
+            "supersedes",
+            "will replace",
+            "should replace",
+            "is to replace",
+            "takes the place of",
+            "take the place of",
+            "is there instead of",
+            "comes instead of",
+            "stands there instead of",
+            "comes in the place of",
+            "is put in place of",
+            "ousts",
         ],
     );
-    let Some((i, n)) = found.filter(|(i, _)| fresh && first_noun(&tokens[..*i]).is_some_and(|x| x.1 <= *i)) else {
+    let Some((i, n)) = found.filter(|(i, _)| fresh && first_noun(&tokens[..*i]).is_some_and(|x| x.1 <= *i))
+    else {
         return tokens;
     };
     let old = &tokens[i + n..];
-    let known = is(old.first(), &["the", "my", "that", "this", "both", "all", "one", "every"]);
+    let known = is(
+        old.first(),
+        &["the", "my", "that", "this", "both", "all", "one", "every"],
+    );
     if !known || !has_noun(old) {
         return tokens;
     }
-    let end = old.iter().position(|t| t.kind == TokenKind::Comma).unwrap_or(old.len());
+    let end = old
+        .iter()
+        .position(|t| t.kind == TokenKind::Comma)
+        .unwrap_or(old.len());
     let with = led("with", &tokens[0], &[&tokens[..i]]);
     led("replace", &tokens[0], &[&old[..end], &with, &old[end..]])
 }
 
 /// "cyclist: delete", "second car: turn into a bus", "cars: 3", "truck: none", "pedestrians: add a third one".
 fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(colon) = tokens.iter().take(9).position(|t| text(t) == ":").filter(|c| *c > 0) else {
+    let Some(colon) = tokens
+        .iter()
+        .take(9)
+        .position(|t| text(t) == ":")
+        .filter(|c| *c > 0)
+    else {
         return tokens;
     };
     let np = &tokens[..colon];
@@ -624,16 +856,19 @@ fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(first) = rest.first().filter(|_| plain_np) else {
         return tokens;
     };
-    let the: Vec<Token> = if is(np.first(), &["the", "a", "an", "all", "both", "my"]) || number(&np[0]).is_some() {
-        np.to_vec()
-    } else {
-        led("the", &np[0], &[np])
-    };
+    let the: Vec<Token> =
+        if is(np.first(), &["the", "a", "an", "all", "both", "my"]) || number(&np[0]).is_some() {
+            np.to_vec()
+        } else {
+            led("the", &np[0], &[np])
+        };
     if talk.fits(np) == 0 {
         return tokens;
     }
     let ends = rest.len() == 1;
-    if ends && is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0"]) || ends && number(first) == Some(0) {
+    if ends && is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0"])
+        || ends && number(first) == Some(0)
+    {
         return led("remove all", &tokens[0], &[&the]);
     }
     if ends && number(first).is_some() {
@@ -649,8 +884,18 @@ fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if let Some(n) = leads(
         rest,
         &[
-            "add a second one", "add a third one", "add a fourth one", "add a fifth one", "add another one", "add another",
-            "add one more", "one more", "another one", "add one", "a second one", "a third one",
+            "add a second one",
+            "add a third one",
+            "add a fourth one",
+            "add a fifth one",
+            "add another one",
+            "add another",
+            "add one more",
+            "one more",
+            "another one",
+            "add one",
+            "a second one",
+            "a third one",
         ],
     ) {
         let mut more = rest[n..].to_vec();
@@ -658,7 +903,9 @@ fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let one = singular_of(noun);
         return led("add one more", &tokens[0], &[&one, &more]);
     }
-    let pronoun = rest.iter().position(|t| matches!(text(t), "it" | "them" | "him" | "her"));
+    let pronoun = rest
+        .iter()
+        .position(|t| matches!(text(t), "it" | "them" | "him" | "her"));
     if is_verb(first) {
         return match pronoun.filter(|p| *p < 4) {
             Some(p) => [&rest[..p], &the[..], &rest[p + 1..]].concat(),
@@ -675,7 +922,11 @@ fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 fn is_verb_word(t: &Token) -> bool {
-    is_verb(t) && !matches!(look_up(text(t)), Some(Sense::Noun(..) | Sense::State(..) | Sense::Article(_)))
+    is_verb(t)
+        && !matches!(
+            look_up(text(t)),
+            Some(Sense::Noun(..) | Sense::State(..) | Sense::Article(_))
+        )
         || matches!(text(t), "is" | "are" | "should" | "there")
 }
 
@@ -692,7 +943,18 @@ fn singular_of(noun: &[Token]) -> Vec<Token> {
 
 /// "of the parked cars keep only one, and ...": the group after the verb, if more follows.
 fn of_group(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["of the", "of these", "of those", "of my", "out of the", "from the", "among the"]) else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "of the",
+            "of these",
+            "of those",
+            "of my",
+            "out of the",
+            "from the",
+            "among the",
+        ],
+    ) else {
         return tokens;
     };
     let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 4) else {
@@ -701,7 +963,10 @@ fn of_group(tokens: Vec<Token>) -> Vec<Token> {
     let np = &tokens[n..n + b];
     let k = n + b + usize::from(tokens.get(n + b).is_some_and(|t| t.kind == TokenKind::Comma));
     let keeps = is(tokens.get(k), &["keep", "leave", "retain", "spare"]);
-    let takes = is(tokens.get(k), &["remove", "delete", "take", "erase", "drop", "scrap"]);
+    let takes = is(
+        tokens.get(k),
+        &["remove", "delete", "take", "erase", "drop", "scrap"],
+    );
     let m = k + 1 + usize::from(is(tokens.get(k + 1), &["only", "just"]));
     let (Some(many), true) = (tokens.get(m).filter(|t| number(t).is_some()), keeps || takes) else {
         return tokens;
@@ -711,7 +976,11 @@ fn of_group(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     let verb = if keeps { "keep exactly" } else { "remove any" };
-    led(verb, &tokens[0], &[std::slice::from_ref(many), np, &tokens[end..]])
+    led(
+        verb,
+        &tokens[0],
+        &[std::slice::from_ref(many), np, &tokens[end..]],
+    )
 }
 
 /// "turn one of the workers into a cyclist and the car into a motorcycle": the verb again.
@@ -720,7 +989,17 @@ fn gapped(tokens: Vec<Token>) -> Vec<Token> {
     let Some(verb) = inner.first().filter(|t| {
         is(
             Some(t),
-            &["turn", "change", "convert", "transform", "make", "replace", "swap", "exchange", "substitute"],
+            &[
+                "turn",
+                "change",
+                "convert",
+                "transform",
+                "make",
+                "replace",
+                "swap",
+                "exchange",
+                "substitute",
+            ],
         )
     }) else {
         return tokens;
@@ -751,8 +1030,22 @@ fn gapped(tokens: Vec<Token>) -> Vec<Token> {
 /// "to the other pavement", "to the other side of the road": the side where it is not.
 fn other_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const STRIPS: &[&str] = &[
-        "sidewalk", "pavement", "footpath", "kerb", "curb", "roadside", "shoulder", "verge", "walkway", "footway",
-        "side of the road", "side of the street", "side of the carriageway", "side", "edge of the road", "edge of the street",
+        "sidewalk",
+        "pavement",
+        "footpath",
+        "kerb",
+        "curb",
+        "roadside",
+        "shoulder",
+        "verge",
+        "walkway",
+        "footway",
+        "side of the road",
+        "side of the street",
+        "side of the carriageway",
+        "side",
+        "edge of the road",
+        "edge of the street",
     ];
     let found = (1..tokens.len()).find_map(|i| {
         let the = is(tokens.get(i - 1), &["the"]) && is(tokens.get(i), &["other", "opposite", "far"]);
@@ -769,7 +1062,15 @@ fn other_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let (from, _) = (a.saturating_sub(1), b);
     let end = (b..i)
-        .find(|k| is(tokens.get(*k), &["to", "over", "onto", "across", "should", "is", "are", "on", "from", "goes", "go", "crosses"]))
+        .find(|k| {
+            is(
+                tokens.get(*k),
+                &[
+                    "to", "over", "onto", "across", "should", "is", "are", "on", "from", "goes", "go",
+                    "crosses",
+                ],
+            )
+        })
         .unwrap_or(b);
     let (_, mentions) = super::parse(talk.text, &super::tag(&tokens[from..end]));
     let Some(m) = mentions.iter().find(|m| !m.is_anchor && !m.gone) else {
@@ -804,13 +1105,19 @@ fn other_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "bus behind ego instead, 15 m": what is there is moved.
 fn instead(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(i) = tokens.iter().position(|t| text(t) == "instead").filter(|i| *i > 1) else {
+    let Some(i) = tokens
+        .iter()
+        .position(|t| text(t) == "instead")
+        .filter(|i| *i > 1)
+    else {
         return tokens;
     };
     let (Some((a, b)), false) = (first_noun(&tokens), is(tokens.get(i + 1), &["of"])) else {
         return tokens;
     };
-    let bare = tokens[..a].iter().all(|t| matches!(look_up(text(t)), Some(Sense::State(..) | Sense::Color(_))));
+    let bare = tokens[..a]
+        .iter()
+        .all(|t| matches!(look_up(text(t)), Some(Sense::State(..) | Sense::Color(_))));
     if !bare || b > i || !is_place(&tokens[b..]) || talk.fits(&tokens[..b]) != 1 || has_noun(&tokens[b..i]) {
         return tokens;
     }
@@ -825,9 +1132,24 @@ fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let found = (2..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["each of the", "each one of the", "every one of the", "each of these", "each of those", "each", "every"])?;
-        let led = is(tokens.get(i - 1), &["behind", "of", "beside", "to", "near", "before", "by", "after", "ahead"])
-            && !is(tokens.get(i - 1), &["for"]);
+        let n = leads(
+            &tokens[i..],
+            &[
+                "each of the",
+                "each one of the",
+                "every one of the",
+                "each of these",
+                "each of those",
+                "each",
+                "every",
+            ],
+        )?;
+        let led = is(
+            tokens.get(i - 1),
+            &[
+                "behind", "of", "beside", "to", "near", "before", "by", "after", "ahead",
+            ],
+        ) && !is(tokens.get(i - 1), &["for"]);
         let (_, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 4)?;
         led.then_some((i, n, b))
     });
@@ -835,7 +1157,10 @@ fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let many = talk.fits(&tokens[i + n..i + n + b]);
-    let Some(one) = (1..i).find(|k| is(tokens.get(*k), &["a", "an", "one", "another"])).filter(|k| *k < 3) else {
+    let Some(one) = (1..i)
+        .find(|k| is(tokens.get(*k), &["a", "an", "one", "another"]))
+        .filter(|k| *k < 3)
+    else {
         return tokens;
     };
     if many < 2 {
@@ -848,13 +1173,15 @@ fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         span: tokens[one].span,
     });
     out.extend_from_slice(&tokens[one + 1..i]);
-    out.extend(led(&format!("the {many}"), &tokens[i], &[]).into_iter().map(|t| match t.text.parse::<f64>() {
-        Ok(v) => Token {
-            kind: TokenKind::Number(v),
-            ..t
+    out.extend(led(&format!("the {many}"), &tokens[i], &[]).into_iter().map(
+        |t| match t.text.parse::<f64>() {
+            Ok(v) => Token {
+                kind: TokenKind::Number(v),
+                ..t
+            },
+            Err(_) => t,
         },
-        Err(_) => t,
-    }));
+    ));
     let noun = &tokens[i + n..i + n + b];
     let mut many_noun = noun.to_vec();
     if let Some(last) = many_noun.last_mut()
@@ -893,19 +1220,32 @@ fn sent(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "three trucks should be coming towards us, not cars": in the place of those.
 fn not_those(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["not", "and not", "but not", "instead of", "rather than"]).filter(|x| x.0 > 2) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &["not", "and not", "but not", "instead of", "rather than"],
+    )
+    .filter(|x| x.0 > 2) else {
         return tokens;
     };
     let old = &tokens[i + n..];
-    let counted = tokens.first().is_some_and(|t| number(t).is_some() || matches!(text(t), "a" | "an"));
+    let counted = tokens
+        .first()
+        .is_some_and(|t| number(t).is_some() || matches!(text(t), "a" | "an"));
     let (Some((a, b)), Some((c, d))) = (first_noun(&tokens[..i]).filter(|x| x.0 < 4), first_noun(old)) else {
         return tokens;
     };
     let plain = c == 0 && matches!(look_up(text(&old[d - 1])), Some(Sense::Noun(_, true)));
-    let closes = old.get(d).is_none_or(|t| t.kind != TokenKind::Word || text(t) == "and");
+    let closes = old
+        .get(d)
+        .is_none_or(|t| t.kind != TokenKind::Word || text(t) == "and");
     let same = tokens[a..b].iter().map(text).eq(old[c..d].iter().map(text));
     let said = &tokens[b..i];
-    let helper = said.iter().any(|t| matches!(text(t), "should" | "must" | "shall" | "are" | "is" | "be" | "ought"));
+    let helper = said.iter().any(|t| {
+        matches!(
+            text(t),
+            "should" | "must" | "shall" | "are" | "is" | "be" | "ought"
+        )
+    });
     if !(counted && plain && closes && !same && helper) || talk.fits(&old[..d]) == 0 {
         return tokens;
     }
@@ -915,7 +1255,12 @@ fn not_those(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     out.extend(
         trimmed(said)
             .iter()
-            .filter(|t| !matches!(text(t), "should" | "must" | "shall" | "are" | "is" | "be" | "ought" | "to"))
+            .filter(|t| {
+                !matches!(
+                    text(t),
+                    "should" | "must" | "shall" | "are" | "is" | "be" | "ought" | "to"
+                )
+            })
             .cloned(),
     );
     out.extend_from_slice(&old[d..]);

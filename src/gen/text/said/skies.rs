@@ -68,12 +68,41 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
         is(out.get(i), SKIES).then_some(())?;
         let helpers = out[i + 1..]
             .iter()
-            .take_while(|t| is(Some(t), &["should", "must", "has", "to", "will", "can", "may", "is", "finally", "now"]))
+            .take_while(|t| {
+                is(
+                    Some(t),
+                    &[
+                        "should", "must", "has", "to", "will", "can", "may", "is", "finally", "now",
+                    ],
+                )
+            })
             .count();
         let verb = is(
             out.get(i + 1 + helpers),
-            &["stop", "stops", "end", "ends", "ended", "cease", "ceases", "lift", "lifts", "pass", "passes", "vanish", "vanishes", "disappear", "disappears", "disperse", "disperses", "go", "goes", "stopped", "lifted", "over", "gone"],
-        );
+            &[
+                "stop",
+                "stops",
+                "end",
+                "ends",
+                "ended",
+                "cease",
+                "ceases",
+                "lift",
+                "lifts",
+                "pass",
+                "passes",
+                "vanish",
+                "vanishes",
+                "disappear",
+                "disappears",
+                "disperse",
+                "disperses",
+                "go",
+                "goes",
+                "stopped",
+                "lifted",
+            ],
+        ) || helpers > 0 && is(out.get(i + 1 + helpers), &["over", "gone"]);
         let from = i - usize::from(i > 0 && is(out.get(i - 1), &["the", "this", "that"]));
         let lead = is(out.get(from.wrapping_sub(1)), &["let", "make", "have"]);
         verb.then_some((from - usize::from(lead && from > 0), i + 2 + helpers))
@@ -88,7 +117,9 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
         let article = usize::from(is(out.get(n), &["the", "this", "that"]));
         let end = n + article + 1;
         if out.get(n + article).is_some_and(is_style) && out[end..].iter().any(is_style) {
-            let comma = out.get(end).is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma);
+            let comma = out
+                .get(end)
+                .is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma);
             out.drain(..end + usize::from(comma));
         }
     }
@@ -98,11 +129,50 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
 /// "the snow has turned to rain", "change night to day": what it becomes.
 fn changed(tokens: Vec<Token>) -> Vec<Token> {
     const CHANGE: &[&str] = &[
-        "has", "have", "turned", "turns", "turn", "turning", "changed", "changes", "change", "is", "was", "being", "becomes",
-        "became", "become", "becoming", "gives", "gave", "given", "way", "replaced", "into", "to", "by", "with", "for", "and",
-        "yields", "yielded", "should", "must", "now", "the", "a", "swapped", "exchanged", "made", "goes", "went", "over",
+        "has",
+        "have",
+        "turned",
+        "turns",
+        "turn",
+        "turning",
+        "changed",
+        "changes",
+        "change",
+        "is",
+        "was",
+        "being",
+        "becomes",
+        "became",
+        "become",
+        "becoming",
+        "gives",
+        "gave",
+        "given",
+        "way",
+        "replaced",
+        "into",
+        "to",
+        "by",
+        "with",
+        "for",
+        "and",
+        "yields",
+        "yielded",
+        "should",
+        "must",
+        "now",
+        "the",
+        "a",
+        "swapped",
+        "exchanged",
+        "made",
+        "goes",
+        "went",
+        "over",
     ];
-    const INTO: &[&str] = &["into", "to", "by", "with", "for", "becomes", "became", "become", "becoming"];
+    const INTO: &[&str] = &[
+        "into", "to", "by", "with", "for", "becomes", "became", "become", "becoming",
+    ];
     let cut = (0..tokens.len()).find_map(|i| {
         if !is_style(&tokens[i]) {
             return None;
@@ -110,19 +180,35 @@ fn changed(tokens: Vec<Token>) -> Vec<Token> {
         let next = (i + 1..tokens.len().min(i + 8)).find(|k| is_style(&tokens[*k]))?;
         let between = &tokens[i + 1..next];
         let plain = between.iter().all(|t| is(Some(t), CHANGE));
-        let swapped = tokens
-            .iter()
-            .any(|t| is(Some(t), &["replace", "replaced", "swap", "swapped", "exchange", "exchanged", "substitute"]));
-        let into = between.iter().any(|t| {
-            is(Some(t), INTO) && (swapped || !is(Some(t), &["by", "with", "for"]))
+        let swapped = tokens.iter().any(|t| {
+            is(
+                Some(t),
+                &[
+                    "replace",
+                    "replaced",
+                    "swap",
+                    "swapped",
+                    "exchange",
+                    "exchanged",
+                    "substitute",
+                ],
+            )
         });
+        let into = between
+            .iter()
+            .any(|t| is(Some(t), INTO) && (swapped || !is(Some(t), &["by", "with", "for"])));
         // "from fog to snow" and "the fog to snow" alike
         let from = i - usize::from(i > 0 && is(tokens.get(i - 1), &["the", "this", "that", "from"]));
         (plain && into).then_some((from, next))
     });
     match cut {
         Some((from, next)) => {
-            let lead = is(tokens.get(from.wrapping_sub(1)), &["change", "turn", "switch", "swap", "exchange", "replace", "make", "convert"]);
+            let lead = is(
+                tokens.get(from.wrapping_sub(1)),
+                &[
+                    "change", "turn", "switch", "swap", "exchange", "replace", "make", "convert",
+                ],
+            );
             let start = if lead { from - 1 } else { from };
             [&tokens[..start], &tokens[next..]].concat()
         }

@@ -163,7 +163,12 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
             return Some(k);
         }
         // "on the cross street", "a stop": after an article it is no verb
-        let named = k > 0 && is(tokens.get(k - 1), &["the", "a", "an", "my", "our", "this", "that"]) && k > from;
+        let named = k > 0
+            && is(
+                tokens.get(k - 1),
+                &["the", "a", "an", "my", "our", "this", "that"],
+            )
+            && k > from;
         if named && !HELPERS.contains(&w) {
             k += 1;
             continue;

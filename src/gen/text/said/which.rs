@@ -8,17 +8,63 @@ use super::Talk;
 use super::words::{first_noun, is, leads, led, noun_at, number, text, word};
 
 const NEAREST: &[&str] = &[
-    "nearer to me", "nearer to us", "closer to me", "closer to us", "nearest to me", "nearest to us", "closest to me",
-    "closest to us", "nearest", "closest", "nearer", "closer", "closer by", "nearer by", "the nearest", "the closest",
-    "the nearest to us", "the nearest to me", "the closest to us", "the closest to me",
+    "nearer to me",
+    "nearer to us",
+    "closer to me",
+    "closer to us",
+    "nearest to me",
+    "nearest to us",
+    "closest to me",
+    "closest to us",
+    "nearest",
+    "closest",
+    "nearer",
+    "closer",
+    "closer by",
+    "nearer by",
+    "the nearest",
+    "the closest",
+    "the nearest to us",
+    "the nearest to me",
+    "the closest to us",
+    "the closest to me",
 ];
 const FARTHEST: &[&str] = &[
-    "farther away from me", "farther away from us", "further away from me", "further away from us", "farther away",
-    "further away", "farther from me", "farther from us", "further from me", "further from us", "farthest from me",
-    "farthest from us", "furthest from me", "furthest from us", "farthest away", "furthest away", "farthest away from us",
-    "farthest away from me", "furthest away from us", "furthest away from me", "farthest", "furthest", "farther", "further",
-    "farther off", "further off", "more distant", "most distant", "the farthest", "the furthest", "the farthest away",
-    "the furthest away", "the most distant", "the farthest from us", "the farthest from me",
+    "farther away from me",
+    "farther away from us",
+    "further away from me",
+    "further away from us",
+    "farther away",
+    "further away",
+    "farther from me",
+    "farther from us",
+    "further from me",
+    "further from us",
+    "farthest from me",
+    "farthest from us",
+    "furthest from me",
+    "furthest from us",
+    "farthest away",
+    "furthest away",
+    "farthest away from us",
+    "farthest away from me",
+    "furthest away from us",
+    "furthest away from me",
+    "farthest",
+    "furthest",
+    "farther",
+    "further",
+    "farther off",
+    "further off",
+    "more distant",
+    "most distant",
+    "the farthest",
+    "the furthest",
+    "the farthest away",
+    "the furthest away",
+    "the most distant",
+    "the farthest from us",
+    "the farthest from me",
 ];
 
 /// The longest of both lists here: the word for the pick and how many tokens it takes.
@@ -39,19 +85,29 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "whichever truck is farthest from us": the farthest truck.
 fn whichever(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(i) = tokens.iter().position(|t| matches!(text(t), "whichever" | "whatever" | "which")) else {
+    let Some(i) = tokens
+        .iter()
+        .position(|t| matches!(text(t), "whichever" | "whatever" | "which"))
+    else {
         return tokens;
     };
     let Some((a, b)) = first_noun(&tokens[i + 1..]).filter(|n| n.0 < 3) else {
         return tokens;
     };
     let (a, b) = (i + 1 + a, i + 1 + b);
-    let be = is(tokens.get(b), &["is", "stands", "happens", "drives", "comes", "are", "was"]);
+    let be = is(
+        tokens.get(b),
+        &["is", "stands", "happens", "drives", "comes", "are", "was"],
+    );
     let from = b + 1 + usize::from(is(tokens.get(b), &["happens"])) * 2;
     match tokens.get(from..).and_then(pick).filter(|_| be) {
         Some((word, n)) => {
             let mut out = tokens[..i].to_vec();
-            out.extend(led(&format!("the {word}"), &tokens[i], &[&tokens[i + 1..a], &tokens[a..b]]));
+            out.extend(led(
+                &format!("the {word}"),
+                &tokens[i],
+                &[&tokens[i + 1..a], &tokens[a..b]],
+            ));
             out.extend_from_slice(&tokens[from + n..]);
             out
         }
@@ -63,7 +119,10 @@ fn whichever(tokens: Vec<Token>) -> Vec<Token> {
 fn by_relative(tokens: Vec<Token>) -> Vec<Token> {
     let found = (1..tokens.len()).find_map(|i| {
         is(tokens.get(i), &["that", "which", "who"]).then_some(())?;
-        let be = leads(&tokens[i + 1..], &["is", "are", "stands", "drives", "comes", "was"])?;
+        let be = leads(
+            &tokens[i + 1..],
+            &["is", "are", "stands", "drives", "comes", "was"],
+        )?;
         let (word, n) = pick(&tokens[i + 1 + be..])?;
         // "the car that is closer to the bus"
         let rest = &tokens[i + 1 + be + n..];
@@ -95,15 +154,21 @@ fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let noun = |k: usize| {
             // its adjectives may stand between
             let end = (k..tokens.len().min(k + 3)).find(|j| noun_at(&tokens[*j..]).is_some())?;
-            let plain = tokens[k..end]
-                .iter()
-                .all(|t| matches!(look_up(text(t)), Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))));
+            let plain = tokens[k..end].iter().all(|t| {
+                matches!(
+                    look_up(text(t)),
+                    Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))
+                )
+            });
             plain.then(|| end + noun_at(&tokens[end..]).unwrap_or(1))
         };
-        let taken = [("nearest", &["nearer", "closer"][..]), ("farthest", &["farther", "further", "more distant", "remoter"][..])]
-            .into_iter()
-            .find_map(|(pick, list)| leads(&tokens[i..], list).map(|n| (pick, n)))
-            .filter(|(_, n)| the && noun(i + n).is_some());
+        let taken = [
+            ("nearest", &["nearer", "closer"][..]),
+            ("farthest", &["farther", "further", "more distant", "remoter"][..]),
+        ]
+        .into_iter()
+        .find_map(|(pick, list)| leads(&tokens[i..], list).map(|n| (pick, n)))
+        .filter(|(_, n)| the && noun(i + n).is_some());
         if let Some((pick, n)) = taken {
             out.push(word(pick, &tokens[i]));
             i += n;
@@ -138,11 +203,16 @@ fn the_one(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let adjective = matches!(
             look_up(text(&out[i - 1])),
             Some(Sense::State(_, false) | Sense::Pick(_) | Sense::Color(_) | Sense::Size(_))
-        ) || is(out.get(i - 1), &["oncoming", "approaching", "waiting", "nearest", "farthest"]);
+        ) || is(
+            out.get(i - 1),
+            &["oncoming", "approaching", "waiting", "nearest", "farthest"],
+        );
         if !is(out.get(i), &["one"]) || !adjective || !is(out.get(i - 2), &["the", "that"]) {
             continue;
         }
-        let before = (0..i).rev().find_map(|k| noun_at(&out[k..i]).map(|n| out[k..k + n].to_vec()));
+        let before = (0..i)
+            .rev()
+            .find_map(|k| noun_at(&out[k..i]).map(|n| out[k..k + n].to_vec()));
         let noun = before
             .or_else(|| talk.last.as_ref().map(|l| led(l, &out[i], &[])))
             .or_else(|| only_kind(&out[i - 1], talk).map(|l| led(&l, &out[i], &[])));
@@ -184,15 +254,35 @@ pub fn spared(tokens: &[Token]) -> Vec<Token> {
     let ends = tokens.len();
     let tokens = tokens.to_vec();
     let found = (2..ends).find_map(|i| {
-        let but = leads(&tokens[i..], &["but", "except for", "except", "apart from", "save for", "save", "bar", "other than"])?;
+        let but = leads(
+            &tokens[i..],
+            &[
+                "but",
+                "except for",
+                "except",
+                "apart from",
+                "save for",
+                "save",
+                "bar",
+                "other than",
+            ],
+        )?;
         let from = i + but;
         let the = usize::from(is(tokens.get(from), &["the"]));
         let (pick, n) = pick(tokens.get(from + the..)?)?;
         let end = from + the + n;
-        let closes = tokens.get(end).is_none_or(|t| t.kind != TokenKind::Word) || is(tokens.get(end), &["one", "and"])
+        let closes = tokens.get(end).is_none_or(|t| t.kind != TokenKind::Word)
+            || is(tokens.get(end), &["one", "and"])
             || super::lists::HELPERS.contains(&text(&tokens[end]));
         let (a, b) = first_noun(&tokens[..i])?;
-        closes.then(|| (from, end + usize::from(is(tokens.get(end), &["one"])), pick, tokens[a..b].to_vec()))
+        closes.then(|| {
+            (
+                from,
+                end + usize::from(is(tokens.get(end), &["one"])),
+                pick,
+                tokens[a..b].to_vec(),
+            )
+        })
     });
     match found {
         Some((from, end, pick, noun)) => {
@@ -214,18 +304,24 @@ pub fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         i += 1;
         let last = out.len() - 1;
         let verb = (is_verb(&out[last]) || is(out.last(), &["away", "out", "off", "rid", "of"]))
-            && out[..=last]
-                .iter()
-                .rev()
-                .take(3)
-                .any(|t| super::some_of::removes(Some(t)) || is(Some(t), &["rid", "ditch", "scrap", "kick", "throw", "chuck", "dump", "lose"]));
+            && out[..=last].iter().rev().take(3).any(|t| {
+                super::some_of::removes(Some(t))
+                    || is(
+                        Some(t),
+                        &["rid", "ditch", "scrap", "kick", "throw", "chuck", "dump", "lose"],
+                    )
+            });
         let many = tokens
             .get(i)
             .and_then(|t| number(t).or(matches!(text(t), "a" | "an").then_some(1)));
         let Some(many) = many.filter(|n| verb && (1..40).contains(n)) else {
             continue;
         };
-        let of = leads(&tokens[i + 1..], &["of the", "of these", "of those", "of my", "of our"]).unwrap_or(0);
+        let of = leads(
+            &tokens[i + 1..],
+            &["of the", "of these", "of those", "of my", "of our"],
+        )
+        .unwrap_or(0);
         // "one of the two": of as many as there are
         let all = usize::from(of > 0 && tokens.get(i + 1 + of).is_some_and(|t| number(t).is_some()));
         let from = i + 1 + of + all;

@@ -68,10 +68,21 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     // "there shouldn't be anyone on foot any more"
     if let Some((i, n)) = find(
         &out,
-        &["be anyone on foot", "be anybody on foot", "be any people on foot", "be any persons on foot"],
-    ) && out[..i].iter().any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "no"))
+        &[
+            "be anyone on foot",
+            "be anybody on foot",
+            "be any people on foot",
+            "be any persons on foot",
+        ],
+    ) && out[..i]
+        .iter()
+        .any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "no"))
     {
-        let late = leads(&out[i + n..], &["any more", "anymore", "any longer", "at all", "now"]).unwrap_or(0);
+        let late = leads(
+            &out[i + n..],
+            &["any more", "anymore", "any longer", "at all", "now"],
+        )
+        .unwrap_or(0);
         let rest = out[i + n + late..].to_vec();
         out = led("remove all the pedestrians", &out[0], &[&rest]);
     }
