@@ -481,7 +481,18 @@ impl Parser<'_> {
         }
         // "three of them are trucks"
         let sorted = matches!(lead, "are" | "were") && pre.count.is_none() && pre.article.is_none();
-        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article
+        let is = matches!(
+            lead,
+            "is" | "are"
+                | "was"
+                | "being"
+                | "which is"
+                | "that is"
+                | "of them"
+                | "of which"
+                | "one of them"
+                | "one of which"
+        ) && article
             || lead == ":"
             || sorted;
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {

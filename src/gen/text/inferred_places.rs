@@ -34,6 +34,7 @@ pub fn infer(mentions: &mut [Mention]) {
     for i in 0..mentions.len() {
         blocked_at(&mut mentions[i]);
         stranded(&mut mentions[i]);
+        crosses(&mut mentions[i]);
         comes_towards(&mut mentions[i]);
         waits_for_crossers(mentions, i);
         goes_with(mentions, i);
@@ -105,6 +106,31 @@ fn stranded(m: &mut Mention) {
     });
     if there && m.spec.state == Some(ObjectState::Parked) {
         m.spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// Who crosses the road is no longer on the pavement where the others of the group are.
+fn crosses(m: &mut Mention) {
+    let over = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.relation == R::Crossing && matches!(r.anchor, Anchor::Lane(LaneRole::Road)));
+    let left = m.spec.relations.len();
+    if over && m.spec.class == Class::Pedestrian {
+        m.spec.relations.retain(|r| {
+            !(r.relation == R::On
+                && matches!(
+                    r.anchor,
+                    Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+                ))
+        });
+    }
+    // (the side of the road was that of the pavement)
+    if m.spec.relations.len() < left {
+        m.spec
+            .relations
+            .retain(|r| !(matches!(r.relation, R::LeftOf | R::RightOf) && r.anchor == Anchor::Ego));
     }
 }
 

@@ -87,6 +87,10 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
                 sense = look_up(&mine.join(" "));
             }
             let sense = sense?;
+            // "parked across from a bus"
+            if n > 1 && words.ends_with(" across") && word(i + n) == Some("from") {
+                return None;
+            }
             // "on the left" must not tear "left lane" apart.
             let torn = n > 1
                 && !is_place_like(sense)
@@ -221,7 +225,12 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 ..item.clone()
             }),
             // "double decker" and the like are longer runs; "a couple" alone is two people.
-            ("a couple" | "couple", Tag::Is(Sense::Count(_))) if !next.is_some_and(continues_noun) => {
+            ("a couple" | "couple", Tag::Is(Sense::Count(_)))
+                if !next.is_some_and(continues_noun)
+                    // "a couple walking through it", not "a couple parked cars"
+                    || matches!(next.map(|n| n.tag), Some(Tag::Is(Sense::State(_, false))))
+                        && !after_next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Noun(..) | Sense::Color(_) | Sense::Size(_)))) =>
+            {
                 let tag = look_up("pedestrian").map_or(Tag::Unknown, Tag::Is);
                 out.push(item.clone());
                 out.push(Item { tag, ..item.clone() });

@@ -50,7 +50,9 @@ impl Parser<'_> {
         let whole = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i));
-        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"))
+            || self.items[self.at].words.ends_with("of them")
+            || self.items[self.at].words.ends_with("of which");
         if let (Some(whole), true, true) = (whole, of_them, self.pending.is_some()) {
             // "between two of them", "next to one of them"
             self.anchor(Anchor::Object(whole), span);
@@ -135,7 +137,9 @@ impl Parser<'_> {
         };
         self.flush();
         let left = self.mentions[parent].spec.count;
-        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"))
+            || self.items[self.at].words.ends_with("of them")
+            || self.items[self.at].words.ends_with("of which");
         if of_them && self.mentions[parent].uncounted && self.ends(self.at + 2) {
             // "cones along the edge, six of them"
             self.mentions[parent].spec.count = count;

@@ -247,6 +247,19 @@ impl<'a> Parser<'a> {
                     self.item(self.at + 1).map(|n| n.tag),
                     Some(Tag::Number(_) | Tag::Comma | Tag::Is(Sense::Article(_) | Sense::Count(_)))
                 );
+                // "pushing a wheelbarrow": what it is beside is not known
+                let beside = self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::NextTo]));
+                let article = matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Article(false)));
+                if beside && article && !self.edits && !self.noun_ahead(self.at + 1) {
+                    self.pending = None;
+                    for i in self.last.clone() {
+                        let spec = &mut self.mentions[i].spec;
+                        spec.state = spec.state.or(Some(ObjectState::Moving));
+                    }
+                }
                 if led && fresh && !self.edits {
                     self.pending = None;
                 }

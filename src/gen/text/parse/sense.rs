@@ -458,10 +458,15 @@ impl<'a> Parser<'a> {
             // "hurries across the street"
             Sense::FarSide
                 if (item.words.starts_with("across") || item.words.starts_with("over"))
-                    && matches!(
+                    && (matches!(
                         self.sense(self.at.wrapping_sub(1)),
                         Some(Sense::State(ObjectState::Moving, _) | Sense::Attribute(_))
-                    )
+                    ) || self.at > 0
+                        && self.items[self.at - 1].tag == Tag::Unknown
+                        && self
+                            .last
+                            .iter()
+                            .all(|t| self.mentions[*t].spec.state == Some(ObjectState::Moving)))
                     && !self.last.is_empty() =>
             {
                 self.begin(Prep::Rels(vec![RelationKind::Crossing]), span);

@@ -16,7 +16,13 @@ use crate::scene::graph::LaneRole as L;
 
 /// A sentence (without its stop) in plain words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = replaced(&tokens, "together with|along with|and also|as well as", "and");
+    let out = replaced(
+        &tokens,
+        "get rid of|getting rid of|do away with|dispose of",
+        "remove",
+    );
+    let out = everyone_there(out);
+    let out = replaced(&out, "together with|along with|and also|as well as", "and");
     let out = replaced(&out, "not just|not only|not merely", "not");
     let out = replaced(
         &out,
@@ -239,6 +245,24 @@ fn own_side(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "move everyone on the sidewalk": all the people there.
+fn everyone_there(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["everyone", "everybody"])
+            && is(
+                tokens.get(i + 1),
+                &["on", "in", "at", "standing", "walking", "waiting"],
+            )
+    });
+    match found {
+        Some(i) => {
+            let all = led("all the pedestrians", &tokens[i], &[]);
+            [&tokens[..i], &all[..], &tokens[i + 1..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// The same for what begins after "and" or a comma with one of these words.
