@@ -221,7 +221,27 @@ fn without_aim(sentence: &[Token]) -> Vec<Token> {
         .any(|t| matches!(look_up(&t.text), Some(Sense::Noun(..))));
     let wish = matches!(
         sentence[i - 1].text.as_str(),
-        "want" | "like" | "need" | "have" | "try" | "order"
+        "want"
+            | "like"
+            | "need"
+            | "have"
+            | "try"
+            | "order"
+            | "has"
+            | "had"
+            | "needs"
+            | "going"
+            | "about"
+            | "begins"
+            | "starts"
+            | "supposed"
+            | "ready"
+            | "wants"
+            | "used"
+            | "waiting"
+            | "waits"
+            | "wait"
+            | "trying"
     );
     if !had || wish {
         return sentence.to_vec();

@@ -256,7 +256,12 @@ fn everyone_there(tokens: Vec<Token>) -> Vec<Token> {
                 &["on", "in", "at", "standing", "walking", "waiting"],
             )
     });
-    match found {
+    let goes = |i: usize| {
+        tokens[i..]
+            .iter()
+            .any(|t| matches!(text(t), "to" | "onto" | "into" | "across" | "over"))
+    };
+    match found.filter(|i| goes(*i)) {
         Some(i) => {
             let all = led("all the pedestrians", &tokens[i], &[]);
             [&tokens[..i], &all[..], &tokens[i + 1..]].concat()
