@@ -10,7 +10,7 @@ use super::lanes::{LaneMap, REACH_M};
 use super::place::{is_roadside, stands};
 use crate::generation::world::draw::Draw;
 use crate::scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
-use crate::scene::{BevLayer, Class, GridSpec};
+use crate::scene::{BevLayer, Class};
 
 /// A place to try.
 #[derive(Clone, Copy, Debug)]
