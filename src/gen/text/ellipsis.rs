@@ -11,7 +11,7 @@ use crate::scene::graph::LaneRole;
 pub fn filled(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
     for sentence in sentences(tokens) {
-        let mut s = same_distance(sentence, &out);
+        let mut s = super::measures::same_distance(sentence, &out);
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = second_side(&s);
@@ -21,7 +21,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
             "every one of them|every single one of them|each and every one of them|each one of them|the lot of them",
             "all of them",
         );
-        s = same_number(&s);
+        s = super::measures::same_number(&s);
         s = each_of_both(&s);
         s = more_groups(&s);
         s = our_way(&s);
@@ -51,7 +51,7 @@ pub fn is_noun(t: &Token) -> bool {
     t.kind == TokenKind::Word && matches!(look_up(&t.text), Some(Sense::Noun(..)))
 }
 
-fn is_unit(t: &Token) -> bool {
+pub(super) fn is_unit(t: &Token) -> bool {
     matches!(look_up(&t.text), Some(Sense::Unit(_)))
 }
 
@@ -66,72 +66,16 @@ fn is_strip(word: &str) -> bool {
     )
 }
 
-fn ends(t: Option<&Token>) -> bool {
+pub(super) fn ends(t: Option<&Token>) -> bool {
     t.is_none_or(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark))
 }
 
-fn digits(n: u32, at: &Token) -> Token {
+pub(super) fn digits(n: u32, at: &Token) -> Token {
     Token {
         kind: TokenKind::Number(f64::from(n)),
         text: n.to_string(),
         span: at.span,
     }
-}
-
-/// Distances as multiples of the one that was named last.
-const MULTIPLES: [(f64, &str); 4] = [
-    (
-        2.0,
-        "twice that distance|at twice that distance|double that distance|at double that distance|twice the distance|at twice the distance|double the distance|at double the distance|twice as far|twice as far away|double as far",
-    ),
-    (
-        0.5,
-        "half that distance|at half that distance|half the distance|at half the distance|half as far|half as far away",
-    ),
-    (
-        3.0,
-        "three times that distance|at three times that distance|three times the distance|three times as far|thrice that distance|triple that distance|three times as far away",
-    ),
-    (
-        1.5,
-        "one and a half times that distance|one and a half times as far",
-    ),
-];
-
-/// "the same distance behind me": as many metres as were named last.
-fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
-    const SAME: &str = "the same distance|at the same distance|the very same distance|at an equal distance|an equal distance|just as far|equally far|as far again|the same number of metres|as many metres|that same distance";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < sentence.len() {
-        let said: Vec<&Token> = before.iter().chain(&out).collect();
-        let metres = said
-            .windows(2)
-            .rev()
-            .find(|w| number(w[0]).is_some() && is_unit(w[1]))
-            .map(|w| [w[0].clone(), w[1].clone()]);
-        let times = MULTIPLES
-            .iter()
-            .find_map(|(factor, list)| begins(&sentence[i..], list).map(|n| (n, *factor)));
-        match (begins(&sentence[i..], SAME).map(|n| (n, 1.0)).or(times), metres) {
-            (Some((n, factor)), Some(mut metres)) => {
-                if let (TokenKind::Number(v), true) = (metres[0].kind.clone(), factor != 1.0) {
-                    metres[0].kind = TokenKind::Number(v * factor);
-                    metres[0].text = format!("{}", v * factor);
-                }
-                out.extend(metres);
-                i += n;
-                i += begins(&sentence[i..], "away from|from|away")
-                    .filter(|_| ends(sentence.get(i + 1)))
-                    .unwrap_or(0);
-            }
-            _ => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
 }
 
 /// "on that same side": the side that was named last.
@@ -279,35 +223,6 @@ fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
         match noun {
             Some(noun) => out.push(word(&noun, t)),
             None => out.push(t.clone()),
-        }
-    }
-    out
-}
-
-/// "three people on the left and just as many on the right": three.
-fn same_number(sentence: &[Token]) -> Vec<Token> {
-    const AS_MANY: &str = "just as many|equally many|the same number|as many again|exactly as many|as many";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < sentence.len() {
-        let n = begins(&sentence[i..], AS_MANY).filter(|n| {
-            !sentence
-                .get(i + n)
-                .is_some_and(|t| matches!(t.text.as_str(), "as" | "of"))
-        });
-        let many = (0..out.len())
-            .rev()
-            .find(|k| number(&out[*k]).is_some() && !out.get(k + 1).is_some_and(is_unit))
-            .and_then(|k| number(&out[k]));
-        match (n, many) {
-            (Some(n), Some(many)) => {
-                out.push(digits(many, &sentence[i]));
-                i += n;
-            }
-            _ => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
         }
     }
     out

@@ -5,7 +5,9 @@
 //! a comma, `and` or a finite verb to the subject; at the start of a clause to the nouns that follow.
 
 mod ahead;
+mod denied;
 mod groups;
+mod headings;
 mod labels;
 mod nouns;
 mod numbers;
@@ -13,6 +15,7 @@ mod pairs;
 mod relations;
 mod sense;
 mod sides;
+mod small;
 mod states;
 mod style;
 

@@ -4,11 +4,13 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod causing;
 mod exception;
 mod forms;
 mod frame;
 mod gaps;
 mod idioms;
+mod limits;
 pub(super) mod lists;
 mod orders;
 mod parting;
@@ -18,10 +20,13 @@ mod recast;
 mod skies;
 mod some_of;
 mod spoken;
+mod steps;
+mod strips;
 mod subject;
 mod swap;
 #[cfg(test)]
 mod tests;
+mod topics;
 mod untouched;
 mod ways;
 mod which;
@@ -326,39 +331,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(vec![remembered(inner, talk)]);
     }
     // "leave the car behind me as it is"
-    if is(inner.first(), &["leave", "keep", "let"])
-        && let Some((i, n)) = find(
-            inner,
-            &[
-                "as it is",
-                "as they are",
-                "where it is",
-                "where they are",
-                "untouched",
-                "unchanged",
-                "alone",
-                "in place",
-                "in peace",
-                "as it was",
-                "where it stands",
-                "where they stand",
-                "as he is",
-                "as she is",
-                "where he is",
-                "where she is",
-                "the way it is",
-                "the way they are",
-                "be",
-                "stay",
-                "in its place",
-                "in their place",
-            ],
-        )
-        && i + n == inner.len()
-        && has_noun(&inner[1..i])
-        && talk.fits(&inner[1..i]) > 0
-    {
-        return Some(vec![remembered(&inner[1..i], talk)]);
+    if let Some(np) = untouched::stays(inner).filter(|np| talk.fits(np) > 0) {
+        return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"
     if let Some((i, n)) = find(
