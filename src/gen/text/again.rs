@@ -189,9 +189,9 @@ impl Parser<'_> {
             return false;
         }
         let mut before = self.at;
-        while before > 0
-            && matches!(
-                self.sense(before - 1),
+        let describes = |k: usize| {
+            matches!(
+                self.sense(k),
                 Some(
                     Sense::Article(_)
                         | Sense::Pronoun
@@ -199,12 +199,11 @@ impl Parser<'_> {
                         | Sense::Color(_)
                         | Sense::Size(_)
                 )
-            )
-            || before > 0
-                && self
-                    .item(before - 1)
-                    .is_some_and(|i| matches!(i.words.as_str(), "his" | "their" | "her" | "its"))
-        {
+            ) || self
+                .item(k)
+                .is_some_and(|i| matches!(i.words.as_str(), "his" | "their" | "her" | "its"))
+        };
+        while before > 0 && describes(before - 1) {
             before -= 1;
         }
         let lead = before

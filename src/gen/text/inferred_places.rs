@@ -162,10 +162,10 @@ fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
     let crossing = |m: &Mention| {
         m.spec.class == Class::Pedestrian
             && !m.gone
-            && m.spec.relations.iter().any(|r| {
-                r.relation == R::On && r.anchor == Anchor::Crossing
-                    || r.relation == R::WaitingAt && r.anchor == Anchor::Crossing
-            })
+            && m.spec
+                .relations
+                .iter()
+                .any(|r| matches!(r.relation, R::On | R::WaitingAt) && r.anchor == Anchor::Crossing)
     };
     let m = &mentions[i];
     let drives = m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);

@@ -66,7 +66,7 @@ pub(super) fn cleared_of(tokens: Vec<Token>) -> Vec<Token> {
     } else {
         (&tokens[1..last], &tokens[last + 1..])
     };
-    if !first_noun(what).is_some_and(|n| n.0 < 4) || has_noun(place) || place.is_empty() {
+    if first_noun(what).is_none_or(|n| n.0 > 3) || has_noun(place) || place.is_empty() {
         return tokens;
     }
     let article = usize::from(is(place.first(), &["the", "my", "our"]));

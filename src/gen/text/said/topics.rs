@@ -40,9 +40,9 @@ pub(super) fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let ends = rest.len() == 1;
-    if ends && is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0"])
-        || ends && number(first) == Some(0)
-    {
+    let gone =
+        is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0"]) || number(first) == Some(0);
+    if ends && gone {
         return led("remove all", &tokens[0], &[&the]);
     }
     if ends && number(first).is_some() {

@@ -78,9 +78,7 @@ fn pick(tokens: &[Token]) -> Option<(&'static str, usize)> {
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = whichever(tokens);
     let out = by_relative(out);
-    let out = comparative(out, talk);
-    let out = the_one(out, talk);
-    out
+    the_one(comparative(out, talk), talk)
 }
 
 /// "whichever truck is farthest from us": the farthest truck.
