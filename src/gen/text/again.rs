@@ -1,7 +1,7 @@
 //! What a sentence leaves out because it was said before: "and two on the right", "six of them", "people on bikes",
 //! "roadworks on the right: a digger and three men".
 
-use super::description::{Anchor, Count};
+use super::description::Count;
 use super::lexicon::Sense;
 use super::mention::{Mention, Pre, Prep, apply};
 use super::parse::Parser;

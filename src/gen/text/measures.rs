@@ -2,7 +2,7 @@
 
 use super::ellipsis::{digits, ends, is_unit, number};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::begins;
 
 /// Distances as multiples of the one that was named last.
 const MULTIPLES: [(f64, &str); 4] = [
