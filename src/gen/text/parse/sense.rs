@@ -334,33 +334,7 @@ impl<'a> Parser<'a> {
                 self.begin(prep, span);
                 self.anchor(Anchor::Ego, span);
             }
-            Sense::BothSides(each) => {
-                self.flush();
-                let mut targets = self.targets();
-                if self.reversed.is_some() {
-                    targets.truncate(1); // "flanked by two cones on each side"
-                }
-                // "and on both sides stand two cars"
-                if self.fresh && self.noun_ahead(self.at + 1) && self.reversed.is_none() {
-                    self.new_clause();
-                    targets.clear();
-                }
-                if targets.is_empty() && self.noun_ahead(self.at + 1) {
-                    self.fronted_both = Some(each);
-                } else if targets.is_empty() {
-                    self.unread(span, Some("nothing stands before it".into()));
-                }
-                let apiece = |t: &usize| {
-                    let spec = &self.mentions[*t].spec;
-                    spec.count.n == 1 || spec.attributes.iter().any(|a| a == "each")
-                };
-                let each = each || targets.iter().any(apiece);
-                self.chain = false;
-                for t in targets {
-                    self.mentions[t].both = Some(each);
-                    self.mentions[t].spec.span = self.mentions[t].spec.span.to(span);
-                }
-            }
+            Sense::BothSides(each) => self.both_sides(each, span),
             // "drives off", "the sun is going down"
             Sense::In
                 if matches!(

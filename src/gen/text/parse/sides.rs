@@ -185,6 +185,35 @@ impl Parser<'_> {
         place && led && one_word && !self.last.is_empty() && !self.noun_directly(self.at + 1)
     }
 
+    /// "on both sides": of those named before, or of those to come; `each`: the number is that of one side.
+    pub(super) fn both_sides(&mut self, each: bool, span: Span) {
+        self.flush();
+        let mut targets = self.targets();
+        if self.reversed.is_some() {
+            targets.truncate(1); // "flanked by two cones on each side"
+        }
+        // "and on both sides stand two cars"
+        if self.fresh && self.noun_ahead(self.at + 1) && self.reversed.is_none() {
+            self.new_clause();
+            targets.clear();
+        }
+        if targets.is_empty() && self.noun_ahead(self.at + 1) {
+            self.fronted_both = Some(each);
+        } else if targets.is_empty() {
+            self.unread(span, Some("nothing stands before it".into()));
+        }
+        let apiece = |t: &usize| {
+            let spec = &self.mentions[*t].spec;
+            spec.count.n == 1 || spec.attributes.iter().any(|a| a == "each")
+        };
+        let each = each || targets.iter().any(apiece);
+        self.chain = false;
+        for t in targets {
+            self.mentions[t].both = Some(each);
+            self.mentions[t].spec.span = self.mentions[t].spec.span.to(span);
+        }
+    }
+
     /// True if a new subject begins at item `i`: "a taxi", "two men".
     fn subject_after(&self, i: usize) -> bool {
         let fresh = matches!(

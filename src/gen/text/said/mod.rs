@@ -266,44 +266,6 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     Some(out)
 }
 
-/// What nobody wants of a kind goes, where it was said.
-fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
-    let any = is(
-        inner.first(),
-        &["any", "a", "an", "more", "some", "anybody", "anyone"],
-    );
-    let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
-    let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
-    let mut rest = &inner[b..];
-    for late in ["any more", "anymore", "any longer", "at all", "no more", "now"] {
-        let n = late.split(' ').count();
-        if let Some(cut) = rest
-            .len()
-            .checked_sub(n)
-            .filter(|k| find(&rest[*k..], &[late]).is_some())
-        {
-            rest = &rest[..cut];
-        }
-    }
-    let told = rest.first().is_some_and(|t| {
-        is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to"
-    });
-    let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
-    (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
-        let body = is(inner.get(a), &["anybody", "anyone"]);
-        let np = if body {
-            led("people", first, &[])
-        } else {
-            inner[a..b].to_vec()
-        };
-        vec![Piece::Plain(led(
-            "remove all the",
-            first,
-            &[&np, &rest[2 * verb..]],
-        ))]
-    })
-}
-
 /// A command that does nothing but say what "it" will mean.
 fn remembered(np: &[Token], talk: &Talk<'_>) -> Piece {
     let span = np.iter().fold(np[0].span, |s: Span, t| s.to(t.span));
@@ -413,7 +375,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     // "I don't want any cars behind me any more"
     if mood.denied
-        && let Some(found) = unwanted(inner, first)
+        && let Some(found) = exception::unwanted(inner, first)
     {
         return Some(found);
     }
