@@ -1,7 +1,7 @@
 //! What a sentence leaves out because it was said before: "and two on the right", "six of them", "people on bikes",
 //! "roadworks on the right: a digger and three men".
 
-use super::description::{Anchor, Count};
+use super::description::Count;
 use super::lexicon::Sense;
 use super::mention::{Mention, Pre, Prep, apply};
 use super::parse::Parser;
@@ -189,12 +189,21 @@ impl Parser<'_> {
             return false;
         }
         let mut before = self.at;
-        while before > 0
-            && matches!(
-                self.sense(before - 1),
-                Some(Sense::Article(_) | Sense::Pronoun | Sense::Attribute(_) | Sense::Color(_))
-            )
-        {
+        let describes = |k: usize| {
+            matches!(
+                self.sense(k),
+                Some(
+                    Sense::Article(_)
+                        | Sense::Pronoun
+                        | Sense::Attribute(_)
+                        | Sense::Color(_)
+                        | Sense::Size(_)
+                )
+            ) || self
+                .item(k)
+                .is_some_and(|i| matches!(i.words.as_str(), "his" | "their" | "her" | "its"))
+        };
+        while before > 0 && describes(before - 1) {
             before -= 1;
         }
         let lead = before
@@ -360,74 +369,6 @@ impl Parser<'_> {
         true
     }
 
-    /// "Wrong-way driver: a car comes at us": a bare noun before a colon is a heading.
-    pub(super) fn heading(&mut self) {
-        let listed = matches!(
-            self.item(self.at + 1).map(|n| n.tag),
-            Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
-        );
-        if let [m] = self.mentions.as_mut_slice()
-            && listed
-            && m.uncounted
-            && m.bare
-            && !m.plural
-        {
-            m.gone = true;
-            self.head.clear();
-            self.last.clear();
-        }
-        // "Vehicles: one bus, ...": the list names them itself
-        let nouns_follow = listed
-            && self.items[self.at + 1..]
-                .iter()
-                .take(6)
-                .find_map(|n| match n.tag {
-                    Tag::Is(Sense::Noun(noun, _)) => Some(noun),
-                    Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At) | Tag::Stop => None,
-                    _ => None,
-                })
-                .is_some_and(|noun| {
-                    self.head.last().is_some_and(|i| {
-                        let m = &self.mentions[*i];
-                        m.uncounted
-                            && (m.bare || m.definite)
-                            && m.plural
-                            && m.classes.contains(&noun.classes[0])
-                    })
-                })
-            && self.items[self.at + 1..]
-                .iter()
-                .take_while(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
-                .all(|n| {
-                    !matches!(
-                        n.tag,
-                        Tag::Is(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_)) | Tag::Comma
-                    )
-                });
-        if nouns_follow && let Some(&i) = self.head.last() {
-            self.mentions[i].gone = true;
-            self.head.clear();
-            self.last.clear();
-            self.list.clear();
-        }
-        // "Left pavement: two ladies."
-        if let Some((anchor, span)) = self.topic.filter(|_| {
-            self.head.is_empty() && self.pending.is_none() && (listed || self.noun_ahead(self.at + 1))
-        }) && matches!(anchor, Anchor::Lane(_))
-            && !matches!(anchor, Anchor::Lane(crate::scene::graph::LaneRole::Road))
-        {
-            self.topic = None;
-            self.fronted.push(super::mention::Frag {
-                prep: Prep::In,
-                anchor,
-                and: None,
-                distance_m: None,
-                span,
-            });
-            self.chain = true;
-        }
-    }
-
     /// "the lead vehicle is a Tesla", "Vehicle 1: bus": says what was named before. True if it was that.
     pub(super) fn is_that(&mut self, noun: &'static Noun, word: &str, pre: &Pre) -> bool {
         if self.edits
@@ -463,19 +404,28 @@ impl Parser<'_> {
             && article
             && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma)
             && matches!(
-                before.checked_sub(2).and_then(|i| self.sense(i)),
-                Some(Sense::Noun(..))
-            )
-            && self
-                .head
-                .last()
-                .is_some_and(|i| self.mentions[*i].definite && self.mentions[*i].classes == noun.classes);
-        if set_apart {
+                before.checked_sub(2).and_then(|i| self.item(i)).map(|i| i.tag),
+                Some(Tag::Is(Sense::Noun(..)) | Tag::Number(_))
+            );
+        if let Some(&i) = self.head.last().filter(|_| set_apart)
+            && self.described_as(i, noun, word)
+        {
             return true;
         }
         // "three of them are trucks"
         let sorted = matches!(lead, "are" | "were") && pre.count.is_none() && pre.article.is_none();
-        let is = matches!(lead, "is" | "are" | "was" | "being" | "which is" | "that is") && article
+        let is = matches!(
+            lead,
+            "is" | "are"
+                | "was"
+                | "being"
+                | "which is"
+                | "that is"
+                | "of them"
+                | "of which"
+                | "one of them"
+                | "one of which"
+        ) && article
             || lead == ":"
             || sorted;
         let Some(&i) = self.head.last().or(self.last.last()).filter(|_| is) else {
@@ -522,89 +472,6 @@ impl Parser<'_> {
             && matches!(m.spec.noun.as_str(), "car" | "vehicle" | "automobile" | "motor")
     }
 
-    /// "pedestrians: none", "buses: 0": takes back what was named `back` items before. True if it was that.
-    pub(super) fn none_of_it(&mut self, back: usize, span: Span) -> bool {
-        let named = matches!(
-            self.at.checked_sub(back).and_then(|i| self.sense(i)),
-            Some(Sense::Noun(..))
-        );
-        let Some(&i) = self.last.last().filter(|_| named && self.ends(self.at + 1)) else {
-            return false;
-        };
-        if !self.mentions[i].uncounted || self.mentions[i].is_anchor {
-            return false;
-        }
-        self.mentions[i].gone = true;
-        let (classes, whole) = (
-            self.mentions[i].classes.to_vec(),
-            self.mentions[i].spec.span.to(span),
-        );
-        self.absent(classes, None, whole);
-        self.head.retain(|h| *h != i);
-        self.last.retain(|h| *h != i);
-        true
-    }
-
-    /// "cars and buses are there none": takes the list back. True if it was that.
-    pub(super) fn none_of_these(&mut self, span: Span) -> bool {
-        let verb = (1..=2).any(|k| {
-            let before = self.at.checked_sub(k).and_then(|i| self.item(i));
-            before.is_some_and(|b| {
-                matches!(
-                    b.words.as_str(),
-                    "is" | "are" | "were" | "was" | "is there" | "are there" | "there are"
-                )
-            })
-        });
-        let all = self.head.clone();
-        let open = |i: &usize| {
-            self.mentions[*i].uncounted && self.mentions[*i].plural && !self.mentions[*i].is_anchor
-        };
-        if !verb || all.is_empty() || !all.iter().all(open) {
-            return false;
-        }
-        for i in all {
-            self.mentions[i].gone = true;
-            let (classes, whole) = (
-                self.mentions[i].classes.to_vec(),
-                self.mentions[i].spec.span.to(span),
-            );
-            self.absent(classes, None, whole);
-        }
-        self.head.clear();
-        self.last.clear();
-        true
-    }
-
-    /// "there" at the end of a clause: at the place that was named last.
-    pub(super) fn there(&mut self, span: Span) {
-        let Some(place) = self.last_place else {
-            return;
-        };
-        let placed = |i: &usize| {
-            let of_place = |a: Anchor| !matches!(a, Anchor::Ego | Anchor::Object(_));
-            self.mentions[*i]
-                .spec
-                .relations
-                .iter()
-                .any(|r| of_place(r.anchor))
-        };
-        if self.head.is_empty() || self.pending.is_some() || self.head.iter().any(placed) {
-            return;
-        }
-        let lane = matches!(place, Anchor::Lane(_));
-        self.begin(if lane { Prep::In } else { Prep::At }, span);
-        self.anchor(place, span);
-    }
-
-    /// After "consists of": what follows is a list of its own.
-    pub(super) fn end_list(&mut self) {
-        if !self.listed.is_empty() {
-            self.head.clear();
-            self.chain = true;
-        }
-    }
-
     /// "a car in front, one behind": true if a number without a noun means one more of what was named last.
     pub(super) fn one_more_like_it(&self) -> bool {
         let told = matches!(
@@ -623,53 +490,6 @@ impl Parser<'_> {
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
         told && self.group_behind().is_none()
             && last.is_some_and(|i| !self.mentions[i].spec.relations.is_empty())
-    }
-
-    /// "the left lane has two cars": what follows stands there. True if it was that.
-    pub(super) fn place_has(&mut self, item: &super::tag::Item) -> bool {
-        use crate::scene::graph::LaneRole as L;
-        let Some((anchor, span)) = self
-            .topic
-            .filter(|_| self.head.is_empty() && self.pending.is_none())
-        else {
-            return false;
-        };
-        let fits = match anchor {
-            Anchor::Lane(L::Road | L::Cross) | Anchor::Ego | Anchor::Object(_) => false,
-            Anchor::Junction => item.words != "with",
-            _ => true,
-        };
-        if !fits || !self.noun_ahead(self.at + 1) {
-            return false;
-        }
-        self.topic = None;
-        self.begin(
-            if anchor == Anchor::Junction {
-                Prep::At
-            } else {
-                Prep::In
-            },
-            span,
-        );
-        self.anchor(anchor, span);
-        true
-    }
-
-    /// What follows a colon stands where what is before it was said to be.
-    pub(super) fn introduce(&mut self) {
-        let Some(&first) = self.head.first() else {
-            return;
-        };
-        if !self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1) {
-            return;
-        }
-        self.listed = self.mentions[first]
-            .spec
-            .relations
-            .iter()
-            .filter(|r| r.anchor != Anchor::Object(first))
-            .copied()
-            .collect();
     }
 }
 

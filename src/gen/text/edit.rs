@@ -326,9 +326,13 @@ impl Editor<'_> {
             Verb::Note => {
                 for m in &c.targets {
                     if let Chosen::These(ids) = choose(&self.map, &self.boxes, m, &c.mentions) {
-                        if m.pick == Some(Pick::Any) {
-                            self.part_of = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
-                        }
+                        // "the other one" is of the same kind
+                        self.part_of = self
+                            .boxes
+                            .values()
+                            .filter(|b| m.classes.contains(&b.class))
+                            .map(|b| b.id)
+                            .collect();
                         self.last = ids;
                     }
                 }
@@ -444,7 +448,10 @@ impl Editor<'_> {
             }
         }
         for spared in &c.except {
-            let ids = super::select::fitting(&self.map, &self.boxes, spared, &c.except);
+            let ids = match choose(&self.map, &self.boxes, spared, &c.except) {
+                Chosen::These(ids) => ids,
+                _ => super::select::fitting(&self.map, &self.boxes, spared, &c.except),
+            };
             all.retain(|id| !ids.contains(id));
         }
         all.sort_unstable();

@@ -194,7 +194,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         .any(|w| w[0].text == "should" && w[1].text == "be");
     // "the bus further ahead": what is there already is not added.
     let there_already = verb.is_none()
-        && matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this" | &"both"))
+        && matches!(
+            list.first(),
+            Some(&"the" | &"my" | &"that" | &"this" | &"both" | &"all the" | &"all of the" | &"all my")
+        )
         && matches!(
             items
                 .iter()

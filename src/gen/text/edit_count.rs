@@ -39,6 +39,22 @@ impl Editor<'_> {
 
     /// "only two cars": removes the farthest or adds.
     pub(super) fn keep(&mut self, c: &Command) {
+        // "keep only the van and the woman"
+        let named = |m: &super::mention::Mention| m.definite && !m.plural;
+        if c.change.is_none() && c.targets.len() > 1 && c.targets.iter().any(named) {
+            let mut stay = Vec::new();
+            for m in &c.targets {
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => stay.extend(ids),
+                    _ => {
+                        self.note(format!("{:?}: which are to stay was not clear", c.text));
+                        return;
+                    }
+                }
+            }
+            self.keep_only(&stay);
+            return;
+        }
         for m in &c.targets {
             let fitting = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
             let wanted = match c.change {
@@ -88,7 +104,18 @@ impl Editor<'_> {
             .iter()
             .map(|id| role_of(&self.map, &self.boxes[id]))
             .collect();
-        let Some(Some(role)) = roles.first().copied().filter(|r| roles.iter().all(|x| x == r)) else {
+        use crate::scene::graph::LaneRole;
+        let all_alike = roles
+            .first()
+            .copied()
+            .flatten()
+            .filter(|r| roles.iter().all(|x| *x == Some(*r)));
+        // where some are parked in a car park, more are
+        let lot = roles
+            .contains(&Some(LaneRole::Carpark))
+            .then_some(LaneRole::Carpark);
+        let parked = spec.state == Some(crate::scene::graph::ObjectState::Parked);
+        let Some(role) = all_alike.or(lot.filter(|_| parked)) else {
             return;
         };
         // "on the sidewalk" is the one where they are
@@ -119,7 +146,9 @@ impl Editor<'_> {
     pub(super) fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         let wanted = match &c.by {
-            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1) => by.spec.count.n as usize,
+            Some(by) if !by.uncounted && (!all || by.spec.count.n > 1 || said_one(&c.text)) => {
+                by.spec.count.n as usize
+            }
             _ => ids.len(),
         };
         for id in ids.iter().skip(wanted.max(1)) {
@@ -175,6 +204,14 @@ impl Editor<'_> {
 }
 
 /// A box of another kind where one stands or stood.
+/// "by a single truck": one for all of them.
+fn said_one(words: &str) -> bool {
+    let words = words.to_lowercase();
+    ["single", "just one", "only one", " one "]
+        .iter()
+        .any(|w| words.contains(w))
+}
+
 pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Option<SceneBox> {
     let size_m = DVec3::from_array(spec.size_m.or(spec.class.typical_size_m())?);
     let center_m = old

@@ -13,7 +13,7 @@ use super::said::{Piece, Talk, except, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
-use super::words::edits::Verb;
+use super::words::edits::{Pick, Verb};
 use crate::scene::graph::{LaneRole, ObjectState};
 use crate::scene::{BoxId, Class, SceneBox};
 
@@ -158,6 +158,42 @@ impl Command {
     }
 }
 
+/// "cars: 3, truck: none": each label begins a sentence.
+fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
+    let colon = |t: &Token| t.text == ":";
+    for i in 1..tokens.len() {
+        let label = tokens[i].kind == TokenKind::Comma
+            && tokens[..i].iter().any(colon)
+            && (i + 2..tokens.len().min(i + 5)).any(|k| {
+                colon(&tokens[k])
+                    && tokens[i + 1..k].iter().all(|t| t.kind == TokenKind::Word)
+                    && super::rephrase::is_noun(&tokens[k - 1])
+            });
+        // "van to the right lane, buses to the left lane"
+        let sends = |part: &[Token]| {
+            let to = part
+                .iter()
+                .take(4)
+                .position(|t| matches!(t.text.as_str(), "to" | "onto" | "into"));
+            to.is_some_and(|k| {
+                k > 0
+                    && super::rephrase::is_noun(&part[k - 1])
+                    && part[..k].iter().all(|t| t.kind == TokenKind::Word)
+            })
+        };
+        let start = (0..i)
+            .rev()
+            .find(|k| tokens[*k].kind == TokenKind::Stop)
+            .map_or(0, |k| k + 1);
+        let label = label
+            || tokens[i].kind == TokenKind::Comma && sends(&tokens[start..i]) && sends(&tokens[i + 1..]);
+        if label {
+            tokens[i].kind = TokenKind::Stop;
+        }
+    }
+    tokens
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
@@ -170,7 +206,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: tokens(text),
+            tokens: labelled_apart(super::common::plain(&tokens(text))),
             at: 0,
             last_noun: None,
         }
@@ -217,7 +253,7 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let whole = &self.tokens[from..end];
+        let whole = &super::said::spared(&self.tokens[from..end])[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();
@@ -237,7 +273,7 @@ impl<'t> Reader<'t> {
             target_part(self.text, &tag(&np), &mut spared);
             for c in out
                 .iter_mut()
-                .filter(|c| c.targets.iter().any(|t| t.plural))
+                .filter(|c| c.targets.iter().any(|t| t.plural || t.pick == Some(Pick::All)))
                 .take(1)
             {
                 c.except.clone_from(&spared.targets);

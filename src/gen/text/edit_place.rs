@@ -76,10 +76,30 @@ impl Editor<'_> {
         if recent.len() == 1 { recent } else { sized }
     }
 
+    /// "the left lane" of a street with one lane each way is the oncoming one.
+    fn lanes_that_are_there(&mut self, d: &mut Description) {
+        use crate::scene::graph::LaneRole;
+        let has = |role: LaneRole| self.map.points.iter().any(|p| p.role == role);
+        if has(LaneRole::Left) || !has(LaneRole::Oncoming) {
+            return;
+        }
+        let mut taken = false;
+        for r in d.foreground.iter_mut().flat_map(|o| &mut o.relations) {
+            if r.anchor == Anchor::Lane(LaneRole::Left) {
+                r.anchor = Anchor::Lane(LaneRole::Oncoming);
+                taken = true;
+            }
+        }
+        if taken {
+            self.note("no lane on the left goes our way: the oncoming lane is meant");
+        }
+    }
+
     /// Finds places for what a description names; `from` is the box that is moved there, which does not stand in its own way.
     pub(super) fn arrange(&mut self, d: &Description, from: Option<&SceneBox>) -> Arranged {
         let mut d = d.clone();
         d.density = None;
+        self.lanes_that_are_there(&mut d);
         let refers = referred(&d);
         let mut held: Vec<(usize, Vec<SceneBox>)> = Vec::new();
         for i in 0..d.foreground.len() {

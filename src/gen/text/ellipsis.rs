@@ -11,15 +11,17 @@ use crate::scene::graph::LaneRole;
 pub fn filled(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
     for sentence in sentences(tokens) {
-        let mut s = same_distance(sentence, &out);
+        let mut s = super::measures::same_distance(sentence, &out);
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = second_side(&s);
+        s = place_again(&s, &out);
         s = replaced(
             &s,
             "every one of them|every single one of them|each and every one of them|each one of them|the lot of them",
             "all of them",
         );
+        s = super::measures::same_number(&s);
         s = each_of_both(&s);
         s = more_groups(&s);
         s = our_way(&s);
@@ -49,7 +51,7 @@ pub fn is_noun(t: &Token) -> bool {
     t.kind == TokenKind::Word && matches!(look_up(&t.text), Some(Sense::Noun(..)))
 }
 
-fn is_unit(t: &Token) -> bool {
+pub(super) fn is_unit(t: &Token) -> bool {
     matches!(look_up(&t.text), Some(Sense::Unit(_)))
 }
 
@@ -64,45 +66,16 @@ fn is_strip(word: &str) -> bool {
     )
 }
 
-fn ends(t: Option<&Token>) -> bool {
+pub(super) fn ends(t: Option<&Token>) -> bool {
     t.is_none_or(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark))
 }
 
-fn digits(n: u32, at: &Token) -> Token {
+pub(super) fn digits(n: u32, at: &Token) -> Token {
     Token {
         kind: TokenKind::Number(f64::from(n)),
         text: n.to_string(),
         span: at.span,
     }
-}
-
-/// "the same distance behind me": as many metres as were named last.
-fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
-    const SAME: &str = "the same distance|at the same distance|the very same distance|at an equal distance|an equal distance|just as far|equally far|as far again|the same number of metres|as many metres|that same distance";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < sentence.len() {
-        let said: Vec<&Token> = before.iter().chain(&out).collect();
-        let metres = said
-            .windows(2)
-            .rev()
-            .find(|w| number(w[0]).is_some() && is_unit(w[1]))
-            .map(|w| [w[0].clone(), w[1].clone()]);
-        match (begins(&sentence[i..], SAME), metres) {
-            (Some(n), Some(metres)) => {
-                out.extend(metres);
-                i += n;
-                i += begins(&sentence[i..], "away from|from|away")
-                    .filter(|_| ends(sentence.get(i + 1)))
-                    .unwrap_or(0);
-            }
-            _ => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
 }
 
 /// "on that same side": the side that was named last.
@@ -220,6 +193,36 @@ fn second_side(sentence: &[Token]) -> Vec<Token> {
                 span: t.span,
                 ..place.clone()
             });
+        }
+    }
+    out
+}
+
+/// "the far pavement is empty, on the right one a mother walks": the pavement again.
+fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    let place = |t: &&Token| is_strip(&t.text) || t.text == "lane";
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in sentence.iter().enumerate() {
+        let sided = t.text == "one"
+            && i > 1
+            && matches!(
+                sentence[i - 1].text.as_str(),
+                "left" | "right" | "hand" | "far" | "near" | "opposite" | "oncoming"
+            )
+            && matches!(
+                sentence[i - 2].text.as_str(),
+                "the" | "my" | "our" | "left" | "right"
+            );
+        // (things on the left and on the right are no places)
+        let noun = sided
+            .then(|| out.iter().chain(before).rev().find(|t| place(t) || is_noun(t)))
+            .flatten()
+            .or_else(|| before.iter().rev().find(|t| sided && out.is_empty() && place(t)))
+            .filter(place)
+            .map(|t| t.text.clone());
+        match noun {
+            Some(noun) => out.push(word(&noun, t)),
+            None => out.push(t.clone()),
         }
     }
     out

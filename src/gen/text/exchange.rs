@@ -3,6 +3,7 @@
 use super::lexicon::{Sense, look_up};
 use super::said::words::{has_noun, led as command, number, text};
 use super::tokens::{Token, TokenKind};
+use super::wishes::SPEAKER;
 
 const INSTEAD: &[&[&str]] = &[
     &["instead", "of"],
@@ -17,25 +18,8 @@ const INSTEAD: &[&[&str]] = &[
     &["to", "replace"],
     &["replacing"],
 ];
-const WISHES: &[&[&str]] = &[
-    &["i", "would", "like", "to", "see"],
-    &["id", "like", "to", "see"],
-    &["i", "want", "to", "see"],
-    &["i", "would", "like", "to", "have"],
-    &["id", "like", "to", "have"],
-    &["i", "want", "to", "have"],
-    &["i", "would", "like"],
-    &["id", "like"],
-    &["i", "want"],
-    &["i", "need"],
-    &["we", "need"],
-    &["we", "want"],
-    &["i", "would", "prefer"],
-    &["id", "prefer"],
-    &["i", "prefer"],
-    &["id", "rather", "have"],
-    &["id", "rather", "see"],
-    &["i", "would", "rather", "have"],
+/// What else begins a sentence that brings something in.
+const BRINGS: &[&[&str]] = &[
     &["put"],
     &["place"],
     &["add"],
@@ -73,8 +57,9 @@ fn by(at: &Token) -> Token {
 }
 
 fn unwished(tokens: &[Token]) -> &[Token] {
-    let skip = WISHES
+    let skip = SPEAKER
         .iter()
+        .chain(BRINGS)
         .filter(|w| begins_with(tokens, w))
         .map(|w| w.len())
         .max();
@@ -167,7 +152,7 @@ pub fn exchanged(clause: &[Token]) -> Option<Vec<Token>> {
         let noun = old.iter().position(is_noun)?;
         let cut = (noun + 1..old.len()).find(|i| {
             old[*i].kind == TokenKind::Comma
-                || WISHES.iter().any(|w| begins_with(&old[*i..], w))
+                || SPEAKER.iter().chain(BRINGS).any(|w| begins_with(&old[*i..], w))
                 || matches!(text(&old[*i]), "a" | "an")
                 || number(&old[*i]).is_some()
         })?;

@@ -1,6 +1,6 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Stated};
+use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -28,82 +28,6 @@ fn drop_totals(mentions: &mut [Mention]) {
     }
 }
 
-/// "two diggers stand face to face": one in front of the other, and turned to it.
-fn face(mentions: &mut Vec<Mention>) {
-    let met: Vec<usize> = (0..mentions.len())
-        .filter(|i| !mentions[*i].gone && mentions[*i].spec.attributes.iter().any(|a| a == "facetoface"))
-        .collect();
-    for i in &met {
-        mentions[*i].spec.attributes.retain(|a| a != "facetoface");
-    }
-    let pair = match met.as_slice() {
-        [i] if mentions[*i].spec.count.n >= 2 && mentions[*i].spec.count.is_exact() => {
-            let n = mentions[*i].spec.count.n;
-            let mut other = mentions[*i].clone();
-            mentions[*i].spec.count = Count::exactly(n.div_ceil(2));
-            other.spec.count = Count::exactly(n / 2);
-            mentions.push(other);
-            Some((*i, mentions.len() - 1))
-        }
-        [a, b] => Some((*a, *b)),
-        _ => None,
-    };
-    let Some((a, b)) = pair else {
-        return;
-    };
-    let span = mentions[b].spec.span;
-    let gap = if mentions[a].spec.class.is_vehicle() || mentions[b].spec.class.is_vehicle() {
-        13.0
-    } else {
-        2.5
-    };
-    for (relation, distance_m) in [(RelationKind::InFrontOf, Some(gap)), (RelationKind::Facing, None)] {
-        mentions[b].spec.relations.push(Stated {
-            relation,
-            anchor: Anchor::Object(a),
-            and: None,
-            distance_m,
-            span,
-        });
-    }
-    if mentions[b].spec.state == Some(ObjectState::Moving) && mentions[b].spec.class.is_vehicle() {
-        mentions[b].spec.state = Some(ObjectState::Waiting);
-    }
-}
-
-/// "two lorries drive side by side": one beside the other.
-fn abreast(mentions: &mut Vec<Mention>) {
-    for i in 0..mentions.len() {
-        let m = &mut mentions[i];
-        let said = m.spec.attributes.iter().any(|a| a == "sidebyside");
-        m.spec.attributes.retain(|a| a != "sidebyside");
-        let pair = m.spec.count == Count::exactly(2)
-            && m.both.is_none()
-            && m.spec.state != Some(ObjectState::Parked);
-        let strip = m
-            .spec
-            .relations
-            .iter()
-            .any(|r| matches!(r.anchor, Anchor::Lane(_)));
-        if !said || m.gone || !pair || strip && m.spec.class.is_vehicle() {
-            continue;
-        }
-        m.spec.count = Count::exactly(1);
-        let mut other = m.clone();
-        other.spec.relations.push(Stated {
-            relation: RelationKind::NextTo,
-            anchor: Anchor::Object(i),
-            and: None,
-            distance_m: None,
-            span: other.spec.span,
-        });
-        for r in &mut other.spec.relations {
-            r.distance_m = None; // as far as the first
-        }
-        mentions.push(other);
-    }
-}
-
 /// What has stopped on the other side of the road stands at its edge.
 fn stopped_across(mentions: &mut [Mention], prompt: &str) {
     for m in mentions.iter_mut() {
@@ -125,7 +49,7 @@ fn stopped_across(mentions: &mut [Mention], prompt: &str) {
 
 fn split_sides(mentions: &mut Vec<Mention>) {
     for i in 0..mentions.len() {
-        let Some(each) = mentions[i].both.take() else {
+        let Some(each) = mentions[i].both.take().filter(|_| !mentions[i].gone) else {
             continue;
         };
         let total = mentions[i].spec.count;
@@ -343,11 +267,41 @@ fn share_places(mentions: &mut [Mention]) {
     }
 }
 
+/// What is parked in a scene of a car park stands there, if nothing else was said.
+fn in_car_park(mentions: &mut [Mention], reading: &Reading) {
+    if reading.description.road.kind != Some(Road::Parking) {
+        return;
+    }
+    for m in mentions.iter_mut() {
+        let parked = m.spec.state == Some(ObjectState::Parked) && m.spec.class.is_vehicle();
+        if parked && m.spec.relations.is_empty() {
+            m.spec.relations.push(Stated {
+                relation: RelationKind::ParkedOn,
+                anchor: Anchor::Lane(LaneRole::Carpark),
+                and: None,
+                distance_m: None,
+                span: m.spec.span,
+            });
+        }
+    }
+}
+
+/// The sun shines by day.
+fn sun_shines(reading: &mut Reading) {
+    let sunny = reading.phrases.iter().any(|p| {
+        let words = p.text.to_lowercase();
+        p.became == Became::Weather && words.contains("sun") && !p.meaning.contains("not")
+    });
+    if sunny && reading.description.time_of_day.is_none() {
+        reading.description.time_of_day = Some(TimeOfDay::Day);
+    }
+}
+
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
-    face(mentions);
-    abreast(mentions);
+    super::reciprocal::face(mentions);
+    super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
     // Works beside cones or a digger that were named are made of those.
@@ -366,6 +320,8 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
             m.gone = true;
         }
     }
+    sun_shines(reading);
+    in_car_park(mentions, reading);
     share_places(mentions);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];

@@ -128,7 +128,13 @@ pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
     let p = b.center_m.truncate();
     let walks = [L::LeftSidewalk, L::RightSidewalk];
     let lanes = [L::Ego, L::Left, L::Right, L::Oncoming, L::Cross];
-    let strips = [L::LeftRoadside, L::RightRoadside, L::Carpark];
+    // (parking strips at the edge of the road are roadsides)
+    let lot = in_role(map, L::Carpark, p) && map.nearest(p).is_none_or(|l| l.p.distance(p) > 4.5);
+    let strips = if lot {
+        [L::Carpark, L::LeftRoadside, L::RightRoadside]
+    } else {
+        [L::LeftRoadside, L::RightRoadside, L::Carpark]
+    };
     let all: Vec<L> = match b.class {
         Class::Pedestrian => walks.to_vec(),
         // A driver is in a lane, what stands beside one at the edge.
@@ -179,7 +185,11 @@ pub fn holds(
             let is_ego = b.id == BoxId(u32::MAX);
             let toward = heading.dot((at(b) - p).normalize_or_zero());
             let held = match relation {
-                R::InFrontOf => fwd > half.x && lat.abs() <= (0.6 * fwd).max(2.0),
+                // (roads bend: what is far down the road is ahead of the ego vehicle)
+                R::InFrontOf => {
+                    fwd > half.x
+                        && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
+                }
                 R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
                 // Of the ego vehicle it means the whole side of the street.
                 R::LeftOf => {

@@ -34,6 +34,10 @@ pub fn infer(mentions: &mut [Mention]) {
     for i in 0..mentions.len() {
         blocked_at(&mut mentions[i]);
         stranded(&mut mentions[i]);
+        crosses(&mut mentions[i]);
+        comes_towards(&mut mentions[i]);
+        waits_for_crossers(mentions, i);
+        goes_with(mentions, i);
         let along: Vec<(Stated, usize)> = mentions[i]
             .spec
             .relations
@@ -73,11 +77,9 @@ fn blocked_at(m: &mut Mention) {
         .relations
         .iter()
         .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
-    let far = m
-        .spec
-        .relations
-        .iter_mut()
-        .find(|r| r.relation == R::Blocking && is_lane(r.anchor) && r.distance_m.is_some());
+    let far = m.spec.relations.iter_mut().find(|r| {
+        matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some()
+    });
     if let Some(r) = far {
         let stated = Stated {
             relation: R::InFrontOf,
@@ -104,6 +106,194 @@ fn stranded(m: &mut Mention) {
     });
     if there && m.spec.state == Some(ObjectState::Parked) {
         m.spec.state = Some(ObjectState::Waiting);
+    }
+}
+
+/// Who crosses the road is no longer on the pavement where the others of the group are.
+fn crosses(m: &mut Mention) {
+    let over = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.relation == R::Crossing && matches!(r.anchor, Anchor::Lane(LaneRole::Road)));
+    let left = m.spec.relations.len();
+    if over && m.spec.class == Class::Pedestrian {
+        m.spec.relations.retain(|r| {
+            !(r.relation == R::On
+                && matches!(
+                    r.anchor,
+                    Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+                ))
+        });
+    }
+    // (the side of the road was that of the pavement)
+    if m.spec.relations.len() < left {
+        m.spec
+            .relations
+            .retain(|r| !(matches!(r.relation, R::LeftOf | R::RightOf) && r.anchor == Anchor::Ego));
+    }
+}
+
+/// Who drives towards the ego vehicle comes from ahead, the other way, if nothing else was said.
+fn comes_towards(m: &mut Mention) {
+    let drives = m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let told = m.spec.relations.iter().any(|r| {
+        r.anchor == Anchor::Ego
+            && matches!(
+                r.relation,
+                R::Behind | R::LeftOf | R::RightOf | R::SameDirection | R::OppositeDirection
+            )
+            || matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Oncoming))
+            || r.relation == R::Crossing
+    });
+    let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
+    if !drives || told || still {
+        return;
+    }
+    for r in &mut m.spec.relations {
+        if r.relation == R::Facing && r.anchor == Anchor::Ego {
+            r.relation = R::OppositeDirection;
+        }
+    }
+}
+
+/// Who has stopped for people on the stripes, or simply waits where people cross them, waits at the crossing.
+fn waits_for_crossers(mentions: &mut [Mention], i: usize) {
+    let crossing = |m: &Mention| {
+        m.spec.class == Class::Pedestrian
+            && !m.gone
+            && m.spec
+                .relations
+                .iter()
+                .any(|r| matches!(r.relation, R::On | R::WaitingAt) && r.anchor == Anchor::Crossing)
+    };
+    let m = &mentions[i];
+    let drives = m.spec.class.is_vehicle() || matches!(m.spec.class, Class::Motorcycle | Class::Bicycle);
+    let waits = m.spec.state == Some(ObjectState::Waiting);
+    let at_crossing = m
+        .spec
+        .relations
+        .iter()
+        .any(|r| r.anchor == Anchor::Crossing && matches!(r.relation, R::Near | R::NextTo));
+    let on_it =
+        m.spec.relations.iter().any(|r| {
+            r.anchor == Anchor::Crossing && matches!(r.relation, R::On | R::WaitingAt | R::Blocking)
+        });
+    let placed = m.spec.relations.iter().any(|r| {
+        matches!(r.anchor, Anchor::Lane(role) if !matches!(role, LaneRole::Ego | LaneRole::Oncoming | LaneRole::Left | LaneRole::Right))
+            || r.distance_m.is_some()
+            || matches!(r.anchor, Anchor::Junction)
+            || matches!(r.anchor, Anchor::Object(k) if !mentions.get(k).is_some_and(crossing))
+    });
+    let for_them = m.spec.relations.iter().any(|r| {
+        r.relation == R::NextTo
+            && matches!(r.anchor, Anchor::Object(k) if mentions.get(k).is_some_and(crossing))
+    });
+    let someone = mentions.iter().any(crossing);
+    // told no more than where it comes from
+    let open = m.spec.relations.iter().all(|r| {
+        matches!(r.relation, R::OppositeDirection | R::Facing | R::SameDirection)
+            || r.anchor == Anchor::Lane(LaneRole::Oncoming)
+    });
+    if !drives || on_it || placed || !(for_them || waits && (at_crossing || someone && open)) {
+        return;
+    }
+    let span = m.spec.span;
+    let m = &mut mentions[i];
+    m.spec.relations.retain(|r| {
+        !(matches!(r.relation, R::NextTo | R::Near)
+            && matches!(r.anchor, Anchor::Object(_) | Anchor::Crossing))
+    });
+    m.spec.state = Some(ObjectState::Waiting);
+    m.spec.relations.push(Stated {
+        relation: R::WaitingAt,
+        anchor: Anchor::Crossing,
+        and: None,
+        distance_m: None,
+        span,
+    });
+}
+
+/// Who is with others is where they are; where the companions were said to be, the others are, too.
+fn goes_with(mentions: &mut [Mention], i: usize) {
+    let Some(host) = mentions[i].host.filter(|h| *h < mentions.len() && *h != i) else {
+        return;
+    };
+    // "a van with a trailer drives in front of us": the trailer hangs on the van
+    let hangs = mentions[i].spec.class == Class::Trailer
+        && mentions[host].spec.class.is_vehicle()
+        && !mentions[i]
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Object(_)));
+    if hangs {
+        let span = mentions[i].spec.span;
+        let theirs = mentions[host].spec.relations.clone();
+        let m = &mut mentions[i].spec;
+        m.relations.retain(|r| {
+            !theirs
+                .iter()
+                .any(|t| (t.relation, t.anchor) == (r.relation, r.anchor))
+        });
+        m.relations.push(Stated {
+            relation: R::Following,
+            anchor: Anchor::Object(host),
+            and: None,
+            distance_m: None,
+            span,
+        });
+        return;
+    }
+    let person = |m: &Mention| m.spec.class == Class::Pedestrian && !m.gone;
+    if !person(&mentions[i]) || !person(&mentions[host]) {
+        return;
+    }
+    let span = mentions[i].spec.span;
+    let placed = |m: &Mention| {
+        m.spec
+            .relations
+            .iter()
+            .any(|r| !matches!(r.anchor, Anchor::Object(_)))
+    };
+    if placed(&mentions[i]) && !placed(&mentions[host]) {
+        let theirs: Vec<Stated> = mentions[i].spec.relations.clone();
+        mentions[host].spec.relations.extend(
+            theirs
+                .into_iter()
+                .filter(|r| !matches!(r.anchor, Anchor::Object(k) if k == host)),
+        );
+    } else if !mentions[i]
+        .spec
+        .relations
+        .iter()
+        .any(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing | Anchor::Junction))
+        && placed(&mentions[host])
+    {
+        // (a strip is where all of them are; the rest holds for who was named)
+        let strips: Vec<Stated> = mentions[host]
+            .spec
+            .relations
+            .iter()
+            .filter(|r| is_lane(r.anchor) || matches!(r.anchor, Anchor::Crossing))
+            .copied()
+            .collect();
+        mentions[i].spec.relations.extend(strips);
+    }
+    let near = mentions[i]
+        .spec
+        .relations
+        .iter()
+        .chain(&mentions[host].spec.relations)
+        .any(|r| matches!(r.anchor, Anchor::Object(k) if k == host || k == i));
+    if !near {
+        mentions[i].spec.relations.push(Stated {
+            relation: R::NextTo,
+            anchor: Anchor::Object(host),
+            and: None,
+            distance_m: None,
+            span,
+        });
     }
 }
 

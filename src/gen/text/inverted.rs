@@ -24,7 +24,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = beyond(&out);
     let out = without_contact_clause(&out);
     let out = way_of_another(&out);
-    let out = parker(&out);
+    let out = lets_go(&parker(&out));
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
@@ -213,9 +213,10 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
         let whole = begins(&tokens[i..], WHO).and_then(|n| {
             let verb = begins(&tokens[i + n..], LEFT)?;
             let k = i + n + verb;
+            // ("somebody left a trailer standing there": what is left there is told, not who left it)
             let his = tokens
                 .get(k)
-                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their"));
+                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their" | "a" | "an" | "the"));
             let noun = (k + 1..tokens.len().min(k + 5)).find(|j| is_noun(&tokens[*j]))?;
             let more = tokens.get(noun + 1..).is_some_and(|rest| {
                 rest.iter()
@@ -235,7 +236,14 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
             Some((his, noun)) => {
                 out.push(word("a", &tokens[i]));
                 out.extend_from_slice(&tokens[his + 1..=noun]);
-                out.extend(["is", "parked"].map(|w| word(w, &tokens[i])));
+                let stands = tokens.get(noun + 1).is_some_and(|t| {
+                    matches!(
+                        t.text.as_str(),
+                        "standing" | "parked" | "abandoned" | "lying" | "unattended" | "waiting" | "behind"
+                    )
+                });
+                let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
+                out.extend(state.iter().map(|w| word(w, &tokens[i])));
                 i = noun + 1;
             }
             None => {
@@ -243,6 +251,31 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
                 i += 1;
             }
         }
+    }
+    out
+}
+
+/// "a lorry lets two girls go over the zebra": it waits for two girls who go over it.
+fn lets_go(tokens: &[Token]) -> Vec<Token> {
+    const LETS: &str = "lets|is letting|has let|allows|is allowing|let|permits";
+    const GO: &str = "go|pass|cross|walk|come|run|get|step|stroll|hurry";
+    let mut out = tokens.to_vec();
+    for i in 1..tokens.len() {
+        let Some(n) = begins(&tokens[i..], LETS).filter(|_| is_noun(&tokens[i - 1])) else {
+            continue;
+        };
+        let verb = (i + n + 1..tokens.len().min(i + n + 6)).find(|k| begins(&tokens[*k..], GO).is_some());
+        let Some(k) = verb.filter(|k| tokens[i + n..*k].iter().any(is_noun)) else {
+            continue;
+        };
+        let to = usize::from(tokens[k - 1].text == "to");
+        let mut new = tokens[..i].to_vec();
+        new.extend(["waits", "for"].map(|w| word(w, &tokens[i])));
+        new.extend_from_slice(&tokens[i + n..k - to]);
+        new.push(word("who", &tokens[k]));
+        new.extend_from_slice(&tokens[k..]);
+        out = new;
+        break;
     }
     out
 }

@@ -157,6 +157,8 @@ pub enum Prep {
     Across,
     /// across the street
     FarSide,
+    /// the other side of the street for what is beyond it: the right one
+    NearSide,
 }
 
 /// A place that was said, before it is known of what.
@@ -313,6 +315,10 @@ pub fn apply(spec: &mut ObjectSpec, frag: &Frag) {
             _ => out.push((R::Across, anchor)),
         },
         Prep::FarSide => far_side(spec.class, parked, &mut out),
+        Prep::NearSide => {
+            out.push((R::RightOf, Ego));
+            out.push(on(Lane(strip(false, spec.class))));
+        }
     }
     // The left kerb is on the left.
     let side = match out.last() {

@@ -315,6 +315,15 @@ impl Placer<'_> {
                 let along = |q: &DVec2| (s.p - *q).dot(DVec2::from_angle(s.yaw_rad)).abs();
                 cost += 3.0 * siblings.iter().map(along).min_by(f64::total_cmp).unwrap_or(0.0);
             }
+            // what is ahead or behind is rather in our lane or near it
+            let along = stated.iter().any(|(e, t)| {
+                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                    && matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind)
+            });
+            if along && self.from.is_none() {
+                let off = self.map.course(s.p).map_or(s.p.y, |c| c.1).abs();
+                cost += 0.15 * (off - 3.0).max(0.0);
+            }
             // "Left" at its plainest is beside.
             let beside = stated.iter().any(|(e, t)| {
                 let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);

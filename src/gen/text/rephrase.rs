@@ -7,7 +7,7 @@ use super::existence::{nobody, sent_off, there};
 use super::foremost::{POLITE, name_people, take_and_put, take_ordinals, topic};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wishes::{stated, wished};
+use super::wishes::{SPEAKER, stated, wished};
 use super::words::edits::VERBS;
 
 /// How a number changes.
@@ -30,21 +30,6 @@ pub struct Rephrased {
     pub ordinals: Vec<(usize, usize)>,
 }
 
-const WISH: &[&[&str]] = &[
-    &["i", "would", "like"],
-    &["id", "like"],
-    &["i", "want"],
-    &["i", "need"],
-    &["we", "need"],
-    &["we", "want"],
-    &["i", "wish", "for"],
-    &["let", "me", "have"],
-    &["can", "i", "have"],
-    &["could", "i", "have"],
-    &["id", "prefer"],
-    &["i", "prefer"],
-    &["id", "rather", "have"],
-];
 const UNWISH: &[&[&str]] = &[
     &["i", "dont", "want"],
     &["i", "do", "not", "want"],
@@ -133,8 +118,26 @@ pub fn rephrase(tokens: &[Token]) -> Rephrased {
         let put_back = topic(body);
         let body = put_back.as_deref().unwrap_or(body);
         let body = take_ordinals(&take_and_put(&name_people(body)), &mut out);
-        if let Some(first) = body.first() {
-            let (new, change) = one(&body);
+        // "one car fewer, and add a cyclist"
+        let cut = (1..body.len()).find(|i| {
+            matches!(body[i - 1].text.as_str(), "fewer" | "less")
+                && (body[*i].kind == TokenKind::Comma || body[*i].text == "and")
+        });
+        let parts = match cut {
+            Some(i) => vec![&body[..i], strip(&body[i + 1..], &[&["and"], &["then"]])],
+            None => vec![&body[..]],
+        };
+        for (k, body) in parts.into_iter().enumerate() {
+            let Some(first) = body.first() else {
+                continue;
+            };
+            if k > 0 {
+                out.tokens.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", first)
+                });
+            }
+            let (new, change) = one(body);
             if let Some(change) = change {
                 out.changes
                     .push((new.first().map_or(first.span.start, |t| t.span.start), change));
@@ -309,7 +312,10 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
         return (tokens, Some(change));
     }
     // "I want the bus gone", "I'd like two more people"
-    if let Some(list) = WISH.iter().find(|l| rest.len() > l.len() && starts_with(rest, l)) {
+    if let Some(list) = SPEAKER
+        .iter()
+        .find(|l| rest.len() > l.len() && starts_with(rest, l))
+    {
         let wish = &rest[list.len()..];
         return (wished(wish, first), None);
     }

@@ -31,6 +31,8 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         _ if needs.contains(&LaneRole::Carpark) => Road::Parking,
         _ if needs.contains(&LaneRole::Cross) => Road::Intersection,
         Some(Environment::Highway) => Road::Highway,
+        // only a motorway has lanes on both sides of ours that go our way
+        _ if needs.contains(&LaneRole::Left) && needs.contains(&LaneRole::Right) => Road::Highway,
         Some(Environment::Suburban | Environment::Residential | Environment::Rural) => Road::Suburb,
         _ => Road::Straight,
     });
@@ -214,6 +216,27 @@ fn judge(
     if let Some(lanes) = d.road.lanes {
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
         wishes += usize::from((lanes as usize).div_ceil(2) != forward);
+    }
+    // who is on the stripes so far ahead wants them there
+    for o in &d.foreground {
+        let on = o
+            .relations
+            .iter()
+            .any(|r| r.relation == RelationKind::On && r.anchor == Anchor::Crossing);
+        let far = o.relations.iter().find_map(|r| {
+            (r.anchor == Anchor::Ego && r.relation == RelationKind::InFrontOf)
+                .then_some(r.distance_m)
+                .flatten()
+        });
+        let Some(far) = far.filter(|_| on) else {
+            continue;
+        };
+        let there = map.crossing().is_some_and(|c| {
+            let x = c.iter().map(|p| p.x).sum::<f64>() / c.len() as f64;
+            (x - far).abs() < (0.12 * far).max(1.2)
+        });
+        wishes += 3 * usize::from(!there);
+        break;
     }
     let people = d
         .foreground

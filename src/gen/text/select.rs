@@ -80,7 +80,9 @@ pub fn state_of(map: &LaneMap<'_>, b: &SceneBox, state: ObjectState) -> bool {
             let off = map.nearest(p).map_or(f64::INFINITY, |l| {
                 l.dir.perp_dot(p - l.p).abs().max(l.p.distance(p) - 1.0)
             });
-            stands && (off > 0.7 || map.has(BevLayer::CarparkArea.bit(), p))
+            // (a narrow lane leaves what is parked at its edge little room beside its middle)
+            let edge = || off > 0.3 && super::holds::in_role(map, crate::scene::graph::LaneRole::Roadside, p);
+            stands && (off > 0.7 || map.has(BevLayer::CarparkArea.bit(), p) || edge())
         }
     }
 }
@@ -125,7 +127,14 @@ fn fitting_deep(
     // "vehicles" and the like mean every class of the list, a plain noun its own.
     if let Some(state) = m.spec.state {
         let strict: Vec<&SceneBox> = fit.iter().copied().filter(|b| state_of(map, b, state)).collect();
-        fit = strict;
+        // ("the man who stands by the bus" may take a step)
+        let loose = strict.is_empty()
+            && state == ObjectState::Waiting
+            && m.spec.class == Class::Pedestrian
+            && !m.spec.relations.is_empty();
+        if !loose {
+            fit = strict;
+        }
     }
     for r in &m.spec.relations {
         let targets: Vec<(Target, Option<SceneBox>)> = match r.anchor {
@@ -162,6 +171,12 @@ fn fitting_deep(
                 None => targets.iter().any(|(t, and)| {
                     !matches!(t, Target::Thing(o) if o.id == b.id)
                         && (holds(map, r.relation, b, t, and.as_ref(), r.distance_m)
+                            // a queue before a junction is at the junction
+                            || *t == Target::Junction
+                                && r.relation == RelationKind::Near
+                                && r.distance_m.is_none()
+                                && b.center_m.x > 2.0
+                                && map.junction.is_some_and(|c| c.distance(b.center_m.truncate()) < 24.0)
                             // who stands near the stripes waits there
                             || r.relation == RelationKind::WaitingAt
                                 && b.velocity_mps.length() < 0.5

@@ -87,6 +87,10 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
                 sense = look_up(&mine.join(" "));
             }
             let sense = sense?;
+            // "parked across from a bus"
+            if n > 1 && words.ends_with(" across") && word(i + n) == Some("from") {
+                return None;
+            }
             // "on the left" must not tear "left lane" apart.
             let torn = n > 1
                 && !is_place_like(sense)
@@ -115,7 +119,7 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
         });
         i += n;
     }
-    settle(out)
+    super::compounds::joined(settle(out))
 }
 
 fn as_mine(word: &str) -> &str {
@@ -129,7 +133,8 @@ fn as_mine(word: &str) -> &str {
 
 fn is_side(word: &str) -> bool {
     let sides = places::LEFT.split('|').chain(places::RIGHT.split('|'));
-    sides.into_iter().any(|s| s.split(' ').next() == Some(word))
+    let middle = matches!(word, "middle" | "centre" | "center");
+    middle || sides.into_iter().any(|s| s.split(' ').next() == Some(word))
 }
 
 fn number(v: f64, _next: Option<&Token>) -> Tag {
@@ -169,13 +174,14 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
             }
-            ("pedestrian crossing", _)
+            ("pedestrian crossing" | "ped crossing", _)
                 if next.is_some_and(leads_to_road)
                     && !(at_place(out.as_slice())
-                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false)))) =>
+                        && next.is_some_and(|n| n.tag == Tag::Is(Sense::Article(false))))
+                    || one_more(out.as_slice()) =>
             {
                 // "a pedestrian crossing the road"
-                let cut = item.span.start + "pedestrian".len();
+                let cut = item.span.start + item.words.find(' ').unwrap_or(0);
                 out.push(Item {
                     tag: look_up("pedestrian").map_or(Tag::Unknown, Tag::Is),
                     words: "pedestrian".into(),
@@ -219,7 +225,12 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 ..item.clone()
             }),
             // "double decker" and the like are longer runs; "a couple" alone is two people.
-            ("a couple" | "couple", Tag::Is(Sense::Count(_))) if !next.is_some_and(continues_noun) => {
+            ("a couple" | "couple", Tag::Is(Sense::Count(_)))
+                if !next.is_some_and(continues_noun)
+                    // "a couple walking through it", not "a couple parked cars"
+                    || matches!(next.map(|n| n.tag), Some(Tag::Is(Sense::State(_, false))))
+                        && !after_next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Noun(..) | Sense::Color(_) | Sense::Size(_)))) =>
+            {
                 let tag = look_up("pedestrian").map_or(Tag::Unknown, Tag::Is);
                 out.push(item.clone());
                 out.push(Item { tag, ..item.clone() });
@@ -248,7 +259,14 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             (_, Tag::Number(hour))
                 if next.is_some_and(|n| matches!(n.words.as_str(), "am" | "pm" | "oclock")) =>
             {
-                let pm = next.is_some_and(|n| n.words == "pm");
+                // "11 o'clock in the morning"
+                let part = after_next.map_or("", |n| n.words.as_str());
+                let later = matches!(part, "in the evening" | "in the afternoon")
+                    || part == "at night" && hour >= 5.0;
+                if later || matches!(part, "in the morning" | "at night") {
+                    skip = 2;
+                }
+                let pm = later || next.is_some_and(|n| n.words == "pm");
                 out.push(Item {
                     tag: Tag::Is(Sense::Time(time_of(hour, pm))),
                     ..item.clone()
@@ -339,6 +357,19 @@ fn at_place(before: &[Item]) -> bool {
     matches!(
         before,
         [.., prep, article] if matches!(article.tag, Tag::Is(Sense::Article(_))) && matches!(prep.tag, Tag::Is(Sense::In | Sense::At | Sense::Rel(_)))
+    )
+}
+
+/// True after "another", where somebody crosses already: no second zebra is meant.
+fn one_more(before: &[Item]) -> bool {
+    let more = before.last().is_some_and(|b| {
+        matches!(
+            b.words.as_str(),
+            "another" | "a second" | "a third" | "one more" | "a further"
+        )
+    });
+    more && before.iter().any(
+        |b| matches!(b.tag, Tag::Is(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian),
     )
 }
 

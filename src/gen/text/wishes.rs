@@ -23,6 +23,32 @@ const GONE: &[&str] = &[
     "dropped",
 ];
 
+/// How a speaker begins a wish.
+pub const SPEAKER: &[&[&str]] = &[
+    &["i", "would", "like", "to", "see"],
+    &["id", "like", "to", "see"],
+    &["i", "want", "to", "see"],
+    &["i", "would", "like", "to", "have"],
+    &["id", "like", "to", "have"],
+    &["i", "want", "to", "have"],
+    &["i", "would", "rather", "have"],
+    &["id", "rather", "have"],
+    &["id", "rather", "see"],
+    &["i", "would", "like"],
+    &["id", "like"],
+    &["i", "would", "prefer"],
+    &["id", "prefer"],
+    &["i", "prefer"],
+    &["i", "want"],
+    &["we", "want"],
+    &["i", "need"],
+    &["we", "need"],
+    &["i", "wish", "for"],
+    &["let", "me", "have"],
+    &["can", "i", "have"],
+    &["could", "i", "have"],
+];
+
 /// What is wished for: to be gone, elsewhere, something else, or there.
 pub fn wished(wish: &[Token], first: &Token) -> Vec<Token> {
     if let Some(new) = stated_with(wish, first) {

@@ -106,12 +106,15 @@ const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene 
 /// A prompt in plain words.
 pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
+    let tokens = &super::common::plain(tokens)[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
-        out.extend(without_purpose(sentence));
+        out.extend(without_aim(&without_purpose(&super::titles::without(sentence))));
     }
     let out = super::inverted::ordered(&super::ellipsis::filled(&out));
     let out = replaced(&out, FRAMES, "");
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
+    let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");
+    let out = replaced(&out, super::order::FAR_FIRST, "farfirst");
     let mut out = faced(&out);
     // "the lane directly to our right"
     let mut i = 1;
@@ -205,6 +208,48 @@ fn faced(tokens: &[Token]) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "bollards stand there to keep cars off the pavement": what something is to do is not in the scene.
+fn without_aim(sentence: &[Token]) -> Vec<Token> {
+    const AIMS: &str = "to keep|to stop|to prevent|to protect|to warn|to save|to remind|to help|in order to|so as to|to avoid|to discourage|to deter|to make sure|to ensure";
+    let Some(i) = (3..sentence.len()).find(|i| begins(&sentence[*i..], AIMS).is_some()) else {
+        return sentence.to_vec();
+    };
+    let had = sentence[..i]
+        .iter()
+        .any(|t| matches!(look_up(&t.text), Some(Sense::Noun(..))));
+    let wish = matches!(
+        sentence[i - 1].text.as_str(),
+        "want"
+            | "like"
+            | "need"
+            | "have"
+            | "try"
+            | "order"
+            | "has"
+            | "had"
+            | "needs"
+            | "going"
+            | "about"
+            | "begins"
+            | "starts"
+            | "supposed"
+            | "ready"
+            | "wants"
+            | "used"
+            | "waiting"
+            | "waits"
+            | "wait"
+            | "trying"
+    );
+    if !had || wish {
+        return sentence.to_vec();
+    }
+    let end = (i..sentence.len())
+        .find(|k| sentence[*k].kind != TokenKind::Word && !matches!(sentence[*k].kind, TokenKind::Number(_)))
+        .unwrap_or(sentence.len());
+    [&sentence[..i], &sentence[end..]].concat()
 }
 
 /// "For the lesson on passing parked vehicles I need a truck": what a scene is for is not in it.

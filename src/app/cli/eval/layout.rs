@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 12] = [
+const SETS: [(&str, &str); 17] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -60,6 +60,26 @@ const SETS: [(&str, &str); 12] = [
     (
         "strangers_8.jsonl",
         include_str!("../../../../tests/data/strangers_8.jsonl"),
+    ),
+    (
+        "exam_4.jsonl",
+        include_str!("../../../../tests/data/exam_4.jsonl"),
+    ),
+    (
+        "strangers_9.jsonl",
+        include_str!("../../../../tests/data/strangers_9.jsonl"),
+    ),
+    (
+        "strangers_10.jsonl",
+        include_str!("../../../../tests/data/strangers_10.jsonl"),
+    ),
+    (
+        "strangers_11.jsonl",
+        include_str!("../../../../tests/data/strangers_11.jsonl"),
+    ),
+    (
+        "causes.jsonl",
+        include_str!("../../../../tests/data/causes.jsonl"),
     ),
     (
         "variants.jsonl",

@@ -56,6 +56,14 @@ impl Parser<'_> {
         false
     }
 
+    /// Past "too" and the like.
+    pub(super) fn past_too(&self, i: usize) -> usize {
+        let too = self
+            .item(i)
+            .is_some_and(|n| matches!(n.words.as_str(), "too" | "also" | "as well" | "now" | "already"));
+        i + usize::from(too)
+    }
+
     /// True if something that a relation can end in begins at item `i`.
     pub(super) fn anchor_ahead(&self, i: usize) -> bool {
         let mut j = i;
@@ -151,8 +159,15 @@ impl Parser<'_> {
     }
 
     pub(super) fn noun_next(&self) -> bool {
-        self.item(self.at + 1)
-            .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+        let noun = |i: usize| {
+            self.item(i)
+                .is_some_and(|n| n.words.is_ascii() && matches!(n.tag, Tag::Is(Sense::Noun(..))))
+        };
+        // "a tram-replacement bus"
+        let joined = self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Unknown)
+            && self.pre.article.is_some()
+            && noun(self.at + 2);
+        noun(self.at + 1) || joined
     }
 
     pub(super) fn history_last(&self) -> Option<&usize> {

@@ -50,7 +50,9 @@ impl Parser<'_> {
         let whole = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && self.mentions[i].plural && !self.targets().contains(&i));
-        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"))
+            || self.items[self.at].words.ends_with("of them")
+            || self.items[self.at].words.ends_with("of which");
         if let (Some(whole), true, true) = (whole, of_them, self.pending.is_some()) {
             // "between two of them", "next to one of them"
             self.anchor(Anchor::Object(whole), span);
@@ -58,10 +60,12 @@ impl Parser<'_> {
         }
         // "two cars ahead and a third behind us" names one more
         let said = span.of(self.prompt).to_lowercase();
-        let nth = ["second", "third", "fourth", "fifth", "sixth"]
-            .iter()
-            .position(|w| said.starts_with(&format!("a {w}")))
-            .map(|k| k as u32 + 1);
+        let nth = [
+            "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
+        ]
+        .iter()
+        .position(|w| said.starts_with(&format!("a {w}")) || said.starts_with(&format!("an {w}")))
+        .map(|k| k as u32 + 1);
         let last = (0..self.mentions.len())
             .rev()
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
@@ -84,7 +88,7 @@ impl Parser<'_> {
             let m = &self.mentions[*w];
             !all && !self.edits
                 && !m.gone
-                && m.spec.relations.is_empty()
+                && (m.spec.relations.is_empty() || m.spec.count.n == count.n && !self.elsewhere(*w))
                 && m.spec.count.is_exact()
                 && m.spec.count.n >= count.n
         };
@@ -107,8 +111,14 @@ impl Parser<'_> {
             let single = self.last.first().or(self.before.first()).copied();
             if self.pending.is_none()
                 && single.is_some_and(|i| !self.mentions[i].gone && !self.mentions[i].is_anchor)
-                && (span.of(self.prompt).to_lowercase().starts_with("another")
-                    || span.of(self.prompt).to_lowercase().starts_with("a "))
+                && (said.starts_with("another")
+                    || said.starts_with("a ")
+                    // "the nearest car is 10 m ahead, the next one 20 m ahead"
+                    || !self.edits
+                        && ["the next", "the last", "the second", "the third", "the fourth", "the other", "the farthest", "the furthest"]
+                            .iter()
+                            .any(|w| said.starts_with(w))
+                        && single.is_some_and(|i| !self.mentions[i].spec.relations.is_empty()))
             {
                 // "a car on the left and another on the right"
                 let mut twin = self.mentions[single.unwrap_or(0)].clone();
@@ -127,7 +137,9 @@ impl Parser<'_> {
         };
         self.flush();
         let left = self.mentions[parent].spec.count;
-        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"));
+        let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"))
+            || self.items[self.at].words.ends_with("of them")
+            || self.items[self.at].words.ends_with("of which");
         if of_them && self.mentions[parent].uncounted && self.ends(self.at + 2) {
             // "cones along the edge, six of them"
             self.mentions[parent].spec.count = count;
@@ -136,7 +148,12 @@ impl Parser<'_> {
         }
         // "two buses ahead, one behind", "parked cars: 3 on the left, 2 on the right"
         let other = said.starts_with("the other") || said.starts_with("other");
-        if !all && !of_them && !other && !self.edits && open_whole.is_none() && self.elsewhere(parent) {
+        if !all
+            && !of_them
+            && !other
+            && !self.edits
+            && (self.enumerated || open_whole.is_none() && self.elsewhere(parent))
+        {
             self.again(count, span);
             return;
         }
@@ -148,13 +165,17 @@ impl Parser<'_> {
             && self.mentions[parent].spec.relations.is_empty()
         {
             // "People: two on the left, ..." counts them one after another
+            self.enumerated = true;
             self.again(count, span);
             self.mentions[parent].gone = true;
             return;
         }
+        // "two are crossing, three are still waiting": the rest of the five
+        let rest_of_group = self.whole == Some(parent) && count.n == left.n && left.is_exact();
         if !all
             && !of_them
             && !self.edits
+            && !rest_of_group
             && count.n > 1
             && count.n >= left.n
             && !self.mentions[parent].spec.relations.is_empty()
@@ -196,9 +217,11 @@ impl Parser<'_> {
             return;
         };
         let m = &self.mentions[i];
-        let host = m
-            .host
-            .filter(|h| m.spec.count.n > 1 && self.mentions[*h].spec.count.n == 1);
+        let host = m.host.filter(|h| {
+            // ("a bus with a cyclist on its right is waiting": the bus is)
+            let beside = m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(*h));
+            (m.spec.count.n > 1 || beside) && self.mentions[*h].spec.count.n == 1
+        });
         if let Some(host) = host {
             self.flush();
             self.head = vec![host];
@@ -243,6 +266,22 @@ impl Parser<'_> {
         }
         if matches!(item.words.as_str(), "that") {
             self.relative = true;
+        }
+        // "on her bike", "behind his van": whose it is, the noun says what
+        let whose = matches!(item.words.as_str(), "his" | "her" | "their" | "its");
+        if whose && !self.edits && self.noun_directly(self.at + 1) {
+            return true;
+        }
+        if self.between_them(&item.words, item.span) {
+            return false;
+        }
+        // "four children standing with her"
+        let with = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.words == "with");
+        let someone = matches!(item.words.as_str(), "him" | "her" | "them");
+        if with && someone && self.pending.is_none() && !self.edits && !self.last.is_empty() {
+            self.begin(Prep::Rels(vec![RelationKind::NextTo]), item.span);
         }
         if self.pending.is_some() {
             let targets = self.targets();
@@ -295,11 +334,20 @@ impl Parser<'_> {
             let placed_in = self
                 .pending
                 .as_ref()
-                .is_some_and(|p| matches!(p.prep, Prep::In))
+                .is_some_and(|p| {
+                    // "stands in the oncoming lane and obstructs it"
+                    matches!(p.prep, Prep::In) || p.prep == Prep::Rels(vec![RelationKind::Blocking])
+                })
                 .then_some(self.last_place)
                 .flatten();
+            // (one stands on a crossing or in a car park, not on a thing)
+            let holds = matches!(
+                placed_in,
+                Some(Anchor::Crossing | Anchor::Junction | Anchor::Lane(_))
+            );
             // "five to the left of my car and five to the right of it": no group is "it"
             let ego_it = item.words == "it"
+                && !holds
                 && !self.edits
                 && self
                     .mentions
@@ -309,10 +357,15 @@ impl Parser<'_> {
                     .mentions
                     .iter()
                     .any(|m| m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego));
+            let antecedent = antecedent.filter(|_| !(self.ego_topic && item.words == "it"));
+            if antecedent.is_none() && item.words == "it" && (self.ego_named || ego_it) {
+                self.ego_topic = true;
+            }
             match antecedent {
+                _ if self.ego_topic && item.words == "it" => self.anchor(Anchor::Ego, item.span),
                 _ if ego_it => self.anchor(Anchor::Ego, item.span),
                 _ if of_front.is_some() => self.anchor(of_front.unwrap_or(Anchor::Ego), item.span),
-                _ if placed_in.is_some() && item.words == "it" && self.fronted.is_empty() => {
+                _ if placed_in.is_some() && item.words == "it" && (holds || self.fronted.is_empty()) => {
                     self.anchor(placed_in.unwrap_or(Anchor::Ego), item.span);
                 }
                 Some(i) => self.anchor(Anchor::Object(i), item.span),

@@ -5,11 +5,17 @@
 //! a comma, `and` or a finite verb to the subject; at the start of a clause to the nouns that follow.
 
 mod ahead;
+mod denied;
 mod groups;
+mod headings;
+mod labels;
 mod nouns;
 mod numbers;
+mod pairs;
 mod relations;
 mod sense;
+mod sides;
+mod small;
 mod states;
 mod style;
 
@@ -63,15 +69,19 @@ pub(super) struct Parser<'a> {
     pub(super) relative: bool,
     ego_subject: bool,                     // "I am behind a bus"
     ego_named: bool,                       // "the host vehicle": "it" may mean it
+    ego_topic: bool,                       // "it" did mean it in this sentence
     last_lane: Option<Anchor>,             // named last
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
+    sentence: usize,                       // the first mention of the sentence
+    enumerated: bool,                      // "People: two on the left, ..." counts them one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
-    denied: bool,                   // what follows says where something is not
-    pub(super) listed: Vec<Stated>, // where what a colon introduces stands
+    pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
+    denied: bool,                                    // what follows says where something is not
+    pub(super) listed: Vec<Stated>,                  // where what a colon introduces stands
 }
 
 /// Reads a prompt.
@@ -122,13 +132,17 @@ impl<'a> Parser<'a> {
             relative: false,
             ego_subject: false,
             ego_named: false,
+            ego_topic: false,
             last_lane: None,
             last_place: None,
             whole: None,
+            sentence: 0,
+            enumerated: false,
             front: None,
             pair: Vec::new(),
             with: false,
             edits,
+            order: None,
             denied: false,
             listed: Vec::new(),
         }
@@ -175,6 +189,10 @@ impl<'a> Parser<'a> {
         let span = item.span;
         match item.tag {
             Tag::Stop => {
+                self.ego_topic = false;
+                self.enumerated = false;
+                self.sentence = self.mentions.len();
+                self.order = None;
                 self.end_clause();
                 return true;
             }
@@ -223,6 +241,31 @@ impl<'a> Parser<'a> {
                 return true;
             }
             Tag::Unknown => {
+                // "on arrival one truck stood there": what the preposition led to is not known
+                let led = self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| matches!(p.prep, Prep::In | Prep::At));
+                let fresh = matches!(
+                    self.item(self.at + 1).map(|n| n.tag),
+                    Some(Tag::Number(_) | Tag::Comma | Tag::Is(Sense::Article(_) | Sense::Count(_)))
+                );
+                // "pushing a wheelbarrow": what it is beside is not known
+                let beside = self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::NextTo]));
+                let article = matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Article(false)));
+                if beside && article && !self.edits && !self.noun_ahead(self.at + 1) {
+                    self.pending = None;
+                    for i in self.last.clone() {
+                        let spec = &mut self.mentions[i].spec;
+                        spec.state = spec.state.or(Some(ObjectState::Moving));
+                    }
+                }
+                if led && fresh && !self.edits {
+                    self.pending = None;
+                }
                 self.unread(span, None);
                 return true;
             }
@@ -233,6 +276,9 @@ impl<'a> Parser<'a> {
                     if !self.noun_ahead(self.at + 1) && self.edits {
                         self.mention_by_id(span);
                     }
+                    return false;
+                }
+                if !self.edits && self.labelled(v) {
                     return false;
                 }
                 let label = self.item(self.at + 1).is_some_and(|n| n.words == ":");

@@ -32,6 +32,9 @@ impl Parser<'_> {
     }
 
     pub(super) fn noun(&mut self, noun: &'static Noun, word: &str, plural: bool, span: Span) {
+        if self.named_together(noun, plural, span) {
+            return;
+        }
         let mut pre = std::mem::take(&mut self.pre);
         let whole = pre.span.map_or(span, |s| s.to(span));
         let zero = pre.count.is_some_and(|c| c.n == 0);
@@ -154,12 +157,9 @@ impl Parser<'_> {
                 self.mentions[index].is_anchor = true;
             }
             let before = self.head.clone();
-            let between = self
-                .pending
-                .as_ref()
-                .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
             self.anchor(Anchor::Object(index), span);
-            if !between && !before.is_empty() && !self.head.is_empty() {
+            let open = self.pending.is_some(); // "between a van and ..."
+            if !open && !before.is_empty() && !self.head.is_empty() {
                 self.last = vec![index];
             }
             self.with = false;
@@ -207,7 +207,17 @@ impl Parser<'_> {
             return;
         }
         // A new subject, or one more of a list.
-        let host = self.head.first().copied().filter(|_| self.with);
+        // "a mother holds her child's hand": the child is with her
+        let hers = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "his" | "her" | "their"))
+            && mention.spec.class == Class::Pedestrian
+            && matches!(self.head.as_slice(), [h] if self.mentions[*h].spec.class == Class::Pedestrian && *h != index);
+        let host = self
+            .head
+            .first()
+            .copied()
+            .filter(|_| self.with || hers && !self.edits);
         self.with = false;
         if !old {
             self.mentions[index].host = host;
@@ -271,6 +281,9 @@ impl Parser<'_> {
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
         }
+        if !old {
+            self.next_in_order(index);
+        }
         if let Some((metres, dspan)) = self.distance.take() {
             self.mentions[index].spec.relations.push(Stated {
                 relation: RelationKind::Near,
@@ -313,7 +326,35 @@ impl Parser<'_> {
 
     /// An object named before that "the ..." points to.
     pub(super) fn coreferent(&self, new: &Mention) -> Option<usize> {
-        if !new.definite || new.pick.is_some() || self.edits {
+        // "one worker near cones": those that were named
+        let stem = |n: &str| n.trim_end_matches('s').to_string();
+        let bare = new.bare
+            && new.uncounted
+            && self.pending.is_some()
+            && new.spec.state.is_none()
+            && self
+                .mentions
+                .iter()
+                .any(|m| stem(&m.spec.noun) == stem(&new.spec.noun));
+        // "A bulldozer blocks my lane. Bulldozer facing away from me."
+        let opens = self
+            .item(self.at.wrapping_sub(1))
+            .is_none_or(|b| b.tag == Tag::Stop);
+        let faces = matches!(
+            self.sense(self.at + 1),
+            Some(Sense::Rel(RelationKind::Facing | RelationKind::FacingAway))
+        );
+        let again = new.bare
+            && !new.plural
+            && opens
+            && faces
+            && self
+                .mentions
+                .iter()
+                .filter(|m| m.spec.noun == new.spec.noun && !m.gone)
+                .count()
+                == 1;
+        if !(new.definite || bare || again) || new.pick.is_some() || self.edits {
             return None;
         }
         let fits = |m: &Mention| {

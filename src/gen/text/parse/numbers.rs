@@ -36,10 +36,11 @@ impl Parser<'_> {
             self.pre = Pre::default();
             return;
         }
-        if self.items[self.at].words == "both" && self.both_of_them() {
+        let count = self.bounded(count);
+        if self.items[self.at].words == "both" && self.both_of_them() || self.the_two(count.n, span) {
             return;
         }
-        if self.all_of_them(count) {
+        if self.all_of_them(count) || self.part_by_side(count, span) {
             return;
         }
         let next_is_part = !self.noun_ahead(self.at + 1);
@@ -137,6 +138,19 @@ impl Parser<'_> {
         }
         self.pre.count = Some(count);
         self.pre.cover(span);
+    }
+
+    /// "more than four children" are five at least, "fewer than four" three at most.
+    fn bounded(&self, count: Count) -> Count {
+        let before = self
+            .item(self.at.wrapping_sub(1))
+            .map_or("", |b| b.words.as_str());
+        let counts = count.is_exact() && self.noun_ahead(self.at + 1) && count.n < 100;
+        match before {
+            "more than" | "over" | "upwards of" | "in excess of" if counts => Count::exactly(count.n + 1),
+            "less than" | "fewer than" | "under" if counts && count.n > 1 => Count::exactly(count.n - 1),
+            _ => count,
+        }
     }
 
     pub(super) fn try_distance(&mut self, value: f64, span: Span) -> bool {
@@ -239,7 +253,19 @@ impl Parser<'_> {
                 .rev()
                 .find(|r| r.distance_m.is_none() && is_directed(r.relation))
             {
-                r.distance_m = Some(metres);
+                let side = matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf);
+                if side && r.anchor == Anchor::Ego && metres > 7.0 {
+                    // "parked on the right, at 18 m": no road is so wide, it is so far ahead
+                    list.push(Stated {
+                        relation: RelationKind::InFrontOf,
+                        anchor: Anchor::Ego,
+                        and: None,
+                        distance_m: Some(metres),
+                        span,
+                    });
+                } else {
+                    r.distance_m = Some(metres);
+                }
                 used = true;
             } else if list
                 .iter()

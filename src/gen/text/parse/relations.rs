@@ -67,6 +67,9 @@ impl Parser<'_> {
             self.chain = true;
             return;
         }
+        if p.ego && between && self.ego_between(anchor, and, p.span.to(span)) {
+            return;
+        }
         if let (true, Anchor::Object(i), Prep::Rels(kinds)) = (p.ego && and.is_none(), anchor, &p.prep) {
             // "I am behind a bus": the bus is in front of the ego vehicle.
             let frag = Frag {
@@ -110,12 +113,23 @@ impl Parser<'_> {
             }
             _ => None,
         };
-        if let Some(m) = of_front.and_then(|i| self.mentions.get_mut(i)) {
-            apply(&mut m.spec, &frag);
+        if let Some(i) = of_front {
+            // "between a van and a lorry, both at the kerb, ...": of both
+            let whom = if self.relative && self.last.len() == 2 {
+                self.last.clone()
+            } else {
+                vec![i]
+            };
+            for i in whom {
+                apply(&mut self.mentions[i].spec, &frag);
+            }
             return;
         }
         let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
-        let new_noun = set_off || self.noun_ahead(self.at + 1) || self.bare_number(self.at + 1);
+        let new_noun = set_off
+            || self.noun_ahead(self.at + 1)
+            || self.bare_number(self.at + 1)
+            || self.inverted_ahead(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
         if !of_last && (self.head.is_empty() || (p.fresh && new_noun)) {
@@ -140,6 +154,19 @@ impl Parser<'_> {
             .collect();
         let targets = if targets.len() > 1 && !open.is_empty() {
             open
+        } else {
+            targets
+        };
+        // "let the bus and the car in the right lane trade places": the car is there
+        let named = self.edits
+            && !p.fresh
+            && !p.finite
+            && targets.len() > 1
+            && targets
+                .iter()
+                .all(|t| self.mentions[*t].definite && !self.mentions[*t].plural);
+        let targets = if named {
+            targets[targets.len() - 1..].to_vec()
         } else {
             targets
         };
@@ -189,6 +216,14 @@ impl Parser<'_> {
         let words = span.of(self.prompt).to_string();
         match default {
             Some(anchor) => {
+                let mut p = p;
+                if p.prep == Prep::Rels(vec![RelationKind::Across])
+                    && anchor == Anchor::Ego
+                    && let Some(left) = self.side_of_other()
+                {
+                    // "opposite, ...": on the other side than what was named before
+                    p.prep = if left { Prep::NearSide } else { Prep::FarSide };
+                }
                 self.pending = Some(Pending { first: None, ..p });
                 if self
                     .pending

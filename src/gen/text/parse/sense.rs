@@ -15,124 +15,29 @@ impl<'a> Parser<'a> {
         let span = item.span;
         let prenominal = self.noun_directly(self.at + 1);
         match sense {
+            // "walking down the pavement, away from me"
+            Sense::Away
+                if item.words == "away from"
+                    && self.pending.is_none()
+                    && self.distance.is_none()
+                    && (!self.edits
+                        || matches!(
+                            self.sense(self.at.wrapping_sub(1)),
+                            Some(Sense::State(ObjectState::Moving, _))
+                        ))
+                    && !matches!(
+                        self.sense(self.at.wrapping_sub(1)),
+                        Some(Sense::Unit(_) | Sense::EgoRel(_) | Sense::Rel(_))
+                    )
+                    && self
+                        .item(self.at.wrapping_sub(1))
+                        .is_some_and(|b| !matches!(b.words.as_str(), "far" | "not far"))
+                    && matches!(self.sense(self.at + 1), Some(Sense::Ego)) =>
+            {
+                self.begin(Prep::Rels(vec![RelationKind::FacingAway]), span);
+            }
             Sense::Filler | Sense::Unit(_) | Sense::Away | Sense::Bound(_) => {
-                match item.words.as_str() {
-                    // "an ambulance with two paramedics beside it is parked"
-                    "it is" if self.pending.is_some() => {
-                        let it = Item {
-                            words: "it".into(),
-                            ..item.clone()
-                        };
-                        self.pronoun(&it);
-                        self.back_to_host();
-                    }
-                    "is" | "was" if self.pending.is_none() => self.back_to_host(),
-                    // "the left lane has two cars in it"
-                    "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
-                    // "my lane has been closed off by cones"
-                    "has" | "have"
-                        if self
-                            .item(self.at + 1)
-                            .is_some_and(|n| n.words.starts_with("been")) => {}
-                    "with" | "has" | "have" | "having" => {
-                        self.with = true;
-                        self.topic = None;
-                    }
-                    // "a bus, behind which two cars wait"
-                    "which" | "who" | "whom"
-                        if self.pending.as_ref().is_some_and(|p| p.first.is_none())
-                            && self.last.first().or(self.head.first()).is_some() =>
-                    {
-                        let host = self.last.first().or(self.head.first()).copied();
-                        if let (Some(host), Some(p)) = (host, self.pending.as_mut()) {
-                            p.fresh = true;
-                            self.anchor(Anchor::Object(host), span);
-                        }
-                        return false;
-                    }
-                    // "a car park in which eight cars stand"
-                    "which" | "that"
-                        if self.pending.as_ref().is_some_and(|p| p.first.is_none())
-                            && self.last_place.is_some() =>
-                    {
-                        if let (Some(place), Some(p)) = (self.last_place, self.pending.as_mut()) {
-                            p.fresh = true;
-                            self.anchor(place, span);
-                        }
-                        return false;
-                    }
-                    "i am" | "im" | "we are" | "i drive" | "we drive" | "i am driving" | "im driving"
-                    | "we are driving" | "i am on" | "we are on" | "were"
-                        if self.pending.is_none()
-                            && (self.head.is_empty() || self.linked && self.fresh)
-                            && !self.edits =>
-                    {
-                        if !self.head.is_empty() {
-                            self.new_clause();
-                        }
-                        self.ego_subject = true;
-                    }
-                    "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is"
-                    | "which are" | "thats" | "whos" => {
-                        self.relative = true;
-                        // "a mother and two children who ..."
-                        let class = self.last.last().map(|i| self.mentions[*i].spec.class);
-                        if self.head.len() > 1
-                            && self.list.len() == self.head.len()
-                            && self
-                                .head
-                                .iter()
-                                .all(|i| Some(self.mentions[*i].spec.class) == class)
-                        {
-                            self.last = self.head.clone();
-                        }
-                    }
-                    "both of which" | "both of whom" | "all of which" | "all of whom" => {
-                        self.relative = true;
-                        if self.pair.len() == 2 {
-                            self.last = std::mem::take(&mut self.pair);
-                        }
-                    }
-                    // "the site ahead consists of a digger and two cones"
-                    "consists of" | "consist of" | "consists out of" | "is made up of" | "comprises"
-                    | "comprise" | "includes" | "include"
-                        if !self.edits =>
-                    {
-                        self.introduce();
-                        self.end_list();
-                    }
-                    // "... obstructs the crossing; four people wait there"
-                    "there" | "over there" if self.ends(self.at + 1) && !self.edits => self.there(span),
-                    // "on both pavements stand three people each"
-                    "each"
-                        if self.ends(self.at + 1)
-                            && self.last.iter().any(|i| self.mentions[*i].both.is_some()) =>
-                    {
-                        for i in self.last.clone() {
-                            self.mentions[i].both = self.mentions[i].both.map(|_| true);
-                        }
-                    }
-                    "each" | "every" => self.pre.each = true,
-                    "it is" | "its" | "its a" if self.head.is_empty() => {
-                        self.head = self.before.clone();
-                        self.last = self.before.clone();
-                        self.chain = false;
-                    }
-                    // "a car park where six cars stand"
-                    "where" => {
-                        let place = self.topic.take().filter(|(a, _)| {
-                            matches!(a, Anchor::Crossing | Anchor::Junction)
-                                || matches!(a, Anchor::Lane(role) if !matches!(role, LaneRole::Road | LaneRole::Ego))
-                        });
-                        self.end_clause();
-                        if let Some((place, at)) = place.filter(|_| self.noun_ahead(self.at + 1)) {
-                            self.begin(Prep::In, at);
-                            self.anchor(place, at);
-                        }
-                    }
-                    _ => {}
-                }
-                return true;
+                return self.small_word(item);
             }
             Sense::Fraction(share) => {
                 if let Some(Sense::Unit(m)) = self.sense(self.at + 1) {
@@ -154,6 +59,8 @@ impl<'a> Parser<'a> {
                         self.pending = None;
                         return false;
                     }
+                    // "one car 10 m ahead and one 20 m ahead, all in our lane"
+                    Pick::All if item.words == "all" && self.all_named() => return false,
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);
@@ -201,8 +108,14 @@ impl<'a> Parser<'a> {
             // "deserted except for a bicycle"
             Sense::Not
                 if item.words.starts_with("except")
-                    && (self.d().density == Some(Density::Empty) || !self.d().absent.is_empty()) =>
+                    && (self.d().density == Some(Density::Empty)
+                        || !self.d().absent.is_empty()
+                        || self.mentions.is_empty() && !self.edits) =>
             {
+                // "everything is quiet except for one lorry": nothing else is there
+                if self.mentions.is_empty() && self.d().absent.is_empty() && !self.edits {
+                    self.d().density = Some(Density::Empty);
+                }
                 self.denied = false;
                 self.not_goes_on = false;
                 return true;
@@ -212,6 +125,12 @@ impl<'a> Parser<'a> {
                 if matches!(item.words.as_str(), "not any" | "none" | "absent")
                     && self.ends(self.at + 1)
                     && self.none_of_these(span) => {}
+            // "motor vehicles of any other kind are not permitted"
+            Sense::Not if self.refused(self.at + 1) && self.none_of_these(span) => {
+                while !self.ends(self.at + 1) {
+                    self.at += 1;
+                }
+            }
             // "pedestrians: none"
             Sense::Not if item.words == "none" && self.none_of_it(2, span) => {}
             Sense::Not => {
@@ -230,6 +149,17 @@ impl<'a> Parser<'a> {
                 self.unread(span, Some("how many?".into()));
             }
             Sense::Count(count) => {
+                // "no cars, no nothing, just one man"
+                let just = self
+                    .item(self.at.wrapping_sub(1))
+                    .is_some_and(|b| matches!(b.words.as_str(), "just" | "only" | "simply" | "merely"))
+                    || item.words.starts_with("just ")
+                    || item.words.starts_with("only ");
+                if just {
+                    self.pre.not = false;
+                    self.not_goes_on = false;
+                    self.denied = false;
+                }
                 let unit = matches!(self.sense(self.at + 1), Some(Sense::Unit(_)));
                 if unit && self.try_distance(f64::from(count.n), span) {
                     return self.distance.is_some();
@@ -353,18 +283,21 @@ impl<'a> Parser<'a> {
                 } else if (of || self.takes_object(item)) && self.anchor_ahead(self.at + 1) {
                     self.begin(Prep::Rels(kinds.to_vec()), span);
                 } else {
+                    let fresh = self.fresh;
+                    let by_other = self.by_other(kinds, item);
                     self.begin(Prep::Rels(kinds.to_vec()), span);
                     let host = self
                         .last
                         .first()
                         .and_then(|&i| self.mentions[i].host)
+                        .filter(|_| !fresh)
                         .filter(|_| {
                             matches!(
                                 item.words.as_str(),
                                 "behind" | "in front" | "close behind" | "right behind" | "ahead"
                             )
                         });
-                    self.anchor(host.map_or(Anchor::Ego, Anchor::Object), span);
+                    self.anchor(host.or(by_other).map_or(Anchor::Ego, Anchor::Object), span);
                 }
             }
             Sense::Reversed(kind) => {
@@ -382,42 +315,26 @@ impl<'a> Parser<'a> {
             // "hurries across the street"
             Sense::FarSide
                 if (item.words.starts_with("across") || item.words.starts_with("over"))
-                    && matches!(
+                    && (matches!(
                         self.sense(self.at.wrapping_sub(1)),
                         Some(Sense::State(ObjectState::Moving, _) | Sense::Attribute(_))
-                    )
+                    ) || self.at > 0
+                        && self.items[self.at - 1].tag == Tag::Unknown
+                        && self
+                            .last
+                            .iter()
+                            .all(|t| self.mentions[*t].spec.state == Some(ObjectState::Moving)))
                     && !self.last.is_empty() =>
             {
                 self.begin(Prep::Rels(vec![RelationKind::Crossing]), span);
                 self.anchor(Anchor::Lane(LaneRole::Road), span);
             }
             Sense::FarSide => {
-                self.begin(Prep::FarSide, span);
+                let prep = self.other_side(item);
+                self.begin(prep, span);
                 self.anchor(Anchor::Ego, span);
             }
-            Sense::BothSides(each) => {
-                self.flush();
-                let mut targets = self.targets();
-                if self.reversed.is_some() {
-                    targets.truncate(1); // "flanked by two cones on each side"
-                }
-                // "and on both sides stand two cars"
-                if self.fresh && self.noun_ahead(self.at + 1) && self.reversed.is_none() {
-                    self.new_clause();
-                    targets.clear();
-                }
-                if targets.is_empty() && self.noun_ahead(self.at + 1) {
-                    self.fronted_both = Some(each);
-                } else if targets.is_empty() {
-                    self.unread(span, Some("nothing stands before it".into()));
-                }
-                let each = each || targets.iter().any(|t| self.mentions[*t].spec.count.n == 1);
-                self.chain = false;
-                for t in targets {
-                    self.mentions[t].both = Some(each);
-                    self.mentions[t].spec.span = self.mentions[t].spec.span.to(span);
-                }
-            }
+            Sense::BothSides(each) => self.both_sides(each, span),
             // "drives off", "the sun is going down"
             Sense::In
                 if matches!(

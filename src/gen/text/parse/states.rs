@@ -10,6 +10,21 @@ use crate::scene::graph::{ObjectState, RelationKind};
 impl Parser<'_> {
     pub(super) fn state(&mut self, state: ObjectState, finite: bool, prenominal: bool, item: &Item) {
         let span = item.span;
+        // "nobody is walking": of nobody
+        let nobody = (1..=2).any(|k| {
+            matches!(
+                self.at.checked_sub(k).and_then(|i| self.sense(i)),
+                Some(super::super::lexicon::Sense::Nobody)
+            )
+        });
+        if self.denied && nobody && !self.edits {
+            return;
+        }
+        // "a bus with a cyclist beside it is waiting": the bus
+        let singular = ["is ", "was ", "has "].iter().any(|w| item.words.starts_with(w));
+        if finite && singular && !self.relative && self.pending.is_none() && !self.edits {
+            self.back_to_host();
+        }
         self.denied &= !(finite || self.after_is());
         let meant = self
             .item(self.at.wrapping_sub(1))

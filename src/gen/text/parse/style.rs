@@ -129,7 +129,19 @@ impl Parser<'_> {
                     self.phrase(span, Became::Road, &item.words);
                 }
                 self.anchor(anchor, span);
+                // "in my lane ahead"
+                let ahead = item.words.ends_with(" ahead") || item.words.ends_with(" in front of me");
+                if ahead && matches!(anchor, Anchor::Lane(LaneRole::Ego)) && !self.edits {
+                    self.begin(Prep::Rels(vec![RelationKind::InFrontOf]), span);
+                    self.anchor(Anchor::Ego, span);
+                }
             }
+            return;
+        }
+        if self.bare_place(anchor) {
+            // "truck 30 m ahead ego lane", "2 peds left sidewalk"
+            self.begin(Prep::In, span);
+            self.anchor(anchor, span);
             return;
         }
         let opened = self.item(self.at.wrapping_sub(1)).is_some_and(|b| {

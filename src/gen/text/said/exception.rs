@@ -1,8 +1,10 @@
 //! Who is spared: "all the motor vehicles but the bus may disappear".
 
+use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::Token;
+use super::Piece;
 use super::lists::HELPERS;
-use super::words::{find, first_noun, has_noun, is, is_finite, leads, text};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, text};
 
 /// The sentence without an exception, and the noun phrase that was excepted.
 pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
@@ -51,4 +53,42 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
         .unwrap_or(tokens.len());
     let rest = [&tokens[..i], &tokens[end..]].concat();
     has_noun(&rest).then(|| (rest, tokens[from..end].to_vec()))
+}
+
+/// What nobody wants of a kind goes, where it was said.
+pub(super) fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
+    let any = is(
+        inner.first(),
+        &["any", "a", "an", "more", "some", "anybody", "anyone"],
+    );
+    let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
+    let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
+    let mut rest = &inner[b..];
+    for late in ["any more", "anymore", "any longer", "at all", "no more", "now"] {
+        let n = late.split(' ').count();
+        if let Some(cut) = rest
+            .len()
+            .checked_sub(n)
+            .filter(|k| find(&rest[*k..], &[late]).is_some())
+        {
+            rest = &rest[..cut];
+        }
+    }
+    let told = rest.first().is_some_and(|t| {
+        is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to"
+    });
+    let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
+    (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
+        let body = is(inner.get(a), &["anybody", "anyone"]);
+        let np = if body {
+            led("people", first, &[])
+        } else {
+            inner[a..b].to_vec()
+        };
+        vec![Piece::Plain(led(
+            "remove all the",
+            first,
+            &[&np, &rest[2 * verb..]],
+        ))]
+    })
 }

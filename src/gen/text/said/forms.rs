@@ -439,8 +439,13 @@ pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) 
                 text(&rest[*k]),
                 "a" | "an" | "another" | "some" | "new" | "big" | "small" | "large"
             ) || number(&rest[*k]).is_some()
-                || look_up(text(&rest[*k]))
-                    .is_some_and(|s| matches!(s, Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_)))
+                || look_up(text(&rest[*k])).is_some_and(|s| {
+                    matches!(
+                        s,
+                        Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(_, false)
+                    )
+                })
+                || matches!(text(&rest[*k]), "oncoming" | "approaching" | "more")
         })
         .last()
         // "on its place comes motorbike"

@@ -4,25 +4,32 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod causing;
 mod exception;
 mod forms;
 mod frame;
 mod gaps;
 mod idioms;
+mod limits;
 pub(super) mod lists;
 mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod recast;
 mod skies;
 mod some_of;
 mod spoken;
+mod steps;
+mod strips;
 mod subject;
 mod swap;
 #[cfg(test)]
 mod tests;
+mod topics;
 mod untouched;
 mod ways;
+mod which;
 mod worded;
 pub(super) mod words;
 
@@ -48,6 +55,7 @@ use predicate::{in_place, parts};
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use which::spared;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
 
@@ -140,6 +148,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         talk.others || find(body, &["the other", "the others", "the rest", "the remaining"]).is_some();
     let mut before: Option<String> = talk.last.clone();
     let parted = clauses(body, talk);
+    understood |= parted.len() > 1 && parted.iter().any(|c| parting::only_sky(c));
     let mut lead: Option<Token> = None;
     for clause in parted {
         // "put the truck on the left and the car on the right"
@@ -257,44 +266,6 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     Some(out)
 }
 
-/// What nobody wants of a kind goes, where it was said.
-fn unwanted(inner: &[Token], first: &Token) -> Option<Vec<Piece>> {
-    let any = is(
-        inner.first(),
-        &["any", "a", "an", "more", "some", "anybody", "anyone"],
-    );
-    let (a, b) = first_noun(inner).filter(|n| n.0 < 4)?;
-    let many = matches!(look_up(text(&inner[b - 1])), Some(Sense::Noun(_, true)));
-    let mut rest = &inner[b..];
-    for late in ["any more", "anymore", "any longer", "at all", "no more", "now"] {
-        let n = late.split(' ').count();
-        if let Some(cut) = rest
-            .len()
-            .checked_sub(n)
-            .filter(|k| find(&rest[*k..], &[late]).is_some())
-        {
-            rest = &rest[..cut];
-        }
-    }
-    let told = rest.first().is_some_and(|t| {
-        is_place(rest) || text(t).ends_with("ing") || text(t) == "parked" || text(t) == "to"
-    });
-    let verb = usize::from(is(rest.first(), &["to"]) && is(rest.get(1), &["be", "stand", "drive", "wait"]));
-    (!rest.is_empty() && told && (any || a == 0 && many)).then(|| {
-        let body = is(inner.get(a), &["anybody", "anyone"]);
-        let np = if body {
-            led("people", first, &[])
-        } else {
-            inner[a..b].to_vec()
-        };
-        vec![Piece::Plain(led(
-            "remove all the",
-            first,
-            &[&np, &rest[2 * verb..]],
-        ))]
-    })
-}
-
 /// A command that does nothing but say what "it" will mean.
 fn remembered(np: &[Token], talk: &Talk<'_>) -> Piece {
     let span = np.iter().fold(np[0].span, |s: Span, t| s.to(t.span));
@@ -320,6 +291,10 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         && talk.fits(inner) > 0
     {
         return Some(vec![remembered(inner, talk)]);
+    }
+    // "leave the car behind me as it is"
+    if let Some(np) = untouched::stays(inner).filter(|np| talk.fits(np) > 0) {
+        return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"
     if let Some((i, n)) = find(
@@ -400,7 +375,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     // "I don't want any cars behind me any more"
     if mood.denied
-        && let Some(found) = unwanted(inner, first)
+        && let Some(found) = exception::unwanted(inner, first)
     {
         return Some(found);
     }

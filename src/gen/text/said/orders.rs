@@ -370,6 +370,28 @@ fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     } else {
         text(first) == "make"
     };
+    // "turn the other one into a truck", "make the others vans"
+    if is(Some(first), &["turn", "change", "convert", "transform", "make"])
+        && let Some((back, n)) = pointing(&inner[1..]).filter(|p| p.0 == Back::Others)
+    {
+        let end = 1 + n;
+        let into = usize::from(is(inner.get(end), &["into", "to"]));
+        if into == 1 || text(first) == "make" {
+            let s = Subject {
+                kind: Kind::Back(back),
+                np: inner[1..end].to_vec(),
+                noun: Vec::new(),
+                pred: end,
+                plural: true,
+            };
+            let part = predicate::Part {
+                main: led("become", first, &[&inner[end + into..]]),
+                helped: true,
+                ..predicate::Part::default()
+            };
+            return acts::acts(&s, &[part], true, inner, talk);
+        }
+    }
     if makes_of
         && is(inner.get(1), &["it", "that", "him", "her"])
         && is(inner.get(2 + into), &["a", "an"])

@@ -93,6 +93,29 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
             let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            // "the van and the truck are to disappear": two subjects of one verb
+            let joined = text(t) == "and"
+                && is(body.get(from), &["the", "both", "my", "that", "those", "these"])
+                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
+                && is(body.get(next), &["the", "my", "that", "those", "these"]);
+            if joined {
+                i += 1;
+                continue;
+            }
+            // weather and light are told apart from the rest
+            let next_link = (next..body.len())
+                .find(|k| {
+                    body[*k].kind == TokenKind::Comma || matches!(text(&body[*k]), "and" | "but" | "while")
+                })
+                .unwrap_or(body.len());
+            let sky = only_sky(&body[from..i]) && next < body.len() && !only_sky(&body[next..])
+                || only_sky(&body[next.min(body.len())..next_link]) && !only_sky(&body[from..i]) && spoken;
+            if sky {
+                out.push(&body[from..i]);
+                from = next;
+                i = next.max(i + 1);
+                continue;
+            }
             if !lead
                 && !lifts
                 && !named
@@ -118,6 +141,36 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
     out.push(&body[from..]);
     out.retain(|c| !c.is_empty());
     out
+}
+
+/// True if these words are of weather and light alone.
+pub(super) fn only_sky(tokens: &[Token]) -> bool {
+    let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    // "clear the kerb" is no weather
+    let clears = is(tokens.first(), &["clear"])
+        && is(
+            tokens.get(1),
+            &[
+                "the", "my", "our", "all", "away", "out", "up", "off", "every", "that", "this", "both",
+            ],
+        );
+    let points = (0..tokens.len()).any(|i| {
+        is(tokens.get(i), &["it", "them", "he", "she", "they"])
+            && !is(
+                tokens.get(i + 1),
+                &[
+                    "be", "is", "should", "becomes", "gets", "has", "was", "turns", "starts", "begins",
+                    "must",
+                ],
+            )
+            && !is(tokens.get(i.wrapping_sub(1)), &["make", "let"])
+    });
+    tokens.iter().any(style)
+        && !clears
+        && !has_noun(tokens)
+        && !is(tokens.first(), &["where", "instead", "rather"])
+        && !points
+        && !tokens.iter().any(|t| number(t).is_some())
 }
 
 /// "where the truck is, put a digger" and "instead of the van, ..." are one clause.
@@ -231,6 +284,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         && talk.carried
         && !near.iter().any(|t| HELPERS.contains(&text(t)))
     {
+        return true;
+    }
+    // "and now only one worker is there"
+    if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
         return true;
     }
     // "two would do"

@@ -357,7 +357,11 @@ pub fn new_kind(main: &[Token]) -> Option<&[Token]> {
             Some(Sense::Unit(_) | Sense::Rel(_) | Sense::EgoRel(_))
         ) && !matches!(text(t), "bit" | "little" | "metre" | "meter" | "lane")
     });
-    (article && plain).then_some(main)
+    // "two of the cones are to be barriers"
+    let many = noun.0 == 0
+        && noun.1 == main.len()
+        && matches!(look_up(text(&main[noun.1 - 1])), Some(Sense::Noun(_, true)));
+    (article && plain || many).then_some(main)
 }
 
 /// True if the words name a thing that is put in the place of another: one past "in its place".

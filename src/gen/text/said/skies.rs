@@ -49,11 +49,171 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     if let Some((i, n)) = find(&out, ENDS) {
         let article = usize::from(is(out.get(i + n), &["the", "this", "that", "all"]));
         if is(out.get(i + n + article), SKIES) && (i == 0 || !is(out.get(i - 1), &["to", "not", "dont"])) {
-            let clear = led("clear weather", &out[i], &[]);
-            out.splice(i..=i + n + article, clear);
+            let mut clear = led("clear weather", &out[i], &[]);
+            // "get rid of the snow and of the cones"
+            let end = i + n + article + 1;
+            let and = is(out.get(end), &["and"]);
+            let of = usize::from(is(out.get(end + 1), &["of"]));
+            let more = and && is(out.get(end + 1 + of), &["the", "all", "those", "these", "every"]);
+            if more && super::words::has_noun(&out[end + 1..]) {
+                clear.extend(led("and remove", &out[end], &[]));
+                out.splice(i..end + 1 + of, clear);
+            } else {
+                out.splice(i..end, clear);
+            }
         }
     }
-    unwanted(out)
+    // "let the rain stop", "the fog should clear"
+    let ended = (0..out.len()).find_map(|i| {
+        is(out.get(i), SKIES).then_some(())?;
+        let helpers = out[i + 1..]
+            .iter()
+            .take_while(|t| {
+                is(
+                    Some(t),
+                    &[
+                        "should", "must", "has", "to", "will", "can", "may", "is", "finally", "now",
+                    ],
+                )
+            })
+            .count();
+        let verb = is(
+            out.get(i + 1 + helpers),
+            &[
+                "stop",
+                "stops",
+                "end",
+                "ends",
+                "ended",
+                "cease",
+                "ceases",
+                "lift",
+                "lifts",
+                "pass",
+                "passes",
+                "vanish",
+                "vanishes",
+                "disappear",
+                "disappears",
+                "disperse",
+                "disperses",
+                "go",
+                "goes",
+                "stopped",
+                "lifted",
+            ],
+        ) || helpers > 0 && is(out.get(i + 1 + helpers), &["over", "gone"]);
+        let from = i - usize::from(i > 0 && is(out.get(i - 1), &["the", "this", "that"]));
+        let lead = is(out.get(from.wrapping_sub(1)), &["let", "make", "have"]);
+        verb.then_some((from - usize::from(lead && from > 0), i + 2 + helpers))
+    });
+    if let Some((from, end)) = ended {
+        let away = usize::from(is(out.get(end), &["away"]));
+        let clear = led("clear weather", &out[from], &[]);
+        out.splice(from..end + away, clear);
+    }
+    // "instead of the fog let there be snow"
+    if let Some(n) = leads(&out, &["instead of", "rather than", "in place of"]) {
+        let article = usize::from(is(out.get(n), &["the", "this", "that"]));
+        let end = n + article + 1;
+        if out.get(n + article).is_some_and(is_style) && out[end..].iter().any(is_style) {
+            let comma = out
+                .get(end)
+                .is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma);
+            out.drain(..end + usize::from(comma));
+        }
+    }
+    changed(unwanted(out))
+}
+
+/// "the snow has turned to rain", "change night to day": what it becomes.
+fn changed(tokens: Vec<Token>) -> Vec<Token> {
+    const CHANGE: &[&str] = &[
+        "has",
+        "have",
+        "turned",
+        "turns",
+        "turn",
+        "turning",
+        "changed",
+        "changes",
+        "change",
+        "is",
+        "was",
+        "being",
+        "becomes",
+        "became",
+        "become",
+        "becoming",
+        "gives",
+        "gave",
+        "given",
+        "way",
+        "replaced",
+        "into",
+        "to",
+        "by",
+        "with",
+        "for",
+        "and",
+        "yields",
+        "yielded",
+        "should",
+        "must",
+        "now",
+        "the",
+        "a",
+        "swapped",
+        "exchanged",
+        "made",
+        "goes",
+        "went",
+        "over",
+    ];
+    const INTO: &[&str] = &[
+        "into", "to", "by", "with", "for", "becomes", "became", "become", "becoming",
+    ];
+    let cut = (0..tokens.len()).find_map(|i| {
+        if !is_style(&tokens[i]) {
+            return None;
+        }
+        let next = (i + 1..tokens.len().min(i + 8)).find(|k| is_style(&tokens[*k]))?;
+        let between = &tokens[i + 1..next];
+        let plain = between.iter().all(|t| is(Some(t), CHANGE));
+        let swapped = tokens.iter().any(|t| {
+            is(
+                Some(t),
+                &[
+                    "replace",
+                    "replaced",
+                    "swap",
+                    "swapped",
+                    "exchange",
+                    "exchanged",
+                    "substitute",
+                ],
+            )
+        });
+        let into = between
+            .iter()
+            .any(|t| is(Some(t), INTO) && (swapped || !is(Some(t), &["by", "with", "for"])));
+        // "from fog to snow" and "the fog to snow" alike
+        let from = i - usize::from(i > 0 && is(tokens.get(i - 1), &["the", "this", "that", "from"]));
+        (plain && into).then_some((from, next))
+    });
+    match cut {
+        Some((from, next)) => {
+            let lead = is(
+                tokens.get(from.wrapping_sub(1)),
+                &[
+                    "change", "turn", "switch", "swap", "exchange", "replace", "make", "convert",
+                ],
+            );
+            let start = if lead { from - 1 } else { from };
+            [&tokens[..start], &tokens[next..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "daylight instead of this darkness": the one that is wished for.

@@ -234,7 +234,11 @@ fn all_except(tokens: &[Token]) -> Option<Vec<Token>> {
     )?;
     let k = i + n;
     let many = number(tokens.get(k)?)?;
-    let end = &tokens[k + 1..];
+    // "all pedestrians apart from one person"
+    let noun = first_noun(&tokens[k + 1..])
+        .filter(|x| x.0 == 0)
+        .map_or(0, |x| x.1);
+    let end = &tokens[k + 1 + noun..];
     let ends = end.is_empty()
         || leads(end, &["of them", "of those", "of these", "please"]).is_some_and(|m| m == end.len());
     let before = trimmed(&tokens[..i]);

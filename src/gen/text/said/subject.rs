@@ -162,6 +162,17 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
         if k == from && super::words::leads(&tokens[k..], &BECOMES).is_some() {
             return Some(k);
         }
+        // "on the cross street", "a stop": after an article it is no verb
+        let named = k > 0
+            && is(
+                tokens.get(k - 1),
+                &["the", "a", "an", "my", "our", "this", "that"],
+            )
+            && k > from;
+        if named && !HELPERS.contains(&w) {
+            k += 1;
+            continue;
+        }
         let helper =
             HELPERS.contains(&w) || NEGATED.contains(&w) || w == "no" && is(tokens.get(k + 1), &["longer"]);
         if helper || is_finite(w, base) && !modifies(tokens, k) {

@@ -19,6 +19,9 @@ const PLACES: &[&str] = &[
     "sides",
     "order",
     "slots",
+    "lanes",
+    "lane",
+    "seats",
 ];
 
 /// Where each noun phrase is, with its article and what describes it.
@@ -39,6 +42,23 @@ fn phrases(tokens: &[Token]) -> Vec<(usize, usize)> {
             })
             .last()
             .unwrap_or(start);
+        // "the car in the right lane" is that one
+        let told =
+            super::words::is_place(&tokens[end..]) && !is(tokens.get(end), &["to", "into", "over", "back"]);
+        let stop = (end..tokens.len())
+            .find(|i| {
+                EXCHANGING.contains(&text(&tokens[*i]))
+                    || tokens[*i].kind != super::super::tokens::TokenKind::Word
+                    || is(
+                        tokens.get(*i),
+                        &[
+                            "and", "with", "for", "by", "where", "is", "are", "should", "must", "so",
+                            "places", "take", "takes",
+                        ],
+                    )
+            })
+            .unwrap_or(tokens.len());
+        let end = if told { stop } else { end };
         out.push((lead, end));
         from = end;
     }

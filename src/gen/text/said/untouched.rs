@@ -1,7 +1,7 @@
 //! What only says that nothing else changes: "everything else as it is", "same thing again, only", "leave the objects alone".
 
 use super::super::tokens::{Token, TokenKind};
-use super::words::{begins, is, leads, trimmed};
+use super::words::{begins, find, has_noun, is, leads, trimmed};
 
 const LEADS: &[&str] = &[
     "with",
@@ -201,4 +201,37 @@ pub fn cut(tokens: &[Token]) -> Vec<Token> {
     } else {
         tokens.to_vec()
     }
+}
+
+/// "leave the car behind me as it is": whom it speaks of.
+pub fn stays(tokens: &[Token]) -> Option<&[Token]> {
+    const SO: &[&str] = &[
+        "as it is",
+        "as they are",
+        "where it is",
+        "where they are",
+        "untouched",
+        "unchanged",
+        "alone",
+        "in place",
+        "in peace",
+        "as it was",
+        "where it stands",
+        "where they stand",
+        "as he is",
+        "as she is",
+        "where he is",
+        "where she is",
+        "the way it is",
+        "the way they are",
+        "be",
+        "stay",
+        "in its place",
+        "in their place",
+    ];
+    if !is(tokens.first(), &["leave", "keep", "let"]) {
+        return None;
+    }
+    let (i, n) = find(tokens, SO)?;
+    (i > 1 && i + n == tokens.len() && has_noun(&tokens[1..i])).then(|| &tokens[1..i])
 }

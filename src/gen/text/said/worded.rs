@@ -65,6 +65,30 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return stop.to_vec();
     }
     out = super::skies::plain(&out);
+    // "there shouldn't be anyone on foot any more"
+    if let Some((i, n)) = find(
+        &out,
+        &[
+            "be anyone on foot",
+            "be anybody on foot",
+            "be any people on foot",
+            "be any persons on foot",
+        ],
+    ) && out[..i]
+        .iter()
+        .any(|t| text(t).ends_with("nt") || matches!(text(t), "not" | "no"))
+    {
+        let late = leads(
+            &out[i + n..],
+            &["any more", "anymore", "any longer", "at all", "now"],
+        )
+        .unwrap_or(0);
+        let rest = out[i + n + late..].to_vec();
+        out = led("remove all the pedestrians", &out[0], &[&rest]);
+    }
+    out = replaced(&out, ON_FOOT, "all pedestrians");
+    out = super::which::plain(out, talk);
+    out = super::recast::plain(out, talk);
     if let Some(new) = second_one(&out) {
         out = new;
     }
@@ -100,7 +124,6 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     out = without_order(&out);
     out = replaced(&out, WHOLE, "the scene");
-    out = replaced(&out, ON_FOOT, "all pedestrians");
     out = replaced(&out, DRY, "clear weather");
     out = mates(out);
     out = denied_place(out);

@@ -127,6 +127,10 @@ pub const RELATING: &[(R, &str)] = &[
         "face|confront|eye|watch|look at|look towards|gaze at|stare at|point at|point to|point straight at|point right at|point towards|aim at|head for|head towards|head toward|make for/made for/made for|bear down on/bore down on|close in on|approach|near",
     ),
     (
+        R::FacingAway,
+        "walk away from|drive away from/drove away from/driven away from|run away from/ran away from/run away from|ride away from/rode away from/ridden away from|move away from|go away from/went away from/gone away from|head away from|roll away from|cycle away from|jog away from|turn away from|look away from|face away from|hurry away from|stroll away from|point away from",
+    ),
+    (
         R::NextTo,
         "join|flank|adjoin|border|accompany|escort|abut|hug|skirt|pull alongside|pull up next to|pull up beside|draw level with/drew level with/drawn level with|draw alongside/drew alongside/drawn alongside|keep pace with/kept pace with|push|wheel",
     ),

@@ -1,0 +1,269 @@
+//! Turns of speech that prompts and edits share, in plain words before either grammar reads them: courtesies, ordinals in
+//! digits, numbers said in a roundabout way, what only a part of a thing is named for.
+
+use super::lexicon::{Sense, look_up};
+use super::tokens::{Token, TokenKind};
+use super::wording::{begins, replaced, word};
+
+const COURTESY: &str = "if it is not too much trouble|if its not too much trouble|if it isnt too much trouble|if that is not too much trouble|if thats not too much trouble|if that isnt too much trouble|if it is no trouble|if its no trouble|if you dont mind|if you do not mind|if possible|if it is possible|if its possible|if thats possible|if that is possible|if it is ok|if its ok|if thats ok|if that is okay|if thats okay|if you would be so kind|if you please|if i may ask|if i may|if it is not asking too much|if thats not asking too much|if it is no bother|if its no bother|if youd be so kind|when you get a chance|when you have a moment|if it isnt asking too much";
+const REMINDERS: &str = "dont forget to|do not forget to|dont forget about|do not forget about|dont forget|do not forget|not to forget|not forgetting|lets not forget|let us not forget";
+const EXACTLY: &str = "no more and no fewer than|no more and no less than|no fewer and no more than|no less and no more than|no more nor fewer than|neither more nor fewer than|neither more nor less than|neither fewer nor more than|neither less nor more than|not more and not less than|not more and not fewer than|no more no less than|precisely|exactly and only|a total of exactly";
+const PARTS: &str = "the back of|the rear of|the rear end of|the tail of|the tail end of|the back end of|the front of|the side of|the silhouette of|the outline of|the shape of|the figure of|the taillights of|the tail lights of|the rear lights of|the headlights of|the form of";
+const ANY_KIND: &str = "of any other kind|of any kind|of any other sort|of any sort|of any other type|of any type|whatsoever|of whatever kind";
+const FREE: &str = "my lane is free and|our lane is free and|my lane is free ,|our lane is free ,|my own lane is free ,|our own lane is free ,|the ego lane is free ,|my lane is clear ,|our lane is clear ,|my lane is empty ,|our lane is empty ,|my lane is free .|our lane is free .|my lane is empty .";
+const ORDINALS: [&str; 12] = [
+    "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
+    "eleventh", "twelfth",
+];
+
+fn is_number(t: &Token) -> bool {
+    matches!(t.kind, TokenKind::Number(_))
+        || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
+}
+
+/// A text in plain words.
+pub fn plain(tokens: &[Token]) -> Vec<Token> {
+    let out = ordinals(tokens);
+    let out = without_courtesy(&out);
+    let out = replaced(&out, REMINDERS, "and");
+    let out = replaced(&out, EXACTLY, "exactly");
+    let out = replaced(&out, ANY_KIND, "");
+    let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
+    let out = replaced(&out, FREE, "");
+    let out = both_the(&out);
+    let out = sides_in_short(&out);
+    let out = this_one(&out);
+    some_so_many(&part_for_whole(&out))
+}
+
+/// "1st", "2nd": in words.
+fn ordinals(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let joined = tokens.get(i + 1).is_some_and(|t| {
+            matches!(t.text.as_str(), "st" | "nd" | "rd" | "th") && t.span.start == tokens[i].span.end
+        });
+        let nth = match tokens[i].kind {
+            TokenKind::Number(v) if joined && (1.0..=12.0).contains(&v) => ORDINALS.get(v as usize - 1),
+            _ => None,
+        };
+        match nth {
+            Some(nth) => {
+                if !out
+                    .last()
+                    .is_some_and(|t| matches!(t.text.as_str(), "the" | "a" | "its" | "my"))
+                {
+                    out.push(word("the", &tokens[i]));
+                }
+                out.push(word(nth, &tokens[i]));
+                i += 2;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// What is only polite, with the commas that set it off.
+fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
+    let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        match begins(&tokens[i..], COURTESY) {
+            Some(n) => {
+                i += n;
+                if comma(tokens.get(i)) && (comma(out.last()) || out.is_empty()) {
+                    i += 1;
+                    let inside = out.len() > 1
+                        && matches!(out[out.len() - 2].text.as_str(), "and" | "but" | "with" | "or");
+                    if inside {
+                        out.pop();
+                    }
+                }
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "on both the sides": on both sides; "both the bus and the car": the bus and the car.
+fn both_the(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let after =
+            i > 0 && tokens[i - 1].text == "both" && matches!(t.text.as_str(), "the" | "these" | "those");
+        let many = tokens[i + 1..]
+            .iter()
+            .take(3)
+            .find(|t| {
+                t.text == "sides" || matches!(look_up(&t.text), Some(Sense::Noun(..) | Sense::Place(..)))
+            })
+            .is_some_and(|t| {
+                t.text == "sides"
+                    || matches!(look_up(&t.text), Some(Sense::Noun(_, true)))
+                    || matches!(look_up(&t.text), Some(Sense::Place(..))) && t.text.ends_with('s')
+            });
+        let two = tokens[i + 1..]
+            .iter()
+            .take(7)
+            .position(|t| t.text == "and")
+            .is_some_and(|k| {
+                tokens
+                    .get(i + 2 + k)
+                    .is_some_and(|t| matches!(t.text.as_str(), "the" | "that" | "those"))
+            });
+        if after && two && !many {
+            out.pop();
+        }
+        if !(after && many) {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+/// "lhs", "rhs".
+fn sides_in_short(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let side = match t.text.as_str() {
+            "lhs" => "left",
+            "rhs" => "right",
+            _ => {
+                out.push(t.clone());
+                continue;
+            }
+        };
+        let led = i > 0
+            && matches!(
+                tokens[i - 1].text.as_str(),
+                "the" | "my" | "our" | "on" | "at" | "to"
+            );
+        let lead: &[&str] = match (
+            led,
+            i > 0 && tokens[i - 1].text.len() == 2 && tokens[i - 1].text != "my",
+        ) {
+            (true, true) => &["the"],
+            (true, false) => &[],
+            (false, _) => &["on", "the"],
+        };
+        out.extend(lead.iter().chain([&side, &"side"]).map(|w| word(w, t)));
+    }
+    out
+}
+
+/// "one more motorcycle, but this one is following us": which is.
+fn this_one(tokens: &[Token]) -> Vec<Token> {
+    const LEAD: &str = ", but this one|, and this one|, only this one|, this one|but this one|, but that one|, and that one|, this one though|, however this one";
+    const VERB: &str = "is|are|has|stands|drives|comes|waits|rides|parks|sits|walks|follows|faces|goes|should be|should|must be|moves|heads";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        match begins(&tokens[i..], LEAD)
+            .filter(|n| begins(&tokens[i + n..], VERB).is_some() && !out.is_empty())
+        {
+            Some(n) => {
+                out.push(word("which", &tokens[i]));
+                i += n;
+                // "which should be behind us" is which is
+                if let Some(m) = begins(&tokens[i..], "should be|must be|shall be|is to be") {
+                    out.push(word("is", &tokens[i]));
+                    i += m;
+                }
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "we make out the back of a bus": a bus. "at the back of a bus" is a place.
+fn part_for_whole(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let whole = begins(&tokens[i..], PARTS).filter(|n| {
+            tokens
+                .get(i + n)
+                .is_some_and(|t| matches!(t.text.as_str(), "a" | "an" | "another") || is_number(t))
+                && !out.last().is_some_and(|t| {
+                    matches!(
+                        look_up(&t.text),
+                        Some(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_) | Sense::Across)
+                    ) || matches!(
+                        t.text.as_str(),
+                        "to" | "from"
+                            | "of"
+                            | "against"
+                            | "for"
+                            | "with"
+                            | "into"
+                            | "turn"
+                            | "left"
+                            | "right"
+                    )
+                })
+        });
+        i += whole.unwrap_or(0);
+        out.push(tokens[i].clone());
+        i += 1;
+    }
+    out
+}
+
+/// "some ten metres", "some twenty cars": about so many.
+fn some_so_many(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let about = t.text == "some" && tokens.get(i + 1).is_some_and(is_number);
+        if !about {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tokens::tokens;
+    use super::*;
+
+    #[test]
+    fn plain_words() {
+        let said = |t: &str| {
+            let list: Vec<String> = plain(&tokens(t)).into_iter().map(|t| t.text).collect();
+            list.join(" ")
+        };
+        assert_eq!(
+            said("the 1st 15 m, the 2nd 30 m"),
+            "the first 15 m , the second 30 m"
+        );
+        assert_eq!(
+            said("a bus and, if it's not too much trouble, a lorry"),
+            "a bus and a lorry"
+        );
+        assert_eq!(said("no more and no fewer than two cars"), "exactly two cars");
+        assert_eq!(said("on both the sides"), "on both sides");
+        assert_eq!(said("both the bus and the car"), "the bus and the car");
+        assert_eq!(said("two vans lhs"), "two vans on the left side");
+        assert_eq!(
+            said("one more motorcycle, but this one is following us"),
+            "one more motorcycle which is following us"
+        );
+        assert_eq!(said("we see the back of a bus"), "we see a bus");
+        assert_eq!(said("at the back of a bus"), "at the back of a bus");
+        assert_eq!(said("some ten metres ahead"), "ten metres ahead");
+    }
+}

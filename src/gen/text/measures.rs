@@ -1,0 +1,90 @@
+//! Distances and numbers that point back: "the same distance behind", "twice that distance", "just as many on the right".
+
+use super::ellipsis::{digits, ends, is_unit, number};
+use super::tokens::{Token, TokenKind};
+use super::wording::begins;
+
+/// Distances as multiples of the one that was named last.
+const MULTIPLES: [(f64, &str); 4] = [
+    (
+        2.0,
+        "twice that distance|at twice that distance|double that distance|at double that distance|twice the distance|at twice the distance|double the distance|at double the distance|twice as far|twice as far away|double as far",
+    ),
+    (
+        0.5,
+        "half that distance|at half that distance|half the distance|at half the distance|half as far|half as far away",
+    ),
+    (
+        3.0,
+        "three times that distance|at three times that distance|three times the distance|three times as far|thrice that distance|triple that distance|three times as far away",
+    ),
+    (
+        1.5,
+        "one and a half times that distance|one and a half times as far",
+    ),
+];
+
+/// "the same distance behind me": as many metres as were named last.
+pub(super) fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    const SAME: &str = "the same distance|at the same distance|the very same distance|at an equal distance|an equal distance|just as far|equally far|as far again|the same number of metres|as many metres|that same distance";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let said: Vec<&Token> = before.iter().chain(&out).collect();
+        let metres = said
+            .windows(2)
+            .rev()
+            .find(|w| number(w[0]).is_some() && is_unit(w[1]))
+            .map(|w| [w[0].clone(), w[1].clone()]);
+        let times = MULTIPLES
+            .iter()
+            .find_map(|(factor, list)| begins(&sentence[i..], list).map(|n| (n, *factor)));
+        match (begins(&sentence[i..], SAME).map(|n| (n, 1.0)).or(times), metres) {
+            (Some((n, factor)), Some(mut metres)) => {
+                if let (TokenKind::Number(v), true) = (metres[0].kind.clone(), factor != 1.0) {
+                    metres[0].kind = TokenKind::Number(v * factor);
+                    metres[0].text = format!("{}", v * factor);
+                }
+                out.extend(metres);
+                i += n;
+                i += begins(&sentence[i..], "away from|from|away")
+                    .filter(|_| ends(sentence.get(i + 1)))
+                    .unwrap_or(0);
+            }
+            _ => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "three people on the left and just as many on the right": three.
+pub(super) fn same_number(sentence: &[Token]) -> Vec<Token> {
+    const AS_MANY: &str = "just as many|equally many|the same number|as many again|exactly as many|as many";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let n = begins(&sentence[i..], AS_MANY).filter(|n| {
+            !sentence
+                .get(i + n)
+                .is_some_and(|t| matches!(t.text.as_str(), "as" | "of"))
+        });
+        let many = (0..out.len())
+            .rev()
+            .find(|k| number(&out[*k]).is_some() && !out.get(k + 1).is_some_and(is_unit))
+            .and_then(|k| number(&out[k]));
+        match (n, many) {
+            (Some(n), Some(many)) => {
+                out.push(digits(many, &sentence[i]));
+                i += n;
+            }
+            _ => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}

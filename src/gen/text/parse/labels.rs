@@ -1,0 +1,73 @@
+//! Names that reports give to what they tell of: "Vehicle 1, a red hatchback", "the target, a van".
+
+use super::super::lexicon::Sense;
+use super::super::mention::{Mention, Pre};
+use super::super::tag::Tag;
+use super::super::words::objects::Noun;
+use super::Parser;
+
+impl Parser<'_> {
+    /// "Vehicle 1": the number is a name, if it stands after a noun in the singular and no noun or unit follows. True if
+    /// it was that.
+    pub(super) fn labelled(&mut self, number: f64) -> bool {
+        let noun = matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)));
+        let small = (1.0..10.0).contains(&number) && number.fract() == 0.0;
+        let times =
+            self.items[self.at.wrapping_sub(1).min(self.at)].span.end + 1 < self.items[self.at].span.start;
+        let next = self.item(self.at + 1);
+        let told = next.is_some_and(|n| {
+            n.tag == Tag::Comma
+                || n.words == "("
+                || matches!(
+                    n.tag,
+                    Tag::Is(Sense::State(_, true) | Sense::Rel(_) | Sense::EgoRel(_) | Sense::In)
+                )
+                || matches!(
+                    n.words.as_str(),
+                    "is" | "was" | "has" | "had" | "came" | "comes" | "were"
+                )
+        });
+        let Some(&i) = self.last.last().filter(|_| noun && small && told && !times) else {
+            return false;
+        };
+        let name = format!("{} {number}", self.mentions[i].spec.noun);
+        // named before: it is that one
+        let old =
+            (0..i).find(|k| self.mentions[*k].spec.attributes.contains(&name) && !self.mentions[*k].gone);
+        match old {
+            Some(old) if i + 1 == self.mentions.len() && !self.mentions[i].is_anchor => {
+                self.mentions.pop();
+                self.head = vec![old];
+                self.last = vec![old];
+                self.list = vec![old];
+            }
+            Some(_) => return false,
+            None => {
+                let m = &mut self.mentions[i];
+                m.uncounted = false;
+                m.spec.attributes.push(name);
+            }
+        }
+        self.pre = Pre::default();
+        true
+    }
+
+    /// True if this is what a report named first and now describes: ", a red hatchback,".
+    pub(in super::super) fn described_as(&mut self, i: usize, noun: &'static Noun, word: &str) -> bool {
+        let m: &mut Mention = &mut self.mentions[i];
+        let named = m
+            .spec
+            .attributes
+            .iter()
+            .any(|a| a.rsplit(' ').next().is_some_and(|n| n.parse::<u8>().is_ok()));
+        let fits = m.classes.contains(&noun.classes[0]) && noun.classes.len() == 1;
+        if !(named || m.definite) || !fits {
+            return false;
+        }
+        m.classes = noun.classes;
+        m.spec.class = noun.classes[0];
+        m.spec.noun = word.to_string();
+        m.spec.size_m = noun.size_m;
+        true
+    }
+}
