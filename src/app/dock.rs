@@ -489,7 +489,10 @@ mod tests {
             let dock = Dock::workspace(workspace);
             let text = serde_json::to_string(dock.tree()).expect("plain data");
             let back = serde_json::from_str(&text).expect("the same");
-            assert!(Dock::from_kept(back).is_some_and(|kept| kept.tree == dock.tree), "{name}");
+            assert!(
+                Dock::from_kept(back).is_some_and(|kept| kept.tree == dock.tree),
+                "{name}"
+            );
         }
         let mut twice = Dock::default();
         let tile = twice.find(Pane::Bev).expect("there");

@@ -31,8 +31,8 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     corrected
 }
 
-/// Columns of the region whose ground the user has just painted: where the networks left the old ground, the
-/// layout's is laid. Returns how many columns needed it.
+/// Columns of the region whose ground the user has just painted: where the networks left the old ground, or what grew or
+/// stood there and no ground, the layout's is laid. Returns how many columns needed it.
 pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) -> usize {
     let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
     let mut corrected = 0;
@@ -43,7 +43,9 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
         }
         let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
         let is_old = |l: &u8| *l != wanted.id() && Class::from_id(*l).is_some_and(Class::is_ground);
-        if generated.column(x, y).iter().any(is_old) {
+        let found = generated.column(x, y);
+        let is_object = |l: &u8| Class::from_id(*l).is_some_and(|c| c.is_object());
+        if found.iter().any(is_old) {
             let column = generated.column_mut(x, y);
             column
                 .iter_mut()
@@ -52,6 +54,13 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
             if column[0] == Class::FREE {
                 column[0] = wanted.id();
             }
+            corrected += 1;
+        } else if found[0] != Class::FREE && !found.contains(&wanted.id()) && !found.iter().any(is_object) {
+            // A hedge or a wall to its top; a crown above a gap may hang over the road.
+            let column = generated.column_mut(x, y);
+            let rooted = column.iter_mut().take_while(|l| **l != Class::FREE);
+            rooted.for_each(|l| *l = Class::FREE);
+            column[0] = wanted.id();
             corrected += 1;
         }
     }
@@ -125,15 +134,19 @@ mod tests {
             frame.layout.set(BevLayer::DrivableArea, x, 80, true);
             frame.layout.set(BevLayer::RoadBlock, x, 90, true); // changes no ground
         }
-        // Networks that followed half of it, and put a tree on a column.
+        // Networks that followed half of it, left a hedge, a crown above the road, and a car.
         let mut generated = before;
         let road = Class::DriveableSurface.id();
         (50..55).for_each(|x| generated.set(x, 80, 0, road));
-        generated.set(57, 80, 0, Class::Vegetation.id());
+        (0..3).for_each(|z| generated.set(57, 80, z, Class::Vegetation.id()));
+        generated.set(57, 80, 9, Class::Vegetation.id());
+        generated.set(58, 80, 0, Class::Car.id());
         let region = Region::of_edit(&frame, 2);
         assert_eq!(keep_ground(&frame, &region, &mut generated), 4);
-        assert!((50..60).all(|x| x == 57 || generated.get(x, 80, 0) == road));
-        assert_eq!(generated.get(57, 80, 0), Class::Vegetation.id());
+        assert!((50..60).all(|x| x == 58 || generated.get(x, 80, 0) == road));
+        assert_eq!(generated.get(57, 80, 1), Class::FREE);
+        assert_eq!(generated.get(57, 80, 9), Class::Vegetation.id());
+        assert_eq!(generated.get(58, 80, 0), Class::Car.id());
         assert_eq!(keep_ground(&frame, &region, &mut generated), 0);
         let mut outside = frame.source.occupancy.clone();
         assert_eq!(keep_ground(&frame, &Region::empty(), &mut outside), 0);

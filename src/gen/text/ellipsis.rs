@@ -27,6 +27,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         s = our_way(&s);
         s = one_a_side(&s);
         s = each_has_one(&s);
+        s = each_of_so_many(&s);
         out.extend(s);
     }
     all_but(&out)
@@ -354,6 +355,37 @@ fn each_has_one(sentence: &[Token]) -> Vec<Token> {
     out.push(digits(many, &sentence[one]));
     out.extend_from_slice(&sentence[one + 1..]);
     out
+}
+
+/// "beside each of three pylons stands a worker": beside three pylons three workers.
+fn each_of_so_many(sentence: &[Token]) -> Vec<Token> {
+    const EACH: &str = "each of the|each of our|each of those|each of|each one of the|every one of the";
+    let found = (1..sentence.len()).find_map(|i| {
+        let led = matches!(
+            sentence[i - 1].text.as_str(),
+            "behind" | "beside" | "to" | "near" | "before" | "of" | "by"
+        );
+        let n = begins(&sentence[i..], EACH).filter(|_| led)?;
+        let many = sentence
+            .get(i + n)
+            .and_then(number)
+            .filter(|k| (2..=12).contains(k))?;
+        let noun = (i + n + 1..sentence.len().min(i + n + 4)).find(|k| is_noun(&sentence[*k]))?;
+        let one = (noun + 1..sentence.len().min(noun + 5))
+            .find(|k| matches!(sentence[*k].text.as_str(), "a" | "an" | "one"))?;
+        Some((i, i + n, many, one))
+    });
+    let Some((each, count, many, one)) = found else {
+        return sentence.to_vec();
+    };
+    let more = digits(many, &sentence[one]);
+    let parts = [
+        &sentence[..each],
+        &sentence[count..one],
+        &[more],
+        &sentence[one + 1..],
+    ];
+    parts.concat()
 }
 
 /// "Five children. All but one are on the left": four of them are.

@@ -60,6 +60,20 @@ pub(super) fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> 
     out
 }
 
+/// "one bus and twice as many cars": two.
+const TIMES: [(f64, &str); 4] = [
+    (
+        2.0,
+        "twice as many|double as many|two times as many|twice the number of|double the number of",
+    ),
+    (
+        3.0,
+        "three times as many|thrice as many|three times the number of",
+    ),
+    (4.0, "four times as many"),
+    (0.5, "half as many|half the number of"),
+];
+
 /// "three people on the left and just as many on the right": three.
 pub(super) fn same_number(sentence: &[Token]) -> Vec<Token> {
     const AS_MANY: &str = "just as many|equally many|the same number|as many again|exactly as many|as many";
@@ -75,8 +89,12 @@ pub(super) fn same_number(sentence: &[Token]) -> Vec<Token> {
             .rev()
             .find(|k| number(&out[*k]).is_some() && !out.get(k + 1).is_some_and(is_unit))
             .and_then(|k| number(&out[k]));
-        match (n, many) {
-            (Some(n), Some(many)) => {
+        let times = TIMES
+            .iter()
+            .find_map(|(times, said)| begins(&sentence[i..], said).map(|n| (n, *times)));
+        match (n.map(|n| (n, 1.0)).or(times), many) {
+            (Some((n, times)), Some(many)) if (f64::from(many) * times).fract() == 0.0 => {
+                let many = (f64::from(many) * times) as u32;
                 out.push(digits(many, &sentence[i]));
                 i += n;
             }

@@ -132,7 +132,11 @@ fn fitting_deep(
             && state == ObjectState::Waiting
             && m.spec.class == Class::Pedestrian
             && !m.spec.relations.is_empty();
-        if !loose {
+        // (who follows drives, also where the scene says of him only that he stands behind)
+        let follows = strict.is_empty()
+            && state == ObjectState::Moving
+            && m.spec.relations.iter().any(|r| r.relation == RelationKind::Following);
+        if !loose && !follows {
             fit = strict;
         }
     }

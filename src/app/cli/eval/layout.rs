@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 17] = [
+const SETS: [(&str, &str); 18] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -76,6 +76,10 @@ const SETS: [(&str, &str); 17] = [
     (
         "strangers_11.jsonl",
         include_str!("../../../../tests/data/strangers_11.jsonl"),
+    ),
+    (
+        "strangers_12.jsonl",
+        include_str!("../../../../tests/data/strangers_12.jsonl"),
     ),
     (
         "causes.jsonl",

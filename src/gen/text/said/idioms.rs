@@ -16,7 +16,8 @@ pub fn plain(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     if let Some(new) = intention(tokens).or_else(|| stands_in(tokens)) {
         return Some(new);
     }
-    super::some_of::plain(tokens, talk)
+    super::remaining::plain(tokens)
+        .or_else(|| super::some_of::plain(tokens, talk))
         .or_else(|| not_but(tokens))
         .or_else(|| out_and_in(tokens))
         .or_else(|| besides(tokens))

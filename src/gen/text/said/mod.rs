@@ -17,6 +17,7 @@ mod parting;
 mod passive;
 mod predicate;
 mod recast;
+mod remaining;
 mod skies;
 mod some_of;
 mod spoken;
