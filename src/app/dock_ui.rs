@@ -19,6 +19,9 @@ use super::theme;
 /// Height of a pane's header, points.
 pub const HEADER: f32 = 30.0;
 
+/// Width that controls get beside tabs, points.
+const BESIDE_TABS: f32 = 104.0;
+
 /// What the user asked of the dock; done after it was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DockAction {
@@ -72,7 +75,11 @@ impl Behavior<Pane> for Panes<'_> {
             ui.spacing_mut().item_spacing.x = 4.0;
             ui.add_space(4.0);
             self.menu(ui, tile, pane, "");
-            self.app.pane_controls(ui, pane, self.scene, self.commands);
+            ui.scope(|ui| {
+                // The tabs need the room: choices fold into a list.
+                ui.set_max_width(BESIDE_TABS);
+                self.app.pane_controls(ui, pane, self.scene, self.commands);
+            });
         }
     }
 

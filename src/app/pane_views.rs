@@ -18,7 +18,7 @@ use super::panels::layers::layers_ui;
 use super::panels::objects::objects_ui;
 use super::panels::panes;
 use super::panels::trade::trade_ui;
-use super::panels::versions::versions_ui;
+use super::panels::versions::{versions_controls, versions_ui};
 use super::state::Pane;
 use super::theme;
 use super::view3d::{View3d, View3dInput};
@@ -36,6 +36,7 @@ impl SceneloomApp {
             Pane::Bev => panes::bev_controls(ui, &mut self.state),
             Pane::View3d => panes::view3d_controls(ui, &mut self.view3d.options, &mut self.state, commands),
             Pane::Lidar => panes::lidar_controls(ui, &mut self.state),
+            Pane::Versions => versions_controls(ui, &mut self.state),
             Pane::Cameras => {
                 let rev = self.document.scene().rev;
                 let cameras = cameras_input(scene, rev, &self.sensing);
@@ -72,10 +73,8 @@ impl SceneloomApp {
             Pane::Versions => {
                 let shown = self.document.settled_scene().rev;
                 let before = self.compare.before.as_ref().map(|s| s.rev);
-                let (versions, state) = (&mut self.versions, &mut self.state);
-                theme::panel_frame().show(ui, |ui| {
-                    versions_ui(ui, versions, state, (shown, before), commands)
-                });
+                let versions = &mut self.versions;
+                theme::panel_frame().show(ui, |ui| versions_ui(ui, versions, shown, before, commands));
             }
             Pane::Tools => {
                 let frame = self.document.scene().frame();

@@ -31,8 +31,8 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     corrected
 }
 
-/// Columns of the region whose ground the user has just painted: where the networks left the old ground, or what grew or
-/// stood there and no ground, the layout's is laid. Returns how many columns needed it.
+/// Columns of the region whose ground the user has just painted: where the networks left the old ground, or none where
+/// there was some, the layout's is laid. Returns how many columns needed it.
 pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) -> usize {
     let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
     let mut corrected = 0;
@@ -55,8 +55,12 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
                 column[0] = wanted.id();
             }
             corrected += 1;
-        } else if found[0] != Class::FREE && !found.contains(&wanted.id()) && !found.iter().any(is_object) {
-            // A hedge or a wall to its top; a crown above a gap may hang over the road.
+        } else if !found.contains(&wanted.id())
+            && !found.iter().any(is_object)
+            && frame.source.occupancy.column(x, y)[0] != Class::FREE
+        {
+            // A hedge or a wall goes to its top, a hole is closed unless it was there before, as in frames of real labels;
+            // a crown above a gap may hang over the road.
             let column = generated.column_mut(x, y);
             let rooted = column.iter_mut().take_while(|l| **l != Class::FREE);
             rooted.for_each(|l| *l = Class::FREE);
@@ -141,6 +145,7 @@ mod tests {
         (0..3).for_each(|z| generated.set(57, 80, z, Class::Vegetation.id()));
         generated.set(57, 80, 9, Class::Vegetation.id());
         generated.set(58, 80, 0, Class::Car.id());
+        generated.set(59, 80, 0, Class::FREE);
         let region = Region::of_edit(&frame, 2);
         assert_eq!(keep_ground(&frame, &region, &mut generated), 4);
         assert!((50..60).all(|x| x == 58 || generated.get(x, 80, 0) == road));

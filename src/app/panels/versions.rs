@@ -15,21 +15,14 @@ use crate::scene::SceneRev;
 /// Height of an entry, points.
 const ENTRY: f32 = 52.0;
 
-/// Draws how to compare and the list, the newest first. Of the two states the first is the present one, the second the one it
-/// is compared with.
+/// Draws the list, the newest first. `shown` is the present state, `before` the one it is compared with.
 pub fn versions_ui(
     ui: &mut Ui,
     versions: &mut Versions,
-    state: &mut UiState,
-    (shown, before): (SceneRev, Option<SceneRev>),
+    shown: SceneRev,
+    before: Option<SceneRev>,
     commands: &mut Vec<Command>,
 ) {
-    // Not in the bar of tabs: its names need the room.
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Compare").small().color(theme::text_weak()));
-        icons::choice(ui, &mut state.compare, &CompareMode::ALL, "Compare");
-    });
-    ui.add_space(4.0);
     if versions.list().len() < 2 {
         let text = "Each generation leaves a version here: click one to compare with it, double-click to go back to it.";
         ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
@@ -99,6 +92,11 @@ pub fn versions_ui(
                 }
             }
         });
+}
+
+/// What the header of the list offers.
+pub fn versions_controls(ui: &mut Ui, state: &mut UiState) {
+    icons::choice(ui, &mut state.compare, &CompareMode::ALL, "Compare");
 }
 
 fn draw_star(ui: &Ui, center: egui::Pos2, color: Color32, filled: bool) {

@@ -135,7 +135,10 @@ fn fitting_deep(
         // (who follows drives, also where the scene says of him only that he stands behind)
         let follows = strict.is_empty()
             && state == ObjectState::Moving
-            && m.spec.relations.iter().any(|r| r.relation == RelationKind::Following);
+            && m.spec
+                .relations
+                .iter()
+                .any(|r| r.relation == RelationKind::Following);
         if !loose && !follows {
             fit = strict;
         }
