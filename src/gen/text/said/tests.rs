@@ -122,3 +122,29 @@ fn what_is_open_is_asked_and_nothing_else_breaks() {
         );
     }
 }
+
+#[test]
+fn what_shall_be_left_is_kept_and_nothing_else() {
+    for text in [
+        "Let nothing remain but the bus.",
+        "Leave nothing but the bus.",
+        "Nothing should be left except for the bus.",
+        "The bus alone stays.",
+    ] {
+        let (gone, came, moved, _) = changes(text);
+        assert_eq!((gone.len(), came.len(), moved), (9, 0, 0), "{text}: {gone:?}");
+        assert!(!gone.contains(&Class::Bus), "{text}");
+    }
+    for text in [
+        "Not a single barrier should be left.",
+        "I do not want to see any barriers.",
+        "No barrier should remain.",
+    ] {
+        let (gone, came, moved, _) = changes(text);
+        assert_eq!(
+            (gone, came.len(), moved),
+            (vec![Class::Barrier; 4], 0, 0),
+            "{text}"
+        );
+    }
+}
