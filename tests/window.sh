@@ -10,7 +10,11 @@ trap 'kill $app $server 2>/dev/null; rm -rf "$work"' EXIT
 if ! xdotool getmouselocation >/dev/null 2>&1; then
     Xvfb "$DISPLAY" -screen 0 2560x1440x24 >/dev/null 2>&1 &
     server=$!
-    sleep 2
+    # A busy machine takes its time.
+    for _ in $(seq 100); do
+        xdotool getmouselocation >/dev/null 2>&1 && break
+        sleep 0.2
+    done
 fi
 
 # open_window LOOK WxH ARGUMENTS...: starts the editor, waits for its window, sets `app` and `window`.
