@@ -99,6 +99,7 @@ fn checks_tell_by_exit_code_and_fix() {
         yaw_deg: first.yaw_rad.to_degrees(),
         velocity_mps: None,
         id: Some(BoxId(id)),
+        label: Default::default(),
     };
     apply(&mut scene, add(900, first.center_m));
     apply(&mut scene, add(901, first.center_m + DVec3::Z * 20.0));

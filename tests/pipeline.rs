@@ -108,6 +108,7 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
         yaw_deg: 0.0,
         velocity_mps: None,
         id: None,
+        label: Default::default(),
     };
     document.apply("Add cone", &cone).expect("a valid edit");
     let second = run(&mut pipeline, &mut document);

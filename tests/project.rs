@@ -40,6 +40,7 @@ fn clip() -> Scene {
         size_m: DVec3::new(4.6, 1.95, 1.7),
         yaw_rad: 0.123_456_789_012_345_68,
         velocity_mps: DVec2::new(5e-324, -1.0),
+        label: Default::default(),
     };
     let boxes: BTreeMap<_, _> = [(car.id, car)].into();
     let occupancy = draft(&layout, boxes.values());
@@ -471,6 +472,7 @@ proptest! {
             size_m: DVec3::new(numbers[3], numbers[4], numbers[5]).abs() + 1e-3,
             yaw_rad: numbers[6],
             velocity_mps: DVec2::new(numbers[7], tiny),
+            label: Default::default(),
         };
         let mut grid = VoxelGrid::new();
         for (x, y, z, class) in &voxels {

@@ -120,6 +120,7 @@ fn edit(random: &mut Random, scene: &Scene) -> Edit {
             yaw_deg: random.number(-720.0, 720.0),
             velocity_mps: random.one_in(2).then(|| random.point()),
             id: random.one_in(4).then(|| BoxId(random.below(60) as u32)),
+            label: Default::default(),
         },
         2 | 3 => Edit::RemoveBox {
             id: some_box(random, scene),

@@ -294,6 +294,7 @@ impl Choices<'_> {
                 yaw_deg: self.number() * 20.0,
                 velocity_mps: (self.byte() > 128).then(|| self.point()),
                 id: (self.byte() > 200).then(|| self.id()),
+                label: Default::default(),
             },
             2 => Edit::MoveBox {
                 id: self.id(),

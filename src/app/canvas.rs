@@ -434,7 +434,7 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
         None => "nothing seen".into(),
     });
     if let Some(id) = pick::box_at(frame, p_m) {
-        parts.push(format!("{} #{}", frame.boxes[&id].class.label(), id.0));
+        parts.push(format!("{} #{}", frame.boxes[&id].called(), id.0));
     }
     parts.join("  ·  ")
 }

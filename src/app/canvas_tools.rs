@@ -8,7 +8,7 @@ use crate::editor::arrange::LANE_REACH_M;
 use crate::editor::lanes::nearest_lane;
 use crate::editor::pick::{self, Handle};
 use crate::editor::{Edit, Shape};
-use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox};
+use crate::scene::{BoxLabel, BevLayer, BoxId, Class, Frame, Scene, SceneBox};
 
 use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;
@@ -293,6 +293,7 @@ pub(super) fn new_box(frame: &Frame, class: Class, at_m: DVec2, yaw_rad: f64) ->
         size_m,
         yaw_rad,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     })
 }
 

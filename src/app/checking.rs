@@ -15,7 +15,7 @@ use crate::editor::checks::{self, Finding, Seen};
 use crate::generation::sensors::lidar;
 use crate::generation::sensors::splat::PREVIEW_SIZE;
 use crate::scene::raster::box_cells;
-use crate::scene::{BoxId, Class, GridSpec, Scene, SceneBox, SceneRev};
+use crate::scene::{BoxLabel, BoxId, Class, GridSpec, Scene, SceneBox, SceneRev};
 
 /// Quiet time before a scene is checked, s.
 const AFTER_S: f64 = 0.5;
@@ -198,6 +198,7 @@ impl SceneloomApp {
             size_m: DVec3::splat(4.0),
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         };
         self.canvas.frame_box(&around);
         self.view3d.frame_box(&around);
@@ -222,6 +223,7 @@ mod tests {
             yaw_deg: 0.0,
             velocity_mps: None,
             id: Some(BoxId(if x > 0.0 { 901 } else { 902 })),
+            label: BoxLabel::default(),
         };
         add(6.0, -0.5).apply(&mut scene).expect("sound");
         add(-30.0, 30.0).apply(&mut scene).expect("sound");

@@ -261,6 +261,7 @@ impl SceneloomApp {
                 yaw_deg: b.yaw_rad.to_degrees(),
                 velocity_mps: (b.velocity_mps != glam::DVec2::ZERO).then_some(b.velocity_mps),
                 id: Some(b.id),
+                label: b.label,
             }],
         );
         self.state.selected = Some(b.id);

@@ -95,6 +95,7 @@ mod tests {
             size_m: glam::DVec3::ONE,
             yaw_rad: 0.0,
             velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
         };
         scene.frame_mut().boxes.insert(BoxId(1), bad);
         assert!(matches!(pause(&scene, 0.05, 0.3), Some(Pause::Unsound(_))));

@@ -87,6 +87,7 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
         yaw_deg: b.yaw_rad.to_degrees(),
         velocity_mps: Some(b.velocity_mps),
         id: Some(b.id),
+        label: b.label,
     };
     match edit {
         TextEdit::Remove { id } => vec![Edit::RemoveBox { id: *id }],
@@ -102,6 +103,10 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
             size_m: None,
         }],
         TextEdit::Replace { id, object } => vec![Edit::RemoveBox { id: *id }, add(object)],
+        TextEdit::Label { id, label } => vec![Edit::LabelBox {
+            id: *id,
+            label: *label,
+        }],
         TextEdit::Style { prompt } => vec![Edit::SetPrompt {
             prompt: prompt.clone(),
         }],

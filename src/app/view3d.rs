@@ -531,7 +531,7 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
     match hit {
         Hit::Box { id, .. } => {
             if let Some(b) = scene.frame().boxes.get(id) {
-                parts.push(format!("{} #{}", b.class.label(), id.0));
+                parts.push(format!("{} #{}", b.called(), id.0));
             }
         }
         Hit::Voxel(v) => {

@@ -291,6 +291,7 @@ fn add_edit(b: &SceneBox, id: Option<BoxId>) -> Edit {
         yaw_deg: b.yaw_rad.to_degrees(),
         velocity_mps: (b.velocity_mps != DVec2::ZERO).then_some(b.velocity_mps),
         id,
+        label: b.label,
     }
 }
 

@@ -15,6 +15,7 @@ fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
         size_m: DVec3::new(4.6, 1.9, 1.7),
         yaw_rad,
         velocity_mps: DVec2::new(5.0, 1.0),
+        label: Default::default(),
     }
 }
 

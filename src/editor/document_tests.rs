@@ -24,6 +24,7 @@ fn start() -> Scene {
         size_m: DVec3::new(4.6, 1.95, 1.7),
         yaw_rad: 0.1,
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     };
     let boxes: BTreeMap<_, _> = (1..=3).map(|id| (BoxId(id), b(id))).collect();
     let occupancy = draft(&layout, boxes.values());
@@ -47,6 +48,7 @@ fn add(x: f64, y: f64) -> Edit {
         yaw_deg: 0.0,
         velocity_mps: None,
         id: None,
+        label: Default::default(),
     }
 }
 
@@ -79,6 +81,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
                 yaw_deg,
                 velocity_mps: None,
                 id: None,
+                label: Default::default(),
             }
         }),
         (id.clone(), place.clone(), prop::option::of(0.0..360.0f64)).prop_map(|(id, (x, y), yaw_deg)| {

@@ -7,10 +7,8 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
-use crate::scene::{
-    BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, Polyline, Scene, SceneBox, SensorRig, SourceFrame,
-    VoxelGrid, VoxelPaint, Waiver, raster,
-};
+use crate::scene::{BoxName, BoxLabel, BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, Polyline, Scene, SceneBox, SensorRig, SourceFrame,
+    VoxelGrid, VoxelPaint, Waiver, raster,};
 
 use super::Shape;
 use super::checks::waive;
@@ -40,9 +38,12 @@ pub enum Edit {
         /// Velocity over ground in the ego frame's axes, m/s; none means standing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         velocity_mps: Option<DVec2>,
-        /// Its name; none means the next one free.
+        /// Its number; none means the next one free.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         id: Option<BoxId>,
+        /// What it is called and how it is painted.
+        #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+        label: BoxLabel,
     },
     /// Moves, turns or resizes a box; what is left out stays.
     MoveBox {
@@ -58,7 +59,14 @@ pub enum Edit {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         size_m: Option<DVec3>,
     },
-    /// Turns a box into another class; its size stays.
+    /// Names and paints a box; what is left out of the label is none. No voxel changes, and nothing is generated.
+    LabelBox {
+        /// The box.
+        id: BoxId,
+        /// Its name and paint from now on.
+        label: BoxLabel,
+    },
+    /// Turns a box into another class; its size and paint stay, its name goes.
     SetBoxClass {
         /// The box.
         id: BoxId,
@@ -263,6 +271,7 @@ impl Edit {
                 yaw_deg,
                 velocity_mps,
                 id,
+                label,
             } => {
                 let id = match *id {
                     Some(id) => id,
@@ -278,6 +287,7 @@ impl Edit {
                     size_m: *size_m,
                     yaw_rad: yaw_deg.to_radians(),
                     velocity_mps: velocity_mps.unwrap_or_default(),
+                    label: *label,
                 };
                 put_box(frame, new)?;
             }
@@ -296,7 +306,22 @@ impl Edit {
                     b.yaw_rad = yaw_deg.map_or(b.yaw_rad, f64::to_radians);
                 })?;
             }
-            Self::SetBoxClass { id, class } => change_box(frame, *id, |b| b.class = *class)?,
+            Self::LabelBox { id, label } => {
+                let b = frame.boxes.get_mut(id).ok_or(EditError::UnknownBox { id: *id })?;
+                b.label = *label;
+                // The source takes it over: a label is no change that waits for the networks.
+                if frame.source.boxes.get(id).is_some_and(|b| b.label != *label)
+                    && let Some(b) = Arc::make_mut(&mut frame.source).boxes.get_mut(id)
+                {
+                    b.label = *label;
+                }
+            }
+            Self::SetBoxClass { id, class } => change_box(frame, *id, |b| {
+                if b.class != *class {
+                    b.label.name = BoxName::default();
+                }
+                b.class = *class;
+            })?,
             Self::PaintBev { layer, shape, value } => {
                 if layer.is_object() {
                     return Err(EditError::ObjectLayer(*layer));

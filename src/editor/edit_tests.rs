@@ -33,6 +33,7 @@ fn car(id: u32, x: f64, y: f64) -> SceneBox {
         size_m: DVec3::new(4.6, 1.95, 1.7),
         yaw_rad: 0.0,
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     }
 }
 
@@ -75,6 +76,7 @@ fn json_forms_are_those_of_the_command_line() {
                 yaw_deg: 0.0,
                 velocity_mps: None,
                 id: None,
+                label: Default::default(),
             },
             Edit::PaintBev {
                 layer: BevLayer::DrivableArea,
@@ -202,6 +204,7 @@ fn boxes_that_overlap_keep_their_voxels() {
         yaw_deg: 0.0,
         velocity_mps: None,
         id: Some(BoxId(id)),
+        label: Default::default(),
     };
     add(12.0, 3).apply(&mut scene).expect("sound");
     Edit::RemoveBox { id: BoxId(1) }
@@ -225,6 +228,7 @@ fn adding_stamps_and_moving_is_removing_and_adding() {
         yaw_deg: 45.0,
         velocity_mps: Some(DVec2::new(1.0, 0.0)),
         id: None,
+        label: Default::default(),
     };
     add.apply(&mut scene).expect("sound");
     let b = scene.frame().boxes[&BoxId(3)];
@@ -280,6 +284,7 @@ fn a_box_put_into_a_hedge_and_taken_out_leaves_the_hedge() {
         yaw_deg: 0.0,
         velocity_mps: None,
         id: Some(put.id),
+        label: Default::default(),
     }
     .apply(&mut scene)
     .expect("sound");
@@ -444,6 +449,7 @@ fn errors_are_one_line_and_change_nothing() {
         yaw_deg,
         velocity_mps: None,
         id,
+        label: Default::default(),
     };
     let nan = DVec3::new(f64::NAN, 0.0, 0.0);
     let moved = |center_m| Edit::MoveBox {
@@ -544,6 +550,7 @@ fn ids_run_on_and_find_gaps() {
         yaw_deg: 0.0,
         velocity_mps: None,
         id,
+        label: Default::default(),
     };
     add(Some(BoxId(u32::MAX))).apply(&mut scene).expect("free");
     add(None).apply(&mut scene).expect("a gap is left");

@@ -19,6 +19,7 @@ fn some_box(id: u32, center: [f64; 3], size: [f64; 3], yaw_rad: f64) -> SceneBox
         size_m: size.into(),
         yaw_rad,
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     }
 }
 

@@ -299,6 +299,7 @@ mod tests {
             size_m: DVec3::new(4.0, 2.0, 1.7),
             yaw_rad,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         };
         Transform {
             kind,

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{BoxId, Class, Frame, SceneBox};
+use crate::scene::{BoxId, BoxLabel, Class, Frame, SceneBox};
 
 const FORMAT: &str = "sceneloom_boxes";
 const VERSION: u32 = 1;
@@ -37,6 +37,8 @@ struct Entry {
     yaw_rad: f64,
     rotation_wxyz: [f64; 4],
     velocity_mps: DVec2,
+    #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+    label: BoxLabel,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     num_lidar_pts: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -68,6 +70,7 @@ pub fn to_bytes(
             yaw_rad: b.yaw_rad,
             rotation_wxyz: [cos, 0.0, 0.0, sin],
             velocity_mps: b.velocity_mps,
+            label: b.label,
             num_lidar_pts: count(lidar),
             camera_pixels: count(camera),
         }
@@ -104,6 +107,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<SceneBox>, String> {
             size_m: e.size_m,
             yaw_rad: e.yaw_rad,
             velocity_mps: e.velocity_mps,
+            label: e.label,
         })
         .collect();
     match boxes.iter().find_map(SceneBox::problem) {
@@ -126,6 +130,7 @@ mod tests {
             size_m: DVec3::new(6.9, 2.5, 2.85),
             yaw_rad: 2.0f64.sqrt(),
             velocity_mps: DVec2::new(1.0 / 3.0, 0.0),
+            label: BoxLabel::default(),
         };
         let mut frame = Frame::new(BevLayout::default(), [(b.id, b)].into(), VoxelGrid::new());
         let counts = [(BoxId(7), 31)].into();

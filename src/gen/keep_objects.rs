@@ -126,6 +126,7 @@ mod tests {
             size_m: DVec3::new(4.6, 1.95, 1.7),
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

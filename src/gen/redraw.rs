@@ -170,6 +170,7 @@ mod tests {
             size_m: glam::DVec3::new(4.6, 1.9, 1.7),
             yaw_rad: 0.4,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         };
         let boxes = [(BoxId(1), car)].into();
         let mut frame = Frame::new(BevLayout::default(), boxes, VoxelGrid::new());

@@ -301,6 +301,7 @@ pub(super) mod tests {
             size_m: DVec3::new(4.6, 1.95, 1.7),
             yaw_rad,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

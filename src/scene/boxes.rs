@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::Class;
+use super::{BoxLabel, Class};
 
 /// Names a box; the same id in several frames is one track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -27,11 +27,19 @@ pub struct SceneBox {
     /// Velocity over ground in the ego frame's axes, m/s.
     #[serde(default)]
     pub velocity_mps: DVec2,
+    /// What it is called and how it is painted. No voxel follows from it.
+    #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+    pub label: BoxLabel,
 }
 
 impl SceneBox {
     /// Largest coordinate or edge that a box may have, m.
     pub const LIMIT_M: f64 = 1000.0;
+
+    /// What it is called: its name and paint, or its class.
+    pub fn called(&self) -> String {
+        self.label.called(&self.class.label())
+    }
 
     /// What is wrong with this box, if anything: class, finite numbers, positive size.
     pub fn problem(&self) -> Option<String> {

@@ -84,6 +84,7 @@ mod tests {
             size_m: DVec3::new(4.6, 1.95, 1.7),
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         };
         let grid = draft(&layout, [&car].into_iter());
         assert_eq!(grid.get(100, 100, 0), Class::DriveableSurface.id());

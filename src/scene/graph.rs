@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Class, SceneBox};
+use super::{BoxLabel, Class, SceneBox};
 
 /// Whether an object moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -44,9 +44,9 @@ pub struct ObjectNode {
     /// Its size beside that of its class, if anything was said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// Its colour in words, if anything was said. No geometry follows from it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub color: Option<String>,
+    /// What it is called and how it is painted, if anything was said. No geometry follows from it.
+    #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+    pub label: BoxLabel,
 }
 
 impl ObjectNode {
@@ -56,7 +56,7 @@ impl ObjectNode {
             class,
             state: None,
             size: None,
-            color: None,
+            label: BoxLabel::default(),
         }
     }
 }

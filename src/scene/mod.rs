@@ -1,5 +1,6 @@
 //! What a scene is: plain data. No window, GPU, network, thread or file is known here.
 
+pub mod box_label;
 pub mod boxes;
 pub mod classes;
 pub mod density;
@@ -27,6 +28,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
 pub use density::Density;

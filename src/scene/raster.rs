@@ -179,6 +179,7 @@ mod tests {
             size_m: size.into(),
             yaw_rad,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::graph::{Edge, LaneRole, Locked, NodeKind, RelationKind, SceneGraph};
 use super::road_map::{CrossingArea, HALF_LANE_M, RoadMap, inside, outline_distance_m};
-use super::{BevLayer, BoxId, Class, SceneBox};
+use super::{BoxLabel, BevLayer, BoxId, Class, SceneBox};
 
 /// Up to this speed an object stands, m/s.
 pub const STANDING_MPS: f64 = 0.5;
@@ -37,6 +37,7 @@ pub fn ego_box() -> SceneBox {
         size_m: DVec3::new(4.6, 1.95, 1.6),
         yaw_rad: 0.0,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     }
 }
 
@@ -512,6 +513,7 @@ mod tests {
             size_m,
             yaw_rad,
             velocity_mps: DVec2::from_angle(yaw_rad) * speed,
+            label: BoxLabel::default(),
         }
     }
 

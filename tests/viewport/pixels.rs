@@ -1,7 +1,7 @@
 //! Pixels that must have a certain colour: projection, occlusion, picking, what is skipped.
 
 use glam::{DVec2, DVec3};
-use sceneloom::scene::{BevLayer, BoxId, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
+use sceneloom::scene::{BoxLabel, BevLayer, BoxId, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
 use sceneloom::viewport::{
     Background, LayoutPlane, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, ViewportError,
     headless_device,
@@ -260,6 +260,7 @@ fn unchanged_scenes_cost_nothing_and_every_change_is_drawn() {
         size_m: DVec3::new(4.6, 1.9, 1.7),
         yaw_rad: 0.3,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     };
     let mut other_rig = bench.rig.clone();
     other_rig.ego_size_m[0] += 0.5;
@@ -426,6 +427,7 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
         size_m: DVec3::ONE,
         yaw_rad: nan,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     };
     let sweep = sceneloom::scene::LidarSweep {
         points: vec![sceneloom::scene::LidarPoint {

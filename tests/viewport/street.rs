@@ -1,10 +1,8 @@
 //! A synthetic street for looking at the viewport: road, walkways, cars, buildings, trees, a sweep.
 
 use glam::{DVec2, DVec3};
-use sceneloom::scene::{
-    BevLayer, BevLayout, BoxId, Class, GridSpec, LidarPoint, LidarSweep, Polyline, PolylineKind, SceneBox,
-    VoxelGrid, raster,
-};
+use sceneloom::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, GridSpec, LidarPoint, LidarSweep, Polyline, PolylineKind, SceneBox,
+    VoxelGrid, raster,};
 
 pub struct Street {
     pub grid: VoxelGrid,
@@ -127,6 +125,7 @@ pub fn street() -> Street {
             size_m: size,
             yaw_rad: yaw.to_radians(),
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         };
         solid_box(&mut grid, &b);
         boxes.push(b);

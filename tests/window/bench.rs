@@ -92,6 +92,7 @@ pub fn car() -> SceneBox {
         size_m: glam::DVec3::new(4.6, 1.95, 1.7),
         yaw_rad: 0.0,
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     }
 }
 

@@ -32,6 +32,7 @@ impl Bench {
             yaw_deg: 0.0,
             velocity_mps: None,
             id: Some(BoxId(8 + i)),
+            label: Default::default(),
         };
         let ctx = self.harness.ctx.clone();
         let edits = (0..3).map(add).collect();

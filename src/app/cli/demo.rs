@@ -50,6 +50,7 @@ fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
         yaw_deg: 0.0,
         velocity_mps: None,
         id: None,
+        label: Default::default(),
     };
     list.push((
         "cones added",

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::editor::{Edit, Shape};
 use crate::generation::world::draw::Draw;
 use crate::scene::raster::{box_cells, disc_cells};
-use crate::scene::{BevLayer, BoxId, Class, Frame, GridSpec, PolylineKind, SceneBox, VoxelGrid};
+use crate::scene::{BoxLabel, BevLayer, BoxId, Class, Frame, GridSpec, PolylineKind, SceneBox, VoxelGrid};
 
 /// Kinds of edits, by name.
 pub const KINDS: [&str; 6] = ["remove", "add", "move", "class", "road", "crossing"];
@@ -73,6 +73,7 @@ impl Trial {
                         yaw_deg: truck.yaw_rad.to_degrees(),
                         velocity_mps: None,
                         id: None,
+                        label: BoxLabel::default(),
                     })
                 }
             }
@@ -209,6 +210,7 @@ fn on_free_road(frame: &Frame, class: Class, moved: Option<SceneBox>, seed: u64)
             size_m,
             yaw_rad: (b - a).to_angle(),
             velocity_mps: glam::DVec2::ZERO,
+            label: BoxLabel::default(),
         };
         let mut free = placed.footprint().iter().all(|c| c.abs().max_element() < 38.0) && a.length() > 6.0;
         box_cells(&placed, 0.8, |x, y| {

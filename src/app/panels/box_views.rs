@@ -345,6 +345,7 @@ mod tests {
             size_m: DVec3::new(4.6, 2.0, 1.7),
             yaw_rad: 0.3,
             velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
         };
         let layout = BevLayout::default();
         let occupancy = draft(&layout, [b].iter());
@@ -369,6 +370,7 @@ mod tests {
             size_m: DVec3::new(4.0, 2.0, 1.6),
             yaw_rad: 0.7,
             velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
         };
         for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (2, -1.0)] {
             // Along the axis by half a metre: with sign -1 that makes it smaller.

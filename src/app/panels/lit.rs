@@ -96,6 +96,7 @@ mod tests {
             size_m: DVec3::new(4.6, 2.0, 1.6),
             yaw_rad: 0.4,
             velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
         };
         let named = |name: &str| rig.cameras.iter().find(|c| c.name == name).expect("in the rig");
         let (front, back) = (named("CAM_FRONT"), named("CAM_BACK"));

@@ -10,6 +10,7 @@ pub mod dialogs;
 pub mod export;
 pub mod fields;
 pub mod history;
+mod label;
 pub mod layers;
 pub mod lidar_sweep;
 pub mod lit;

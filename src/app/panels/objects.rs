@@ -6,6 +6,7 @@ use glam::DVec3;
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::panels::fields::{caption, field, fields, number, numbers};
+use crate::app::panels::label::label_ui;
 use crate::app::state::UiState;
 use crate::app::theme;
 use crate::app::tools::{Choose, ToolCommand};
@@ -155,10 +156,10 @@ fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<
 }
 
 fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut Vec<Command>) {
-    let name = theme::sentence(&b.class.label());
+    let name = theme::sentence(&b.called());
     let mark = if guess { "guess   " } else { "" };
     let right = format!("{mark}#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
-    let label = format!("Box {} {}", b.id.0, b.class.label());
+    let label = format!("Box {} {}", b.id.0, b.called());
     let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     if row.clicked() && adds {
@@ -204,6 +205,7 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
         });
     });
     ui.add_space(2.0);
+    label_ui(ui, &[*b], commands);
     let local = state.tools.orientation == Orientation::Local;
     let [mut center, mut size] = [b.center_m, b.size_m];
     let limit = SceneBox::LIMIT_M;
@@ -311,6 +313,7 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
         let edits = ids.iter().map(|id| Edit::SetBoxClass { id: *id, class });
         commands.push(Command::Apply("Change class", edits.collect()));
     }
+    label_ui(ui, &boxes, commands);
     let limit = SceneBox::LIMIT_M;
     let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, first.yaw_rad.to_degrees());
     let position = numbers(ui, "Middle", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);

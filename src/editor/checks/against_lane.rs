@@ -84,6 +84,7 @@ fn turned(b: &SceneBox, yaw_rad: f64) -> Vec<Edit> {
             yaw_deg,
             velocity_mps: Some(turn.rotate(b.velocity_mps)),
             id: Some(b.id),
+            label: b.label,
         },
     ]
 }

@@ -82,6 +82,7 @@ mod tests {
             size_m: DVec3::new(length, width, 2.0),
             yaw_rad: yaw_deg.to_radians(),
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

@@ -69,6 +69,7 @@ fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<E
             yaw_deg: b.yaw_rad.to_degrees(),
             velocity_mps: None,
             id: Some(context.fresh_id()),
+            label: Default::default(),
         }),
     };
     found.into_iter().map(add).collect()

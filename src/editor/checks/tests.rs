@@ -18,6 +18,7 @@ fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
         size_m,
         yaw_rad: yaw_deg.to_radians(),
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     }
 }
 

@@ -48,6 +48,7 @@ pub fn graph_of(
         let mut object = ObjectNode::new(b.class);
         object.state = Some(state_of(road, b));
         object.size = size_of(b);
+        object.label = b.label;
         let id = graph.add(NodeKind::Object(object));
         if let Some(node) = graph.nodes.last_mut() {
             node.locked = Some(Locked::Box(*b));

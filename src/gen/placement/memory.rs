@@ -17,7 +17,7 @@ use crate::generation::world::draw::{Draw, hash};
 use crate::generation::world::template;
 use crate::scene::graph::SceneGraph;
 use crate::scene::road_map::RoadMap;
-use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BoxLabel, BevLayout, BoxId, Class, SceneBox};
 
 /// Format of bank files.
 pub const VERSION: u32 = 1;
@@ -144,6 +144,7 @@ impl Entry {
                 size_m: DVec3::new(l, w, h),
                 yaw_rad,
                 velocity_mps: DVec2::from_angle(yaw_rad) * speed,
+                label: BoxLabel::default(),
             };
             if b.problem().is_none() {
                 out.insert(b.id, b);

@@ -450,6 +450,7 @@ mod tests {
             size_m: DVec3::new(11.0, 2.9, 3.4),
             yaw_rad,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

@@ -297,6 +297,7 @@ mod tests {
             size_m: DVec3::new(4.0, 2.0, 1.5),
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
+            label: Default::default(),
         }
     }
 

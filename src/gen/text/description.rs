@@ -127,7 +127,7 @@ pub struct ObjectSpec {
     /// Larger or smaller than usual.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// Colour in words; boxes have none, pictures invent theirs.
+    /// Colour in words; the paint of the boxes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
     /// Anything else that was said: `slow`, `child`.

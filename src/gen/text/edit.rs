@@ -15,7 +15,7 @@ use super::select::{Candidate, Chosen, choose};
 use super::tokens::{LONGEST, Span};
 use super::words::edits::{Pick, Verb};
 use crate::scene::graph::{LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind};
-use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BevLayout, BoxLabel, BoxId, Class, SceneBox};
 
 /// Most commands of one text that are carried out.
 pub const MOST_COMMANDS: usize = 100;
@@ -49,6 +49,13 @@ pub enum TextEdit {
         id: BoxId,
         /// The new box, of the same id.
         object: SceneBox,
+    },
+    /// Names and paints a box.
+    Label {
+        /// Which.
+        id: BoxId,
+        /// Its name and paint from now on.
+        label: BoxLabel,
     },
     /// Sets the text that describes the style.
     Style {
@@ -211,6 +218,11 @@ impl Editor<'_> {
                     b.velocity_mps = DVec2::from_angle(turn).rotate(b.velocity_mps);
                 }
             }
+            TextEdit::Label { id, label } => {
+                if let Some(b) = self.boxes.get_mut(id) {
+                    b.label = *label;
+                }
+            }
             TextEdit::Style { prompt } => self.style.clone_from(prompt),
         }
         self.out.edits.push(edit);
@@ -338,12 +350,8 @@ impl Editor<'_> {
                 }
             }
             Verb::Paint => {
-                if let Some(ids) = self.targets(c, false) {
-                    let list: Vec<String> = ids.iter().map(|i| i.0.to_string()).collect();
-                    self.note(format!(
-                        "boxes have no colour: box {} stays as it is; pictures invent the colours of vehicles",
-                        list.join(", ")
-                    ));
+                if self.recolour(c) {
+                    done.push("painted".into());
                 }
             }
             Verb::Make => {
@@ -390,7 +398,7 @@ impl Editor<'_> {
     }
 
     /// The boxes that a command is about; asks back or notes where none or several fit.
-    fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
+    pub(super) fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
         if let Some(back) = c.back {
             let ids: Vec<BoxId> = match back {
                 Back::Same => self.last.clone(),
@@ -528,8 +536,8 @@ impl Editor<'_> {
         let Some(m) = c.targets.first() else {
             return false;
         };
-        if m.spec.color.is_some() || c.color {
-            self.note("boxes have no colour: nothing changes; pictures invent the colours of vehicles");
+        if c.color.is_some() {
+            self.recolour(c);
             return true;
         }
         if c.turn.is_some() {

@@ -252,7 +252,18 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         "start" => Some(ObjectState::Moving),
         _ => None,
     };
-    c.color = items.iter().any(|i| matches!(i.tag, Tag::Is(Sense::Color(_)))) || has("grey") || has("gray");
+    let painted = super::edit_paint::given(&items, verb);
+    let items = match painted {
+        Some((color, rest)) => {
+            c.color = Some(color);
+            if matches!(verb, Verb::Turn | Verb::Replace) {
+                verb = Verb::Paint;
+                c.verb = verb;
+            }
+            rest
+        }
+        None => items.clone(),
+    };
     c.place = items.iter().find_map(|i| match i.tag {
         Tag::Is(Sense::Place(Anchor::Lane(role), _)) if super::edit::clears(role) => Some(role),
         _ => None,

@@ -223,6 +223,7 @@ pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Optio
         class: spec.class,
         size_m,
         center_m,
+        label: super::names::label_of(spec),
         ..*old
     })
 }

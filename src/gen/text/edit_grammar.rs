@@ -99,8 +99,8 @@ pub struct Command {
     pub turn: Option<Turn>,
     /// What it should do.
     pub state: Option<ObjectState>,
-    /// A colour was named.
-    pub color: bool,
+    /// The words of the colour that it gives.
+    pub color: Option<String>,
     /// A lane or strip that was named alone.
     pub place: Option<LaneRole>,
     /// By how much a number changes.
@@ -131,7 +131,7 @@ impl Command {
             anchors: Vec::new(),
             turn: None,
             state: None,
-            color: false,
+            color: None,
             place: None,
             change: None,
             nth: None,

@@ -378,10 +378,10 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         {
             reading.notes.push(format!("{} are placed as cars", spec.noun));
         }
-        if let Some(color) = &spec.color {
+        if let Some(color) = spec.color.as_ref().filter(|c| super::names::paint_of(c).is_none()) {
             reading
                 .notes
-                .push(format!("boxes have no colour: {color} is kept in words only"));
+                .push(format!("{color} is no paint of boxes: it is kept in words only"));
         }
         foreground.push(spec);
     }

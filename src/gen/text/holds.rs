@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::lanes::LaneMap;
 use crate::scene::graph::{LaneRole, RelationKind};
-use crate::scene::{BevLayer, BoxId, Class, SceneBox};
+use crate::scene::{BoxLabel, BevLayer, BoxId, Class, SceneBox};
 
 /// What a relation is to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +29,7 @@ pub fn ego() -> SceneBox {
         size_m: glam::DVec3::new(4.6, 1.95, 1.6),
         yaw_rad: 0.0,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     }
 }
 

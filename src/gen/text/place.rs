@@ -13,7 +13,7 @@ use crate::scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, SceneBox};
 
 /// Orders that are tried while something is left out or a relation broken.
 const ATTEMPTS: u64 = 5;
@@ -371,6 +371,7 @@ impl Placer<'_> {
                 size_m,
                 yaw_rad: spot.yaw_rad,
                 velocity_mps: DVec2::ZERO,
+                label: o.label,
             };
             if !self.fits(&b, o.class, spot, close) {
                 continue;
@@ -517,6 +518,7 @@ fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f6
         size_m,
         yaw_rad: s.yaw_rad,
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     };
     let of = |(e, t): &(Edge, Option<Target>)| {
         let Some(Target::Thing(to)) = t else {

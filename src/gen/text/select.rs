@@ -47,7 +47,7 @@ pub enum Chosen {
     },
 }
 
-/// Where a box is, in words: `12 m ahead, 3 m left, parked`.
+/// Where a box is, in words, after what it is called if it has a name or paint: `red taxi, 12 m ahead, 3 m left, parked`.
 pub fn where_is(map: &LaneMap<'_>, b: &SceneBox) -> Candidate {
     let (x, y) = (b.center_m.x, b.center_m.y);
     let along = if x >= 0.0 { "ahead" } else { "behind" };
@@ -61,10 +61,15 @@ pub fn where_is(map: &LaneMap<'_>, b: &SceneBox) -> Candidate {
         _ if state_of(map, b, ObjectState::Parked) && (b.class.is_vehicle()) => ", parked",
         _ => ", standing",
     };
+    let called = if b.label.is_empty() {
+        String::new()
+    } else {
+        format!("{}, ", b.called())
+    };
     Candidate {
         id: b.id,
         class: b.class.name(),
-        place: format!("{:.0} m {along}{across}{doing}", x.abs()),
+        place: format!("{called}{:.0} m {along}{across}{doing}", x.abs()),
     }
 }
 
@@ -124,6 +129,7 @@ fn fitting_deep(
     let rider = m.spec.noun.starts_with("rider") && boxes.values().any(|b| rides.contains(&b.class));
     let classes = if rider { rides } else { m.classes };
     let mut fit: Vec<&SceneBox> = boxes.values().filter(|b| classes.contains(&b.class)).collect();
+    fit = super::names::called(fit, m);
     // "vehicles" and the like mean every class of the list, a plain noun its own.
     if let Some(state) = m.spec.state {
         let strict: Vec<&SceneBox> = fit.iter().copied().filter(|b| state_of(map, b, state)).collect();
@@ -264,7 +270,8 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         ObjectState::Parked => "parked ",
         ObjectState::Waiting => "standing ",
     });
-    let what = format!("{state}{}", m.spec.noun);
+    let paint = m.spec.color.as_ref().map_or(String::new(), |c| format!("{c} "));
+    let what = format!("{state}{paint}{}", m.spec.noun);
     if fit.is_empty() {
         return match m.id {
             Some(id) => Chosen::None(format!("box {id}")),
@@ -302,6 +309,7 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         0 | 1 => fit,
         _ => {
             let all: Vec<SceneBox> = fit.iter().map(|id| boxes[id]).collect();
+            let all = super::names::plainly(all, m);
             of_size(&all, &m.spec.noun, m.spec.size_m)
                 .iter()
                 .map(|b| b.id)

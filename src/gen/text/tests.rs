@@ -9,7 +9,7 @@ use super::place::place_with;
 use super::to_graph::to_graph;
 use super::{read, road};
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BevLayout, BoxId, Class, Paint, SceneBox};
 
 fn counts(prompt: &str) -> Vec<(Class, u32)> {
     let r = read(prompt);
@@ -338,11 +338,15 @@ fn edits_hit_what_they_name() {
             prompt: "night, rain".into()
         }]
     );
-    let paint = edit(&base, "paint the bus red");
+    match edit(&base, "paint the bus red").edits.as_slice() {
+        [TextEdit::Label { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
+        other => panic!("{other:?}"),
+    }
+    let unknown = edit(&base, "paint the bus two tone");
     assert!(
-        paint.edits.is_empty() && paint.notes[0].contains("no colour"),
+        unknown.edits.is_empty() && unknown.notes[0].contains("no paint"),
         "{:?}",
-        paint.notes
+        unknown.notes
     );
     let nothing = edit(&base, "remove the trailer");
     assert!(

@@ -46,7 +46,7 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                     class: o.class,
                     state: o.state,
                     size: o.size,
-                    color: o.color.clone(),
+                    label: super::names::label_of(o),
                 },
             );
             if let Some(size) = o.size_m {

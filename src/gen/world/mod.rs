@@ -288,6 +288,7 @@ mod tests {
                 size_m,
                 yaw_rad: 0.8,
                 velocity_mps: DVec2::ZERO,
+                label: Default::default(),
             };
             let mut solids = Vec::new();
             objects::object(&b, 1, &mut solids);

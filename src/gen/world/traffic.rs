@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::draw::Draw;
 use super::template::offset_line;
 use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, GridSpec, PolylineKind, SceneBox};
+use crate::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, GridSpec, PolylineKind, SceneBox};
 
 /// How much of everything, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,7 @@ impl Placer<'_> {
             size_m: DVec3::new(7.0, 2.8, 1.6),
             yaw_rad: 0.0,
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         };
         let taken = &mut self.taken;
         box_cells(&ego, 0.0, |x, y| taken[x * GridSpec::NY + y] = true);
@@ -97,6 +98,7 @@ impl Placer<'_> {
             size_m,
             yaw_rad,
             velocity_mps: DVec2::from_angle(yaw_rad) * speed,
+            label: BoxLabel::default(),
         };
         let inside = b.footprint().iter().all(|c| c.abs().max_element() < 39.5);
         if !inside {

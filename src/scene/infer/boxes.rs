@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, Class, GridSpec, SceneBox, VoxelGrid};
+use crate::scene::{BoxLabel, BoxId, Class, GridSpec, SceneBox, VoxelGrid};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -115,6 +115,7 @@ impl Rectangle {
             size_m: self.size_m.extend(self.height_m),
             yaw_rad: self.yaw_rad,
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         }
     }
 }
@@ -259,6 +260,7 @@ mod tests {
             size_m: size,
             yaw_rad: yaw_deg.to_radians(),
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         }
     }
 

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, PolylineKind, SceneBox};
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Paint, PolylineKind, SceneBox};
 
 /// A layout with what stands on it.
 pub struct Judge<'a> {
@@ -134,7 +134,21 @@ impl Judge<'_> {
     fn is(class: &str, b: &SceneBox) -> bool {
         match class {
             "vehicle" => b.class.is_vehicle() || b.class == Class::Motorcycle,
-            name => b.class.name() == name,
+            name => b.class.name() == name || Self::is_called(name, b),
+        }
+    }
+
+    /// "red car", "taxi", "white garbage truck": by the label.
+    fn is_called(name: &str, b: &SceneBox) -> bool {
+        let paint = Paint::ALL.into_iter().find_map(|p| {
+            let rest = name.strip_prefix(p.name())?.strip_prefix(' ')?;
+            Some((p, rest))
+        });
+        match paint {
+            Some((p, rest)) => {
+                b.label.paint == Some(p) && (b.class.name() == rest || b.label.name.as_str() == rest)
+            }
+            None => b.label.name.as_str() == name,
         }
     }
 

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use crate::scene::graph::{LaneRole, Locked, Node, NodeKind, SceneGraph, SizeHint};
 use crate::scene::road_map::{RoadMap, resampled};
-use crate::scene::{BoxId, Class, SceneBox};
+use crate::scene::{BoxLabel, BoxId, Class, SceneBox};
 
 /// Points of a lane.
 pub const POINTS: usize = 8;
@@ -149,6 +149,7 @@ pub fn box_of(kind: u8, class: Class, id: BoxId, values: &[f64]) -> SceneBox {
         size_m,
         yaw_rad: v(6).atan2(v(7)),
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     }
 }
 
@@ -192,6 +193,7 @@ pub fn crossing_box(outline_m: &[DVec2]) -> Option<SceneBox> {
         size_m: DVec3::new(2.0 * reach(axis.perp()), 2.0 * reach(axis), 0.1).max(DVec3::splat(0.1)),
         yaw_rad: heading.to_angle(),
         velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
     })
 }
 
@@ -300,6 +302,7 @@ mod tests {
             size_m: DVec3::new(10.0, 2.8, 3.2),
             yaw_rad: -2.5,
             velocity_mps: DVec2::ZERO,
+            label: BoxLabel::default(),
         };
         let node = kind_of(&NodeKind::Object(crate::scene::graph::ObjectNode::new(
             Class::Bus,

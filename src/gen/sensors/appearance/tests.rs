@@ -153,6 +153,7 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
         size_m: DVec3::new(4.6, 1.95, 1.7),
         yaw_rad: 0.3,
         velocity_mps: DVec2::ZERO,
+        label: Default::default(),
     };
     let mut grid = VoxelGrid::new();
     for x in 0..GridSpec::NX {
@@ -215,6 +216,7 @@ fn bears_anything() {
             size_m: DVec3::splat(size),
             yaw_rad: 1e9,
             velocity_mps: DVec2::ONE,
+            label: Default::default(),
         };
         boxes.insert(id, b);
     }

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::noise::{hash1, unit};
-use crate::scene::{Class, SceneBox};
+use crate::scene::{Class, Paint, SceneBox};
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +107,16 @@ fn car_paint(h: u32) -> Vec3 {
     rgb(r, g, b)
 }
 
+/// What is known by its colour wears it, unless it was given another.
+fn usual_paint(name: &str) -> Option<Paint> {
+    match name {
+        "taxi" | "cab" | "school bus" => Some(Paint::Yellow),
+        "fire engine" | "fire truck" => Some(Paint::Red),
+        "ambulance" => Some(Paint::White),
+        _ => None,
+    }
+}
+
 struct Builder {
     parts: Vec<(Part, Material)>,
     s: Vec3,
@@ -201,6 +211,10 @@ impl Thing {
             s: size,
         };
         let paint = match b.class {
+            _ if let Some(paint) = b.label.paint.or_else(|| usual_paint(b.label.name.as_str())) => {
+                let [r, g, b] = paint.srgb();
+                rgb(r, g, b)
+            }
             Class::Bus => [
                 rgb(200, 60, 40),
                 rgb(40, 90, 160),
