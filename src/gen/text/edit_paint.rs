@@ -24,24 +24,57 @@ pub(super) fn given(items: &[Item], verb: Verb) -> Option<(String, Vec<Item>)> {
         return None;
     }
     let word = |i: usize| items.get(i).map_or("", |x| x.words.as_str());
-    let is_noun = |i: usize| matches!(items[i].tag, Tag::Is(Sense::Noun(..) | Sense::Pronoun | Sense::Works));
-    let is_colour_word = |i: usize| matches!(word(i), "colour" | "color" | "paint" | "paintwork" | "paint job");
+    let is_noun = |i: usize| {
+        matches!(
+            items[i].tag,
+            Tag::Is(Sense::Noun(..) | Sense::Pronoun | Sense::Works)
+        )
+    };
+    let is_colour_word =
+        |i: usize| matches!(word(i), "colour" | "color" | "paint" | "paintwork" | "paint job");
     // (a colour before a noun is that of the noun)
     let before_noun = |i: usize| {
         let mut k = i + 1;
-        while k < items.len() && (is_colour(&items[k]) || matches!(items[k].tag, Tag::Is(Sense::Attribute(_) | Sense::Size(_)))) {
+        while k < items.len()
+            && (is_colour(&items[k]) || matches!(items[k].tag, Tag::Is(Sense::Attribute(_) | Sense::Size(_))))
+        {
             k += 1;
         }
         k < items.len() && matches!(items[k].tag, Tag::Is(Sense::Noun(..)))
     };
-    let k = (0..items.len()).rev().find(|&k| is_colour(&items[k]) && !before_noun(k))?;
-    if verb == Verb::Make && !items[..k].iter().enumerate().any(|(i, x)| is_noun(i) || x.words == "it" || x.words == "them") {
+    let k = (0..items.len())
+        .rev()
+        .find(|&k| is_colour(&items[k]) && !before_noun(k))?;
+    if verb == Verb::Make
+        && !items[..k]
+            .iter()
+            .enumerate()
+            .any(|(i, x)| is_noun(i) || x.words == "it" || x.words == "them")
+    {
         return None; // "make it grey and rainy" speaks of the sky where nothing else was named
     }
     let mut from = k;
     while from > 0
-        && (matches!(word(from - 1), "to" | "in" | "into" | "as" | "a" | "an" | "be" | "being" | "become" | "coloured" | "colored" | "completely" | "all" | "instead" | "bright" | "dark" | "light" | "from")
-            || is_colour(&items[from - 1]) && from == k
+        && (matches!(
+            word(from - 1),
+            "to" | "in"
+                | "into"
+                | "as"
+                | "a"
+                | "an"
+                | "be"
+                | "being"
+                | "become"
+                | "coloured"
+                | "colored"
+                | "completely"
+                | "all"
+                | "instead"
+                | "bright"
+                | "dark"
+                | "light"
+                | "from"
+        ) || is_colour(&items[from - 1]) && from == k
             || is_colour_word(from - 1))
     {
         from -= 1;
@@ -53,7 +86,10 @@ pub(super) fn given(items: &[Item], verb: Verb) -> Option<(String, Vec<Item>)> {
     }
     rest.extend_from_slice(&items[to..]);
     // "(change) the colour of the bus", "the bus's colour"
-    if let Some(c) = rest.iter().position(|x| matches!(x.words.as_str(), "colour" | "color" | "paint")) {
+    if let Some(c) = rest
+        .iter()
+        .position(|x| matches!(x.words.as_str(), "colour" | "color" | "paint"))
+    {
         let of = rest.get(c + 1).is_some_and(|x| x.words == "of");
         let article = c > 0 && matches!(rest[c - 1].words.as_str(), "the");
         rest.drain(if article && of { c - 1 } else { c }..if of { c + 2 } else { c + 1 });
@@ -66,7 +102,10 @@ impl Editor<'_> {
     pub(super) fn paint(&mut self, ids: &[BoxId], words: &str) -> bool {
         let Some(paint) = paint_of(words) else {
             let names: Vec<&str> = Paint::ALL.iter().map(|p| p.name()).collect();
-            self.note(format!("{words} is no paint of boxes, expected one of {}", names.join(", ")));
+            self.note(format!(
+                "{words} is no paint of boxes, expected one of {}",
+                names.join(", ")
+            ));
             return false;
         };
         for id in ids {

@@ -24,7 +24,7 @@ const SAME: &[&str] = &[
     "police car|patrol car|police cruiser|cop car|squad car|police vehicle|cop cruiser|police interceptor|panda car|\
      sheriff car|sheriffs car|prowl car|patrol vehicle|highway patrol car",
     "ambulance|ambulence|ambulance car|emergency ambulance|rescue van|paramedic van|medical van|ambulance van",
-    "van|panel van|transit|transit van|transporter|transporter van|delivery van|cargo van|white van|courier van|\
+    "van|panel van|transit|transit van|transporter|transporter van|delivery van|cargo van|courier van|\
      parcel van|parcel delivery van|sprinter|postal van|mail van|work van|commercial van",
     "minivan|people carrier|mpv|mini van|people mover|mini mpv",
     "camper|campervan|camper van|camping van|motorhome|motor home|rv|recreational vehicle|winnebago",
@@ -51,7 +51,7 @@ const SAME: &[&str] = &[
     "snow plough|snowplough|snowplow|snow plow|gritter|plough",
     "semi|semi truck|artic|articulated lorry|eighteen wheeler|18 wheeler|big rig|juggernaut|tractor trailer|road train",
     "school bus|schoolbus|school coach",
-    "double decker|double decker bus|double deck bus|decker bus|red double decker|routemaster|two decker|decker",
+    "double decker|double decker bus|double deck bus|decker bus|routemaster|two decker|decker",
     "minibus|mini bus|microbus|midibus",
     "city bus|citybus|public bus|town bus|transit bus|local bus",
     "tour bus|tourist bus|tour coach|sightseeing bus|tourist coach|touring coach",
@@ -103,14 +103,20 @@ fn is_generic(noun: &str) -> bool {
 /// The paint that colour words name; `None` where they name none that boxes have.
 pub fn paint_of(words: &str) -> Option<Paint> {
     const BY_WORD: &[(Paint, &str)] = &[
-        (Paint::Red, "red|scarlet|ruby|vermilion|crimson|burgundy|maroon|cherry|coral|rust"),
+        (
+            Paint::Red,
+            "red|scarlet|ruby|vermilion|crimson|burgundy|maroon|cherry|coral|rust",
+        ),
         (Paint::Silver, "silver|silvery|chrome|metallic"),
         (Paint::Grey, "grey|gray|charcoal|anthracite|gunmetal|graphite"),
         (Paint::Black, "black|ebony"),
         (Paint::White, "white|ivory|pearl"),
         (Paint::Orange, "orange|amber|copper"),
         (Paint::Yellow, "yellow|golden|gold|mustard|neon"),
-        (Paint::Green, "green|emerald|olive|khaki|mint|lime|camouflage|camo"),
+        (
+            Paint::Green,
+            "green|emerald|olive|khaki|mint|lime|camouflage|camo",
+        ),
         (
             Paint::Blue,
             "blue|navy|turquoise|teal|cyan|aqua|aquamarine|indigo",
@@ -123,7 +129,9 @@ pub fn paint_of(words: &str) -> Option<Paint> {
     let words = words.to_lowercase();
     // ("off white", "navy blue", "rust coloured": the last word that names one, of two paints the last)
     words.split([' ', '-']).rev().find_map(|word| {
-        let named = BY_WORD.iter().find(|(_, list)| list.split('|').any(|w| w == word));
+        let named = BY_WORD
+            .iter()
+            .find(|(_, list)| list.split('|').any(|w| w == word));
         named.map(|(paint, _)| *paint)
     })
 }
@@ -150,7 +158,11 @@ fn is_called(name: &str, noun: &str) -> bool {
             .is_some_and(|rest| rest.is_empty() || rest.ends_with(' '))
     };
     let name = name.to_lowercase();
-    let group = |words: &str| SAME.iter().filter(|g| g.split('|').any(|w| w.trim() == words)).collect::<Vec<_>>();
+    let group = |words: &str| {
+        SAME.iter()
+            .filter(|g| g.split('|').any(|w| w.trim() == words))
+            .collect::<Vec<_>>()
+    };
     let (of_name, of_noun) = (group(&name), group(noun));
     part(&name, noun) || part(noun, &name) || of_name.iter().any(|g| of_noun.contains(g))
 }
@@ -160,7 +172,11 @@ fn is_called(name: &str, noun: &str) -> bool {
 pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
     let mut fit = fit;
     if let Some(paint) = m.spec.color.as_deref().and_then(paint_of) {
-        let painted: Vec<&SceneBox> = fit.iter().copied().filter(|b| b.label.paint == Some(paint)).collect();
+        let painted: Vec<&SceneBox> = fit
+            .iter()
+            .copied()
+            .filter(|b| b.label.paint == Some(paint))
+            .collect();
         if painted.is_empty() {
             fit.retain(|b| b.label.paint.is_none());
             // Of one that is not known to be red the word may be true; of several it tells nothing.
@@ -197,7 +213,11 @@ pub fn plainly(fit: Vec<SceneBox>, m: &Mention) -> Vec<SceneBox> {
         return fit;
     }
     let plain: Vec<SceneBox> = fit.iter().copied().filter(|b| b.label.name.is_empty()).collect();
-    let bare: Vec<SceneBox> = plain.iter().copied().filter(|b| b.label.paint.is_none()).collect();
+    let bare: Vec<SceneBox> = plain
+        .iter()
+        .copied()
+        .filter(|b| b.label.paint.is_none())
+        .collect();
     match (plain.len() == n, bare.len() == n && m.spec.color.is_none()) {
         (true, _) => plain,
         (_, true) => bare,

@@ -5,6 +5,7 @@
 
 mod acts;
 mod causing;
+mod colours;
 mod exception;
 mod forms;
 mod frame;
@@ -151,6 +152,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     let parted = clauses(body, talk);
     understood |= parted.len() > 1 && parted.iter().any(|c| parting::only_sky(c));
     let mut lead: Option<Token> = None;
+    let mut previous: Vec<Token> = Vec::new();
     for clause in parted {
         // "put the truck on the left and the car on the right"
         let mut clause = clause.to_vec();
@@ -162,7 +164,11 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         if let (true, Some(verb)) = (bare, &lead) {
             clause.insert(0, verb.clone());
         }
-        let verb = unwrapped(&clause).0.first().cloned();
+        if colours::goes_on(&clause, &previous) {
+            clause.insert(0, words::word("paint", &clause[0]));
+        }
+        previous = unwrapped(&clause).0.to_vec();
+        let verb = previous.first().cloned();
         lead = verb.filter(|v| {
             matches!(
                 text(v),
@@ -281,6 +287,13 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let (inner, mood) = unwrapped(clause);
     let inner = trimmed(inner);
     let first = inner.first()?;
+    if let Some(mut tokens) = colours::painted(inner, talk) {
+        tokens.push(Token {
+            kind: TokenKind::Stop,
+            ..words::word(".", first)
+        });
+        return Some(vec![Piece::Plain(tokens)]);
+    }
     // weather and time have grammars of their own
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     if inner.iter().any(style) && !has_noun(inner) {
