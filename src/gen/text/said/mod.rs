@@ -166,6 +166,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
         if colours::goes_on(&clause, &previous) {
             clause.insert(0, words::word("paint", &clause[0]));
+            understood = true;
         }
         previous = unwrapped(&clause).0.to_vec();
         let verb = previous.first().cloned();

@@ -59,6 +59,12 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 i += 1;
                 continue;
             }
+            if super::colours::paired(&body[from..i], &body[next.min(body.len())..]) {
+                out.push(&body[from..i]);
+                from = next;
+                i = next;
+                continue;
+            }
             let rest = &body[next.min(body.len())..(next + 40).min(body.len())];
             let lead = matches!(
                 text(&body[from]),

@@ -1,0 +1,190 @@
+//! What colour something shall have, as a command: "the bus should be yellow", "give the taxi a blue coat of paint".
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::names::paint_of;
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::lists::HELPERS;
+use super::words::{begins, find, has_noun, is, led, text};
+
+/// A colour that boxes may have; "grey" is a sky, too.
+pub fn is_colour(t: &Token) -> bool {
+    let sense = matches!(
+        look_up(text(t)),
+        Some(Sense::Color(_) | Sense::Weather(_) | Sense::Time(_))
+    );
+    sense && paint_of(text(t)).is_some()
+}
+
+/// Words between what is painted and its colour.
+const BECOMES: [&str; 34] = [
+    "should be",
+    "must be",
+    "shall be",
+    "has to be",
+    "have to be",
+    "needs to be",
+    "need to be",
+    "ought to be",
+    "is to be",
+    "are to be",
+    "to be",
+    "is supposed to be",
+    "would look better in",
+    "looks better in",
+    "should become",
+    "becomes",
+    "become",
+    "turns",
+    "turn",
+    "should turn",
+    "should have been",
+    "has become",
+    "have become",
+    "has turned",
+    "is",
+    "are",
+    "will be",
+    "gets",
+    "get",
+    "should get",
+    "be",
+    "comes in",
+    "shall become",
+    "must become",
+];
+
+/// Words around a colour that say no more.
+const BESIDE: [&str; 22] = [
+    "now",
+    "instead",
+    "please",
+    "all",
+    "both",
+    "painted",
+    "repainted",
+    "recoloured",
+    "recolored",
+    "coloured",
+    "colored",
+    "in",
+    "a",
+    "completely",
+    "entirely",
+    "rather",
+    "bright",
+    "dark",
+    "light",
+    "colour",
+    "color",
+    "one",
+];
+
+fn paints(np: &[Token], colour: &[Token]) -> Vec<Token> {
+    led("paint", &np[0], &[np, &led("in", &colour[0], &[colour])])
+}
+
+/// A clause as "paint ... in ...", if it gives a colour to something that is there.
+pub fn painted(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    // "instead of red, the car should be white"
+    let clause = match begins(clause, "instead of").or_else(|| begins(clause, "rather than")) {
+        Some(n) if clause.get(n).is_some_and(is_colour) => super::words::trimmed(&clause[n + 1..]),
+        _ => clause,
+    };
+    given(clause, talk).or_else(|| becomes(clause, talk))
+}
+
+/// "the bus should be yellow", "both cars are to be painted black"
+fn becomes(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let mut end = clause.len();
+    while end > 0
+        && is(
+            clause.get(end - 1),
+            &["now", "instead", "please", "too", "again", "though"],
+        )
+    {
+        end -= 1;
+    }
+    // ("white, not red", "white rather than red")
+    let against = find(&clause[..end], &["rather than", "instead of", "and not", "not"]);
+    if let Some((i, _)) = against.filter(|(i, n)| *i > 0 && clause.get(i + n).is_some_and(is_colour)) {
+        end = i;
+    }
+    let clause = super::words::trimmed(&clause[..end]);
+    let k = clause
+        .iter()
+        .rposition(is_colour)
+        .filter(|k| k + 1 == clause.len())?;
+    let mut from = k;
+    while from > 0 && (is(clause.get(from - 1), &BESIDE) || is_colour(&clause[from - 1])) {
+        from -= 1;
+    }
+    let helper = (1..from)
+        .rev()
+        .find(|i| super::words::leads(&clause[*i..from], &BECOMES) == Some(from - i))?;
+    let helper = (1..=helper)
+        .find(|i| super::words::leads(&clause[*i..from], &BECOMES) == Some(from - i))
+        .unwrap_or(helper);
+    let np = &clause[..helper];
+    let pronoun = is(np.first(), &["it", "they", "them", "this", "that"]) && np.len() == 1;
+    let known = has_noun(np) && !np.iter().any(|t| HELPERS.contains(&text(t))) && talk.fits(np) > 0;
+    let np_of = match pronoun {
+        true if talk.last.is_some() => super::words::led("it", &np[0], &[]),
+        true => return None,
+        false => np.to_vec(),
+    };
+    (pronoun || known).then(|| paints(&np_of, &clause[k..]))
+}
+
+/// "give the taxi a new coat of paint: blue", "give the bus a red livery"
+fn given(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const COATS: [&str; 12] = [
+        "coat of paint",
+        "coats of paint",
+        "paint job",
+        "paint",
+        "colour",
+        "color",
+        "livery",
+        "lick of paint",
+        "finish",
+        "respray",
+        "paintwork",
+        "coat",
+    ];
+    if !is(clause.first(), &["give", "gets", "get"]) {
+        return None;
+    }
+    let (coat, n) = find(clause, &COATS)?;
+    let colour = clause.iter().rposition(is_colour)?;
+    let article = (1..coat.min(colour))
+        .rev()
+        .find(|i| is(clause.get(*i), &["a", "an", "some", "another", "new"]))?;
+    let np = super::words::trimmed(&clause[1..article]);
+    let after = colour + 1 == clause.len() || colour < coat && coat + n == clause.len();
+    (after && has_noun(np) && talk.fits(np) > 0).then(|| paints(np, &clause[colour..=colour]))
+}
+
+/// Two things, each with its colour after it: "paint the cars white" and "the bus orange".
+pub fn paired(before: &[Token], after: &[Token]) -> bool {
+    let link = |t: &Token| t.kind == TokenKind::Comma || matches!(text(t), "and" | "but");
+    let after = &after[..after.iter().position(link).unwrap_or(after.len())];
+    [before, after].iter().all(|part| {
+        let after_noun = super::words::first_noun(part).is_some_and(|n| n.1 < part.len());
+        after_noun && part.last().is_some_and(is_colour)
+    })
+}
+
+/// "(paint the cars white) and the bus orange": the verb again.
+pub fn goes_on(clause: &[Token], before: &[Token]) -> bool {
+    let painted = is(
+        before.first(),
+        &[
+            "paint", "repaint", "recolour", "recolor", "colour", "color", "make", "turn", "respray",
+        ],
+    ) && before.iter().any(is_colour);
+    painted
+        && clause.last().is_some_and(is_colour)
+        && has_noun(clause)
+        && !is(clause.first(), &["paint", "make", "turn"])
+}
