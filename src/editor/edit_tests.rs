@@ -103,6 +103,8 @@ fn json_forms_are_those_of_the_command_line() {
         json!({"move_box": {"id": 3, "center_m": [1.0, 2.0, 3.0]}}),
         json!({"move_box": {"id": 3, "yaw_deg": 90.0, "size_m": [1.0, 2.0, 3.0]}}),
         json!({"set_box_class": {"id": 3, "class": "truck"}}),
+        json!({"label_box": {"id": 3, "label": {"name": "taxi", "paint": "yellow"}}}),
+        json!({"label_box": {"id": 3, "label": {}}}),
         json!({"paint_bev": {"layer": "walkway", "shape": {"rect": {"min_m": [0.0, 1.0], "max_m": [2.0, 3.0]}}, "value": false}}),
         json!({"paint_bev": {"layer": "lane_divider", "shape": {"polygon": {"points_m": [[0.0, 1.0], [2.0, 3.0], [0.0, 4.0]]}}, "value": true}}),
         json!({"paint_bev": {"layer": "carpark_area", "shape": {"line": {"points_m": [[0.0, 1.0], [2.0, 3.0]], "width_m": 0.5}}, "value": true}}),
@@ -344,6 +346,28 @@ fn painting_a_layer_lays_its_ground_and_lines_do_not() {
         assert!(scene.frame().layout.has(layer, x, y));
     }
     assert_eq!(scene.frame().occupancy, occupancy);
+}
+
+#[test]
+fn a_label_is_no_work_for_the_networks_and_goes_with_the_class() {
+    let mut scene = street();
+    let before = scene.frame().clone();
+    let label = crate::scene::BoxLabel {
+        name: BoxName::new("taxi"),
+        paint: Some(crate::scene::Paint::Yellow),
+    };
+    let id = BoxId(1);
+    let edit = Edit::LabelBox { id, label };
+    edit.apply(&mut scene).expect("box 1 is there");
+    let frame = scene.frame();
+    assert_eq!(frame.boxes[&id].called(), "yellow taxi");
+    assert_eq!(frame.occupancy, before.occupancy);
+    assert_eq!(frame.boxes, frame.source.boxes, "nothing waits to be generated");
+    let class = Class::Truck;
+    Edit::SetBoxClass { id, class }.apply(&mut scene).expect("a class of objects");
+    assert_eq!(scene.frame().boxes[&id].called(), "yellow truck");
+    let nobody = Edit::LabelBox { id: BoxId(99), label };
+    assert!(matches!(nobody.apply(&mut scene), Err(EditError::UnknownBox { .. })));
 }
 
 #[test]

@@ -146,7 +146,11 @@ pub fn label_of(spec: &ObjectSpec) -> BoxLabel {
     };
     BoxLabel {
         name,
-        paint: spec.color.as_deref().and_then(paint_of),
+        paint: spec
+            .color
+            .as_deref()
+            .filter(|c| !c.starts_with("not "))
+            .and_then(paint_of),
     }
 }
 
@@ -171,7 +175,11 @@ fn is_called(name: &str, noun: &str) -> bool {
 /// called nothing at all; without these, all: other words for the same thing are many.
 pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
     let mut fit = fit;
-    if let Some(paint) = m.spec.color.as_deref().and_then(paint_of) {
+    let said = m.spec.color.as_deref();
+    let denied = said.and_then(|c| c.strip_prefix("not ")).and_then(paint_of);
+    if let Some(paint) = denied {
+        fit.retain(|b| b.label.paint != Some(paint));
+    } else if let Some(paint) = said.and_then(paint_of) {
         let painted: Vec<&SceneBox> = fit
             .iter()
             .copied()
