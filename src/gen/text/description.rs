@@ -296,7 +296,8 @@ impl Description {
         let style = self.style();
         parts.extend((!style.is_empty()).then_some(style));
         for o in &self.foreground {
-            parts.push(format!("{} x {}", o.count.n, o.noun));
+            let color = o.color.as_ref().map_or(String::new(), |c| format!("{c} "));
+            parts.push(format!("{} x {color}{}", o.count.n, o.noun));
         }
         for a in &self.absent {
             let names: Vec<String> = a.classes.iter().map(|c| c.label()).collect();

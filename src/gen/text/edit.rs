@@ -536,10 +536,6 @@ impl Editor<'_> {
         let Some(m) = c.targets.first() else {
             return false;
         };
-        if c.color.is_some() {
-            self.recolour(c);
-            return true;
-        }
         if c.turn.is_some() {
             if let Some(ids) = self.targets(c, false) {
                 ids.into_iter().for_each(|id| self.turn(id, c));

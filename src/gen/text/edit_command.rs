@@ -256,10 +256,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let items = match painted {
         Some((color, rest)) => {
             c.color = Some(color);
-            if matches!(verb, Verb::Turn | Verb::Replace) {
-                verb = Verb::Paint;
-                c.verb = verb;
-            }
+            verb = Verb::Paint;
+            c.verb = verb;
             rest
         }
         None => items.clone(),

@@ -5,7 +5,8 @@ use super::super::names::paint_of;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{begins, find, has_noun, is, led, text};
+use super::some_of::bare_np;
+use super::words::{begins, find, first_noun, has_noun, is, led, number, text};
 
 /// A colour that boxes may have; "grey" is a sky, too.
 pub fn is_colour(t: &Token) -> bool {
@@ -17,7 +18,13 @@ pub fn is_colour(t: &Token) -> bool {
 }
 
 /// Words between what is painted and its colour.
-const BECOMES: [&str; 34] = [
+const BECOMES: [&str; 40] = [
+    "may be",
+    "can be",
+    "could be",
+    "might be",
+    "should all be",
+    "should both be",
     "should be",
     "must be",
     "shall be",
@@ -81,7 +88,14 @@ const BESIDE: [&str; 22] = [
 ];
 
 fn paints(np: &[Token], colour: &[Token]) -> Vec<Token> {
-    led("paint", &np[0], &[np, &led("in", &colour[0], &[colour])])
+    // "two of the cars": any two
+    let some = np.len() > 3 && number(&np[0]).is_some() && text(&np[1]) == "of";
+    let any = if some {
+        led("any", &np[0], &[&np[..1], bare_np(&np[2..]).as_slice()])
+    } else {
+        np.to_vec()
+    };
+    led("paint", &np[0], &[&any, &led("in", &colour[0], &[colour])])
 }
 
 /// A clause as "paint ... in ...", if it gives a colour to something that is there.
@@ -91,26 +105,75 @@ pub fn painted(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         Some(n) if clause.get(n).is_some_and(is_colour) => super::words::trimmed(&clause[n + 1..]),
         _ => clause,
     };
-    given(clause, talk).or_else(|| becomes(clause, talk))
+    made(clause, talk)
+        .or_else(|| given(clause, talk))
+        .or_else(|| becomes(clause, talk))
+}
+
+/// "make the car behind me red", "have both cars painted white"
+fn made(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    if !is(
+        clause.first(),
+        &[
+            "make", "turn", "have", "get", "let", "want", "like", "paint", "colour", "color",
+        ],
+    ) {
+        return None;
+    }
+    let clause = without_others(&clause[1..]);
+    let k = clause
+        .iter()
+        .rposition(is_colour)
+        .filter(|k| k + 1 == clause.len())?;
+    let around = |t: &Token| {
+        is(Some(t), &BESIDE) || is_colour(t) || matches!(text(t), "to" | "be" | "into" | "become" | "turn")
+    };
+    let np = &clause[..clause[..k].iter().rposition(|t| !around(t))? + 1];
+    let known = has_noun(np)
+        && first_noun(np).is_some_and(|n| n.0 < 6)
+        && !np.iter().any(|t| HELPERS.contains(&text(t)));
+    (known && talk.fits(np) > 0).then(|| paints(np, &clause[k..]))
+}
+
+/// Without words after the colour, and without the colours that it shall not have: "white, not red", "not blue but red".
+fn without_others(clause: &[Token]) -> Vec<Token> {
+    let mut out = clause.to_vec();
+    let tails: [&[&str]; 4] = [
+        &["from", "now", "on"],
+        &["from", "here", "on"],
+        &["for", "a", "change"],
+        &["this", "time"],
+    ];
+    for tail in tails {
+        let at = out.len().saturating_sub(tail.len());
+        if out[at..].iter().map(text).eq(tail.iter().copied()) {
+            out.truncate(at);
+        }
+    }
+    while is(
+        out.last(),
+        &["now", "instead", "please", "too", "again", "though", "as", "well"],
+    ) {
+        out.pop();
+    }
+    if let Some((i, n)) = find(
+        &out,
+        &["rather than", "instead of", "and not", "not", "no longer"],
+    ) && i > 0
+        && out.get(i + n).is_some_and(is_colour)
+    {
+        let but = (i + n..out.len()).find(|k| text(&out[*k]) == "but" || out[*k].kind == TokenKind::Comma);
+        match but.filter(|b| *b + 1 < out.len()) {
+            Some(b) => drop(out.drain(i..=b)),
+            None => out.truncate(i),
+        }
+    }
+    super::words::trimmed(&out).to_vec()
 }
 
 /// "the bus should be yellow", "both cars are to be painted black"
 fn becomes(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let mut end = clause.len();
-    while end > 0
-        && is(
-            clause.get(end - 1),
-            &["now", "instead", "please", "too", "again", "though"],
-        )
-    {
-        end -= 1;
-    }
-    // ("white, not red", "white rather than red")
-    let against = find(&clause[..end], &["rather than", "instead of", "and not", "not"]);
-    if let Some((i, _)) = against.filter(|(i, n)| *i > 0 && clause.get(i + n).is_some_and(is_colour)) {
-        end = i;
-    }
-    let clause = super::words::trimmed(&clause[..end]);
+    let clause = &without_others(clause)[..];
     let k = clause
         .iter()
         .rposition(is_colour)
@@ -165,12 +228,39 @@ fn given(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     (after && has_noun(np) && talk.fits(np) > 0).then(|| paints(np, &clause[colour..=colour]))
 }
 
+/// "whatever is red", "everything red": all red vehicles.
+pub fn whatever(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(i) = tokens
+        .iter()
+        .position(|t| matches!(text(t), "whatever" | "everything" | "anything"))
+    else {
+        return tokens;
+    };
+    let mut k = i + 1;
+    while is(tokens.get(k), &["that", "which", "is", "thats", "are"]) {
+        k += 1;
+    }
+    let colour = tokens.get(k).is_some_and(is_colour)
+        && tokens
+            .get(k + 1)
+            .is_none_or(|t| first_noun(std::slice::from_ref(t)).is_none());
+    if !colour {
+        return tokens;
+    }
+    let all = led(
+        "all",
+        &tokens[i],
+        &[&tokens[k..=k], &led("vehicles", &tokens[k], &[])],
+    );
+    [&tokens[..i], &all, &tokens[k + 1..]].concat()
+}
+
 /// Two things, each with its colour after it: "paint the cars white" and "the bus orange".
 pub fn paired(before: &[Token], after: &[Token]) -> bool {
     let link = |t: &Token| t.kind == TokenKind::Comma || matches!(text(t), "and" | "but");
     let after = &after[..after.iter().position(link).unwrap_or(after.len())];
     [before, after].iter().all(|part| {
-        let after_noun = super::words::first_noun(part).is_some_and(|n| n.1 < part.len());
+        let after_noun = first_noun(part).is_some_and(|n| n.1 < part.len());
         after_noun && part.last().is_some_and(is_colour)
     })
 }

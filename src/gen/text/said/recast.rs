@@ -18,6 +18,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "get rid of|getting rid of|do away with|dispose of",
         "remove",
     );
+    let out = super::colours::whatever(out);
     let out = everyone_there(out);
     let out = replaced(&out, "together with|along with|and also|as well as", "and");
     let out = replaced(&out, "not just|not only|not merely", "not");
