@@ -19,7 +19,8 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 18] = [
+const SETS: &[(&str, &str)] = &[
+    ("names.jsonl", include_str!("../../../../tests/data/names.jsonl")),
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
