@@ -31,6 +31,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
     let out = both_the(&out);
+    let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
     some_so_many(&part_for_whole(&out))

@@ -3,6 +3,7 @@
 mod again;
 mod amounts;
 mod back;
+mod coloured_ones;
 mod common;
 mod compounds;
 pub mod description;

@@ -92,7 +92,8 @@ static SINGULAR: LazyLock<HashMap<String, &'static str>> = LazyLock::new(|| {
     table
 });
 
-fn singular(noun: &str) -> &str {
+/// A noun in the singular.
+pub fn singular(noun: &str) -> &str {
     SINGULAR.get(noun).copied().unwrap_or(noun)
 }
 

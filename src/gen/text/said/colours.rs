@@ -1,21 +1,11 @@
 //! What colour something shall have, as a command: "the bus should be yellow", "give the taxi a blue coat of paint".
 
-use super::super::lexicon::{Sense, look_up};
-use super::super::names::paint_of;
+use super::super::coloured_ones::is_colour;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
 use super::some_of::bare_np;
 use super::words::{begins, find, first_noun, has_noun, is, led, number, text};
-
-/// A colour that boxes may have; "grey" is a sky, too.
-pub fn is_colour(t: &Token) -> bool {
-    let sense = matches!(
-        look_up(text(t)),
-        Some(Sense::Color(_) | Sense::Weather(_) | Sense::Time(_))
-    );
-    sense && paint_of(text(t)).is_some()
-}
 
 /// Words between what is painted and its colour.
 const BECOMES: [&str; 40] = [
