@@ -17,6 +17,7 @@ mod ellipsis;
 mod exchange;
 mod existence;
 mod finish;
+mod fnv;
 mod foremost;
 pub mod holds;
 mod inferred_places;

@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 18] = [
+const SETS: [(&str, &str); 19] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -80,6 +80,10 @@ const SETS: [(&str, &str); 18] = [
     (
         "strangers_12.jsonl",
         include_str!("../../../../tests/data/strangers_12.jsonl"),
+    ),
+    (
+        "exam_5.jsonl",
+        include_str!("../../../../tests/data/exam_5.jsonl"),
     ),
     (
         "causes.jsonl",
@@ -166,8 +170,12 @@ pub(super) struct Tally {
     drivable: (usize, usize),
     headings: (usize, usize),
     wall_s: Vec<f64>,
+    slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
 }
+
+/// How many of the slowest cases the report names.
+const SLOWEST: usize = 8;
 
 /// Share and the half width of its 95 % interval (Wilson), as text for the report.
 fn share(good: usize, n: usize) -> Value {
@@ -218,6 +226,9 @@ impl Tally {
     pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
         self.cases += 1;
         self.wall_s.push(wall_s);
+        self.slowest.push((wall_s, case.text.clone()));
+        self.slowest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        self.slowest.truncate(SLOWEST);
         let frame = scene.frame();
         let boxes: Vec<SceneBox> = frame.boxes.values().copied().collect();
         let judge = Judge {
@@ -281,6 +292,7 @@ impl Tally {
             "moving_headings_within_15_deg": share(self.headings.0, self.headings.1),
             "wall_s_median": median(&self.wall_s),
             "wall_s_max": self.wall_s.iter().copied().fold(0.0, f64::max),
+            "slowest": self.slowest.iter().map(|(wall_s, text)| json!({ "wall_s": wall_s, "text": text })).collect::<Vec<_>>(),
             "failed": self.failed,
         })
     }
