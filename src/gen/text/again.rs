@@ -217,11 +217,15 @@ impl Parser<'_> {
                 .as_ref()
                 .is_some_and(|p| p.prep == Prep::In && !p.not);
         let people: Vec<usize> = self.last.clone();
-        let fits = !people.is_empty()
-            && people
-                .iter()
-                .all(|i| self.mentions[*i].spec.class == Class::Pedestrian && !self.mentions[*i].is_anchor);
-        if !(fits && (riding || on)) {
+        let of_class = |class: Class| {
+            !people.is_empty()
+                && people
+                    .iter()
+                    .all(|i| self.mentions[*i].spec.class == class && !self.mentions[*i].is_anchor)
+        };
+        // "two bikers on their motorcycles" are named already
+        let named = of_class(noun.classes[0]) && before < self.at;
+        if !((of_class(Class::Pedestrian) || named) && (riding || on)) {
             return false;
         }
         self.pending = None;
@@ -413,7 +417,9 @@ impl Parser<'_> {
             return true;
         }
         // "three of them are trucks"
-        let sorted = matches!(lead, "are" | "were") && pre.count.is_none() && pre.article.is_none();
+        let sorted = matches!(lead, "are" | "were" | "being" | "of them")
+            && pre.count.is_none()
+            && pre.article.is_none();
         let is = matches!(
             lead,
             "is" | "are"

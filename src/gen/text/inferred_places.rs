@@ -58,7 +58,8 @@ pub fn infer(mentions: &mut [Mention]) {
                 mentions[i].spec.relations.push(Stated { span: r.span, ..more });
             }
             drawn(&mut mentions[i], &other, k);
-            let room = mentions[i].spec.class == Class::Trailer;
+            let ahead = mentions[i].spec.relations.iter().any(is_ahead_of_ego);
+            let room = mentions[i].spec.class == Class::Trailer || ahead && mentions[i].spec.count.n == 1;
             let room_m = room_m(other.spec.class, mentions[i].spec.class);
             let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
             if let (Some(far), true, R::Behind | R::Following) =

@@ -125,7 +125,7 @@ pub fn plural(word: &str) -> String {
 static TABLE: LazyLock<Table> = LazyLock::new(build);
 
 /// Room for all entries: a table that grows moves them again and again.
-const ENTRIES: usize = 1 << 17;
+const ENTRIES: usize = 70_000;
 
 fn build() -> Table {
     let mut t = Table::with_capacity_and_hasher(ENTRIES, BuildHasherDefault::default());

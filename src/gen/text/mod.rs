@@ -34,6 +34,7 @@ mod rephrase;
 pub mod road;
 mod said;
 mod select;
+mod shares;
 mod spots;
 mod spots_strips;
 pub mod tag;

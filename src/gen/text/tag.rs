@@ -91,6 +91,14 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
             if n > 1 && words.ends_with(" across") && word(i + n) == Some("from") {
                 return None;
             }
+            // "in our lane ahead of us"
+            if n > 1
+                && words.ends_with(" ahead")
+                && matches!(sense, Sense::Place(..))
+                && word(i + n) == Some("of")
+            {
+                return None;
+            }
             // "on the left" must not tear "left lane" apart.
             let torn = n > 1
                 && !is_place_like(sense)
@@ -211,7 +219,9 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 }) && !next.is_some_and(|n| {
                     matches!(
                         n.tag,
-                        Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_))
+                        Tag::Is(
+                            Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_) | Sense::Environment(_)
+                        )
                     )
                 }) =>
             {

@@ -152,9 +152,12 @@ impl Parser<'_> {
             && !of_them
             && !other
             && !self.edits
-            && (self.enumerated || open_whole.is_none() && self.elsewhere(parent))
+            && (self.enumerated.is_some() || open_whole.is_none() && self.elsewhere(parent))
         {
             self.again(count, span);
+            if let Some(group) = self.enumerated {
+                self.where_the_group_is(group);
+            }
             return;
         }
         if !all
@@ -162,11 +165,12 @@ impl Parser<'_> {
             && !self.edits
             && self.mentions[parent].uncounted
             && self.mentions[parent].bare
-            && self.mentions[parent].spec.relations.is_empty()
+            && (self.mentions[parent].spec.relations.is_empty() || self.after_mark())
         {
-            // "People: two on the left, ..." counts them one after another
-            self.enumerated = true;
+            // "People: two on the left, ...", "cars flank me: one on my left, ..." counts them one after another
+            self.enumerated = Some(parent);
             self.again(count, span);
+            self.where_the_group_is(parent);
             self.mentions[parent].gone = true;
             return;
         }
@@ -209,6 +213,21 @@ impl Parser<'_> {
         self.last = vec![index];
         self.chain = false;
         self.pre = Pre::default();
+    }
+
+    /// True if a colon or a dash stands right before.
+    fn after_mark(&self) -> bool {
+        self.item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.tag == Tag::Mark && matches!(b.words.as_str(), ":" | "-" | "—" | "–" | "("))
+    }
+
+    /// What was said of a group holds for the one of it that was named last.
+    fn where_the_group_is(&mut self, group: usize) {
+        let theirs = self.mentions[group].spec.relations.clone();
+        if let Some(m) = self.mentions.last_mut() {
+            let kept = theirs.into_iter().filter(|r| r.distance_m.is_none());
+            m.spec.relations.splice(0..0, kept);
+        }
     }
 
     /// A verb in the singular after those that something has speaks of what has them.

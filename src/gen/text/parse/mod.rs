@@ -74,7 +74,7 @@ pub(super) struct Parser<'a> {
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
     sentence: usize,                       // the first mention of the sentence
-    enumerated: bool,                      // "People: two on the left, ..." counts them one after another
+    enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
@@ -137,7 +137,7 @@ impl<'a> Parser<'a> {
             last_place: None,
             whole: None,
             sentence: 0,
-            enumerated: false,
+            enumerated: None,
             front: None,
             pair: Vec::new(),
             with: false,
@@ -190,7 +190,7 @@ impl<'a> Parser<'a> {
         match item.tag {
             Tag::Stop => {
                 self.ego_topic = false;
-                self.enumerated = false;
+                self.enumerated = None;
                 self.sentence = self.mentions.len();
                 self.order = None;
                 self.end_clause();

@@ -105,7 +105,11 @@ impl Parser<'_> {
             return;
         }
         // "behind a bus that comes towards us, two cars": the bus comes
-        let of_front = match self.fronted.last().map(|f| f.anchor) {
+        let of_front = match self.fronted.last().map(|f| match (f.anchor, f.and) {
+            // "between us and the bus, which is 30 m ahead": the bus is
+            (Anchor::Ego, Some(and)) if self.relative => and,
+            (anchor, _) => anchor,
+        }) {
             Some(Anchor::Object(i))
                 if self.head.is_empty() && !p.fresh && !p.ego && frag.anchor != Anchor::Object(i) =>
             {

@@ -59,10 +59,22 @@ impl Parser<'_> {
     /// "cones on either side, three on the left and three on the right", "cars on both sides, two on each": the parts say
     /// how many. True if it was that.
     pub(super) fn part_by_side(&mut self, count: Count, span: Span) -> bool {
-        let group = (0..self.mentions.len()).rev().find(|i| {
+        // "four parked cars, two on each side"
+        let twice = |i: &usize| {
             let m = &self.mentions[*i];
-            m.both.is_some() && !m.is_anchor && (m.plural || m.gone)
-        });
+            let each = matches!(self.sense(self.at + 1), Some(Sense::BothSides(true)));
+            each && count.is_exact() && !m.gone && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
+        };
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|i| !self.mentions[*i].is_anchor && self.mentions[*i].plural && !self.mentions[*i].gone);
+        let group = (0..self.mentions.len())
+            .rev()
+            .find(|i| {
+                let m = &self.mentions[*i];
+                m.both.is_some() && !m.is_anchor && (m.plural || m.gone)
+            })
+            .or(last.filter(twice));
         let Some(group) = group.filter(|_| !self.edits && self.pending.is_none()) else {
             return false;
         };

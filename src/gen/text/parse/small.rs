@@ -23,7 +23,9 @@ impl Parser<'_> {
             }
             "is" | "was" if self.pending.is_none() => self.back_to_host(),
             // "the left lane has two cars in it"
-            "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
+            "with" | "has" | "have" | "having" | "holds" | "contains" | "contains only" | "has only"
+            | "holds only" | "with only"
+                if self.place_has(item) => {}
             // "my lane has been closed off by cones"
             "has" | "have"
                 if self
@@ -36,6 +38,12 @@ impl Parser<'_> {
             // "a bus, behind which two cars wait"
             "which" | "who" | "whom"
                 if self.pending.as_ref().is_some_and(|p| p.first.is_none())
+                    // "a bus at a zebra on which two children walk": on the zebra
+                    && !(self.last_place.is_some()
+                        && matches!(
+                            self.at.checked_sub(2).and_then(|i| self.sense(i)),
+                            Some(Sense::Place(..) | Sense::Fixed(..))
+                        ))
                     && self.last.first().or(self.head.first()).is_some() =>
             {
                 let host = self.last.first().or(self.head.first()).copied();

@@ -110,6 +110,8 @@ impl Parser<'_> {
         if self.pending.is_some() {
             let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty());
             let next_noun = self.noun_ahead(self.at + 1)
+                // "in our lane ahead of us is a truck"
+                || self.inverted_ahead(self.at + 1)
                 || matches!(
                     self.item(self.at + 1).map(|i| i.tag),
                     Some(Tag::Comma | Tag::Mark)
