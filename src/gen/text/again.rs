@@ -167,6 +167,11 @@ impl Parser<'_> {
         self.flush();
         let mut twin = self.mentions[last].clone();
         twin.spec.relations.clear();
+        // what was said of a group that is counted one by one holds for each
+        if let Some(group) = self.enumerated {
+            let theirs = self.mentions[group].spec.relations.iter();
+            twin.spec.relations = theirs.filter(|r| r.distance_m.is_none()).copied().collect();
+        }
         twin.spec.attributes.retain(|a| a != "in total");
         twin.spec.count = count;
         twin.spec.span = span;

@@ -16,6 +16,8 @@ const ORDINALS: [&str; 12] = [
     "eleventh", "twelfth",
 ];
 
+const CLOSING: &str = "that is all|thats all|this is all|and that is it|and thats it|that is everything|thats everything|that is already everything|thats already everything|nothing more than that|no more than that|that will be all|thatll be all|that would be all|that will do|that should be all|that is the lot|thats the lot";
+
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
         || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
@@ -30,6 +32,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, ANY_KIND, "");
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
+    let out = without_closing(&out);
     let out = both_the(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
@@ -90,6 +93,37 @@ fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
                 out.push(tokens[i].clone());
                 i += 1;
             }
+        }
+    }
+    out
+}
+
+/// "and that is all the traffic I want": what was named is everything, and no more of it.
+fn without_closing(tokens: &[Token]) -> Vec<Token> {
+    const MORE: &str = "the|i|we|there|you|that|of|for|to|it|please|folks|really";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let said = begins(&tokens[i..], CLOSING).filter(|n| {
+            let next = &tokens[i + n..];
+            let ends = next.first().is_none_or(|t| t.kind != TokenKind::Word);
+            // ("that is all in our lane" says where)
+            !out.is_empty() && (ends || begins(next, MORE).is_some())
+        });
+        let Some(n) = said else {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        };
+        i += n;
+        while i < tokens.len() && !matches!(tokens[i].kind, TokenKind::Stop | TokenKind::Comma) {
+            i += 1;
+        }
+        while out
+            .last()
+            .is_some_and(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "but"))
+        {
+            out.pop();
         }
     }
     out

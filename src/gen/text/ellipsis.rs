@@ -14,6 +14,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         let mut s = super::measures::same_distance(sentence, &out);
         s = same_side(&s, &out);
         s = one_lane(&s);
+        s = has_again(&s);
         s = second_side(&s);
         s = place_again(&s, &out);
         s = replaced(
@@ -150,6 +151,59 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
                 .filter(|t| t.kind == TokenKind::Comma)
             {
                 t.kind = TokenKind::Stop;
+            }
+        }
+    }
+    out
+}
+
+/// "the left lane contains two cars, and the right lane a truck": which has it again.
+fn has_again(sentence: &[Token]) -> Vec<Token> {
+    let place = |t: &Token| is_strip(&t.text) || matches!(t.text.as_str(), "lane" | "side" | "one");
+    let verb = sentence.iter().position(|t| {
+        matches!(
+            t.text.as_str(),
+            "has" | "holds" | "contains" | "carries" | "hosts" | "features" | "gets"
+        )
+    });
+    let Some(verb) = verb.filter(|v| sentence[..*v].iter().rev().take(5).any(place)) else {
+        return sentence.to_vec();
+    };
+    let mut out = sentence[..=verb].to_vec();
+    let mut i = verb + 1;
+    while i < sentence.len() {
+        let opens = sentence[i].kind == TokenKind::Comma || matches!(sentence[i].text.as_str(), "and" | "while");
+        let the = i + 1 + usize::from(sentence.get(i + 1).is_some_and(|t| matches!(t.text.as_str(), "and" | "while")));
+        let named = opens
+            && sentence
+                .get(the)
+                .is_some_and(|t| matches!(t.text.as_str(), "the" | "my" | "our"));
+        // the place, and what it has at once after it
+        let fresh = (the + 2..sentence.len().min(the + 8))
+            .take_while(|k| !ends(sentence.get(*k)) && !is_noun(&sentence[*k - 1]))
+            .find(|k| {
+                let again = sentence[*k].text == "one"
+                    && matches!(
+                        sentence[*k - 1].text.as_str(),
+                        "left" | "right" | "hand" | "other" | "far" | "near" | "opposite" | "oncoming"
+                    );
+                (matches!(sentence[*k].text.as_str(), "a" | "an" | "another") || number(&sentence[*k]).is_some())
+                    && !again
+                    && !sentence.get(k + 1).is_some_and(is_unit)
+            });
+        match fresh.filter(|k| named && sentence[the..*k].iter().any(place)) {
+            Some(fresh) => {
+                out.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", &sentence[i])
+                });
+                out.extend_from_slice(&sentence[the..fresh]);
+                out.push(word("has", &sentence[fresh]));
+                i = fresh;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
             }
         }
     }

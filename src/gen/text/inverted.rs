@@ -28,6 +28,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
+    let out = namely(&out);
     let out = replaced(
         &out,
         "namely|to wit|viz|that is to say|specifically|to be exact",
@@ -43,6 +44,38 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
         "besides ours|besides mine|besides my own|besides our own|apart from ours|apart from mine|apart from my own|aside from ours|in addition to ours|not counting mine|not counting ours|not counting my own",
         "",
     )
+}
+
+/// "traffic, namely four cars and a truck": what follows lists it.
+fn namely(tokens: &[Token]) -> Vec<Token> {
+    const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|consisting of|made up of|composed of|comprising";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let before = out.iter().rev().find(|t| t.kind != TokenKind::Comma);
+        let sorts = before.is_some_and(|t| {
+            matches!(look_up(&t.text), Some(Sense::Noun(n, many)) if n.classes.len() > 2 && many || t.text == "traffic")
+        });
+        let n = begins(&tokens[i..], NAMELY)
+            .filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
+        match n {
+            Some(n) => {
+                while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+                    out.pop();
+                }
+                out.push(Token {
+                    kind: TokenKind::Mark,
+                    ..word(":", &tokens[i])
+                });
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 fn opens(tokens: &[Token], i: usize) -> bool {

@@ -14,6 +14,8 @@ pub fn counted(tokens: &[Token]) -> Vec<Token> {
     let out = of_a_group(&out);
     let out = halves(&out);
     let out = as_many_of_both(&out);
+    let out = added_and_taken(&out);
+    let out = so_is(&out);
     let out = two_strips(&out);
     let out = per_side(&out);
     one_by_one(&out)
@@ -185,6 +187,46 @@ fn is_strip(word: &str) -> bool {
                 _
             ))
         )
+}
+
+/// "+ 2 cars, + 1 bus, - pedestrians": in a list with plus signs a minus says what is not there.
+fn added_and_taken(tokens: &[Token]) -> Vec<Token> {
+    let sign = |i: usize, sign: &str| tokens[i].text == sign && tokens[i].kind != TokenKind::Word;
+    if !(0..tokens.len()).any(|i| sign(i, "+") && opens(tokens, i)) {
+        return tokens.to_vec();
+    }
+    let mut out: Vec<Token> = Vec::new();
+    for i in 0..tokens.len() {
+        if sign(i, "-") && opens(tokens, i) {
+            out.push(word("no", &tokens[i]));
+        } else if !(sign(i, "+") && opens(tokens, i)) {
+            out.push(tokens[i].clone());
+        }
+    }
+    out
+}
+
+/// "the truck is parked, and so is the bus" in a word of its own.
+fn so_is(tokens: &[Token]) -> Vec<Token> {
+    const SO: &str = "so is|so are|so was|so were|so does|so do|so did|so has|so have|so stands|so stand|as is|as are|as does|as do|just as is|likewise is|likewise are";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let led = opens(tokens, i) && out.iter().any(is_noun);
+        match begins(&tokens[i..], SO).filter(|n| {
+            led && tokens[i + n..].iter().take(5).take_while(|t| !ends(Some(t))).any(is_noun)
+        }) {
+            Some(n) => {
+                out.push(word("soistoo", &tokens[i]));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 /// "on the two pavements": on both.

@@ -97,6 +97,7 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             .get(i)
             .map_or(chars.last().map_or(0, |(at, c)| at + c.len_utf8()), |c| c.0)
     };
+    let signs = chars.iter().any(|(_, c)| *c == '+');
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < chars.len() {
@@ -181,7 +182,8 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             }
         } else {
             match c {
-                ',' | '，' | '、' | '&' | '+' => push(TokenKind::Comma, ",".into(), i, j),
+                ',' | '，' | '、' | '&' => push(TokenKind::Comma, ",".into(), i, j),
+                '+' => push(TokenKind::Comma, "+".into(), i, j),
                 '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => {
                     push(TokenKind::Stop, ".".into(), i, j)
                 }
@@ -194,7 +196,9 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
                     // Between spaces it parts clauses, inside a word it parts words.
                     let spaced =
                         i > 0 && chars[i - 1].1 == ' ' && chars.get(i + 1).is_some_and(|c| c.1 == ' ');
-                    if spaced {
+                    // "+ 2 cars\n- pedestrians": a sign
+                    let sign = signs && (i == 0 || matches!(chars[i - 1].1, '\n' | ' ' | ','));
+                    if spaced || sign {
                         push(TokenKind::Mark, "-".into(), i, j);
                     }
                 }

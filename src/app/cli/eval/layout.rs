@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 19] = [
+const SETS: [(&str, &str); 20] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -80,6 +80,10 @@ const SETS: [(&str, &str); 19] = [
     (
         "strangers_12.jsonl",
         include_str!("../../../../tests/data/strangers_12.jsonl"),
+    ),
+    (
+        "strangers_13.jsonl",
+        include_str!("../../../../tests/data/strangers_13.jsonl"),
     ),
     (
         "exam_5.jsonl",

@@ -155,9 +155,6 @@ impl Parser<'_> {
             && (self.enumerated.is_some() || open_whole.is_none() && self.elsewhere(parent))
         {
             self.again(count, span);
-            if let Some(group) = self.enumerated {
-                self.where_the_group_is(group);
-            }
             return;
         }
         if !all
@@ -170,7 +167,6 @@ impl Parser<'_> {
             // "People: two on the left, ...", "cars flank me: one on my left, ..." counts them one after another
             self.enumerated = Some(parent);
             self.again(count, span);
-            self.where_the_group_is(parent);
             self.mentions[parent].gone = true;
             return;
         }
@@ -219,15 +215,6 @@ impl Parser<'_> {
     fn after_mark(&self) -> bool {
         self.item(self.at.wrapping_sub(1))
             .is_some_and(|b| b.tag == Tag::Mark && matches!(b.words.as_str(), ":" | "-" | "—" | "–" | "("))
-    }
-
-    /// What was said of a group holds for the one of it that was named last.
-    fn where_the_group_is(&mut self, group: usize) {
-        let theirs = self.mentions[group].spec.relations.clone();
-        if let Some(m) = self.mentions.last_mut() {
-            let kept = theirs.into_iter().filter(|r| r.distance_m.is_none());
-            m.spec.relations.splice(0..0, kept);
-        }
     }
 
     /// A verb in the singular after those that something has speaks of what has them.

@@ -74,7 +74,8 @@ pub(super) struct Parser<'a> {
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
     sentence: usize,                       // the first mention of the sentence
-    enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
+    pub(super) alike: Option<usize>, // "so is the bus": what the next noun is like
+    pub(super) enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
@@ -137,6 +138,7 @@ impl<'a> Parser<'a> {
             last_place: None,
             whole: None,
             sentence: 0,
+            alike: None,
             enumerated: None,
             front: None,
             pair: Vec::new(),

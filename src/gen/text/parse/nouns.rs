@@ -85,9 +85,10 @@ impl Parser<'_> {
             .filter_map(|a| a.strip_prefix('\u{1}').map(str::to_string))
             .collect();
         pre.attributes.retain(|a| !a.starts_with('\u{1}'));
+        let only = usize::from(self.item(self.at + 1).is_some_and(|i| i.words == "only"));
         if word == "traffic"
-            && matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Mark))
-            && self.noun_ahead(self.at + 2)
+            && matches!(self.item(self.at + 1 + only).map(|i| i.tag), Some(Tag::Mark))
+            && self.noun_ahead(self.at + 2 + only)
         {
             // "oncoming traffic: two coaches" names them itself.
             for kinds in &wheres {
@@ -280,6 +281,13 @@ impl Parser<'_> {
         }
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
+        }
+        if let Some(like) = self.alike.take().filter(|k| *k != index) {
+            let other = self.mentions[like].spec.clone();
+            let spec = &mut self.mentions[index].spec;
+            spec.state = spec.state.or(other.state);
+            let theirs = other.relations.into_iter().filter(|r| r.anchor != Anchor::Object(index));
+            spec.relations.extend(theirs);
         }
         if !old {
             self.next_in_order(index);

@@ -129,6 +129,12 @@ impl Parser<'_> {
                     self.mentions[i].spec.attributes.push("each".into());
                 }
             }
+            // "the truck is parked, and so is the bus"
+            "soistoo" => {
+                let like = self.head.first().or(self.before.first()).copied();
+                self.soft_end();
+                self.alike = like;
+            }
             "nearfirst" | "farfirst" => self.ordered_by(&item.words),
             // "a fire engine is behind me, so both cars have pulled over"
             "so" | "because" | "since" | "therefore" | "hence"
