@@ -32,7 +32,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, ANY_KIND, "");
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
-    let out = without_closing(&out);
+    let out = without_asides(&without_closing(&out));
     let out = both_the(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
@@ -124,6 +124,33 @@ fn without_closing(tokens: &[Token]) -> Vec<Token> {
             .is_some_and(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "but"))
         {
             out.pop();
+        }
+    }
+    out
+}
+
+/// ", unable to pass,": why somebody does what is told says nothing of where.
+fn without_asides(tokens: &[Token]) -> Vec<Token> {
+    const LEAD: &str = "unable|ready|willing|eager|keen|hoping|hesitant|reluctant|afraid|impatient|unwilling|intending|unsure|obliged|determined|prepared|anxious|desperate|wanting|meaning|wishing|refusing|failing";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let aside = begins(&tokens[i..], LEAD)
+            .filter(|_| out.last().is_some_and(|t| t.kind == TokenKind::Comma))
+            .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == "to"));
+        let end = aside.and_then(|n| {
+            (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word)
+        });
+        let plain = |k: usize| !tokens[i..k].iter().any(super::ellipsis::is_noun);
+        match end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k)) {
+            Some(end) => {
+                out.pop();
+                i = end;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
         }
     }
     out

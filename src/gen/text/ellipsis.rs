@@ -197,7 +197,13 @@ fn has_again(sentence: &[Token]) -> Vec<Token> {
                     kind: TokenKind::Stop,
                     ..word(".", &sentence[i])
                 });
-                out.extend_from_slice(&sentence[the..fresh]);
+                for t in &sentence[the..fresh] {
+                    let same = sentence[..verb].iter().rev().find(|p| place(p) && p.text != "one");
+                    match same.filter(|_| t.text == "one") {
+                        Some(p) => out.push(word(&p.text, t)),
+                        None => out.push(t.clone()),
+                    }
+                }
                 out.push(word("has", &sentence[fresh]));
                 i = fresh;
             }

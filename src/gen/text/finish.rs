@@ -56,11 +56,26 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
         let apposed = prompt
             .get(m.spec.span.end..)
             .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
+        // "three vehicles ahead: a car in our lane and two vans behind it"
+        let listed = mentions.get(i + 1).is_some_and(|next| {
+            let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
+            !gap.contains(['.', ';', '!', '?'])
+                && [":", "namely", " - ", "–", "—", "(", "i.e", "to be exact", "specifically"]
+                    .iter()
+                    .any(|w| gap.contains(w))
+        });
+        let one_sentence = |a: &Mention, b: &Mention| {
+            prompt
+                .get(a.spec.span.end..b.spec.span.start)
+                .is_some_and(|gap| !gap.contains(['.', ';', '!', '?']))
+        };
+        let apposed = apposed || listed;
         let mut sum = 0;
         let mut last = i;
         while last + 1 < mentions.len()
             && sum < mentions[i].spec.count.n
-            && joined(&mentions[last], &mentions[last + 1])
+            && (joined(&mentions[last], &mentions[last + 1])
+                || listed && one_sentence(&mentions[last], &mentions[last + 1]))
             && mentions[i].classes.contains(&mentions[last + 1].spec.class)
             && !is_sort(&mentions[last + 1].spec.noun)
         {

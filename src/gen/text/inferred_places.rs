@@ -339,7 +339,16 @@ fn same_way(m: &Mention, other: &Mention) -> Option<Stated> {
             || is_lane(r.anchor)
     });
     let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
-    let way = other.spec.relations.iter().find(ways)?;
+    // "in the oncoming lane a bus, and after it two cars": in that lane
+    let lane = |r: &&Stated| {
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+    };
+    let mut theirs = other.spec.relations.iter();
+    let way = theirs.clone().find(ways).or_else(|| theirs.find(lane))?;
     (drives(m) && drives(other) && !told && !still).then_some(Stated {
         distance_m: None,
         ..*way

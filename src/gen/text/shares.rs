@@ -10,7 +10,8 @@ use crate::scene::graph::LaneRole;
 
 /// A text with its shares in numbers.
 pub fn counted(tokens: &[Token]) -> Vec<Token> {
-    let out = replaced(tokens, "of which|of whom", "of them");
+    let out = of_which_there_are(tokens);
+    let out = replaced(&out, "of which|of whom", "of them");
     let out = of_a_group(&out);
     let out = halves(&out);
     let out = as_many_of_both(&out);
@@ -28,6 +29,29 @@ fn opens(tokens: &[Token], i: usize) -> bool {
             TokenKind::Comma | TokenKind::Stop | TokenKind::Mark
         )
         || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but" | "where" | "with")
+}
+
+/// "the cones, of which there are seven": seven of them.
+fn of_which_there_are(tokens: &[Token]) -> Vec<Token> {
+    const LEAD: &str = "of which there are|of whom there are|of which i see|of which we see|of which there is|of which i need|of which i want";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], LEAD)
+            .filter(|n| tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1)));
+        match n {
+            Some(n) => {
+                out.push(tokens[i + n].clone());
+                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 /// "Of the four cars, two are parked": the four cars, two of them.

@@ -89,6 +89,22 @@ fn plain(word: &str) -> Option<&'static str> {
     })
 }
 
+/// Words that a full stop shortens.
+fn shortened(word: &str) -> bool {
+    matches!(
+        word,
+        "ped" | "peds" | "veh" | "approx" | "appr" | "ca" | "min" | "max" | "incl" | "excl" | "opp" | "dist"
+            | "mtr" | "mtrs" | "nos" | "resp" | "eg" | "ie" | "vs" | "pcs" | "pc" | "nr" | "cyc" | "constr"
+    )
+}
+
+/// True if the sentence goes on: with a small letter, a digit or a comma.
+fn goes_on(rest: &[(usize, char)]) -> bool {
+    let next = rest.iter().map(|c| c.1).find(|c| *c != ' ');
+    next.is_some_and(|c| c.is_lowercase() || c.is_ascii_digit() || c == ',')
+        && rest.first().is_some_and(|c| c.1 != '\n')
+}
+
 /// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
 pub fn tokens(prompt: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
@@ -102,6 +118,7 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
     let mut i = 0;
     while i < chars.len() {
         let c = chars[i].1;
+        let short = out.last().is_some_and(|t| shortened(&t.text));
         let mut j = i + 1;
         let digit = |k: usize| chars.get(k).is_some_and(|(_, c)| c.is_ascii_digit());
         let mut push = |kind, text: String, i: usize, j: usize| {
@@ -184,6 +201,7 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             match c {
                 ',' | '，' | '、' | '&' => push(TokenKind::Comma, ",".into(), i, j),
                 '+' => push(TokenKind::Comma, "+".into(), i, j),
+                '.' if short && goes_on(&chars[j..]) => {}
                 '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => {
                     push(TokenKind::Stop, ".".into(), i, j)
                 }

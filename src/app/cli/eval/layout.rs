@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 20] = [
+const SETS: [(&str, &str); 21] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -92,6 +92,10 @@ const SETS: [(&str, &str); 20] = [
     (
         "causes.jsonl",
         include_str!("../../../../tests/data/causes.jsonl"),
+    ),
+    (
+        "causes_2.jsonl",
+        include_str!("../../../../tests/data/causes_2.jsonl"),
     ),
     (
         "variants.jsonl",

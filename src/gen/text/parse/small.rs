@@ -35,6 +35,19 @@ impl Parser<'_> {
                 self.with = true;
                 self.topic = None;
             }
+            // "a street on which two cars are parked" sets the stage
+            "which"
+                if !self.edits
+                    && self.mentions.is_empty()
+                    && self.last_place.is_none()
+                    && self
+                        .pending
+                        .as_ref()
+                        .is_some_and(|p| p.first.is_none() && matches!(p.prep, Prep::In | Prep::At)) =>
+            {
+                self.pending = None;
+                self.soft_end();
+            }
             // "a bus, behind which two cars wait"
             "which" | "who" | "whom"
                 if self.pending.as_ref().is_some_and(|p| p.first.is_none())
@@ -109,7 +122,7 @@ impl Parser<'_> {
                 self.end_list();
             }
             // "... obstructs the crossing; four people wait there"
-            "there" | "over there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
+            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
                 self.there(span)
             }
             // "on both pavements stand three people each"

@@ -2,6 +2,7 @@
 
 use super::super::description::{Anchor, Became, Environment, Road, TimeOfDay, Weather};
 use super::super::mention::{Pre, Prep};
+use super::super::lexicon::Sense;
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::Parser;
@@ -152,6 +153,23 @@ impl Parser<'_> {
                 super::super::tag::Tag::Comma | super::super::tag::Tag::Mark
             )
         });
+        // "left lane one car, right lane two trucks"
+        let fresh = matches!(
+            self.item(self.at + 1).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(false) | Sense::Count(_)))
+        ) && !matches!(self.sense(self.at + 2), Some(Sense::Unit(_)));
+        let told = !matches!(anchor, Anchor::Lane(LaneRole::Road) | Anchor::Junction);
+        if (opened || self.item(self.at.wrapping_sub(1)).is_none_or(|b| b.tag == Tag::Stop))
+            && !self.edits
+            && fresh
+            && told
+            && self.noun_ahead(self.at + 1)
+        {
+            self.new_clause();
+            self.begin(Prep::In, span);
+            self.anchor(anchor, span);
+            return;
+        }
         if opened
             && self.ends(self.at + 1)
             && !self.head.is_empty()
