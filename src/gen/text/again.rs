@@ -76,7 +76,8 @@ impl Parser<'_> {
             return false;
         };
         let many = m.plural || m.spec.count.n > 1;
-        if !m.uncounted || !many {
+        // ("a line of taxis, eight of them": how many was not said)
+        if !(m.uncounted || !m.spec.count.is_exact()) || !many {
             return false;
         }
         m.spec.count = count;

@@ -48,7 +48,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
 
 /// "traffic, namely four cars and a truck": what follows lists it.
 fn namely(tokens: &[Token]) -> Vec<Token> {
-    const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|consisting of|made up of|composed of|comprising";
+    const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|consisting of|made up of|composed of|comprising|which consists of|which consist of|that consists of|which is made up of|which is composed of|which comprises|meaning|that is|i e|ie|in other words|being";
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {

@@ -6,11 +6,14 @@ use super::ellipsis::{digits, ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 use super::wording::{begins, replaced, word};
+use crate::scene::Class;
 use crate::scene::graph::LaneRole;
 
 /// A text with its shares in numbers.
 pub fn counted(tokens: &[Token]) -> Vec<Token> {
-    let out = of_which_there_are(tokens);
+    let out = of_which_there_are(&without_times(tokens));
+    let out = riders_wait(&out);
+    let out = in_each_lane(&waited_for(&out));
     let out = replaced(&out, "of which|of whom", "of them");
     let out = of_a_group(&out);
     let out = halves(&out);
@@ -29,6 +32,100 @@ fn opens(tokens: &[Token], i: usize) -> bool {
             TokenKind::Comma | TokenKind::Stop | TokenKind::Mark
         )
         || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but" | "where" | "with")
+}
+
+/// "1 x pedestrian": one.
+fn without_times(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for t in tokens {
+        let times = t.text == "x" && out.last().is_some_and(|b| number(b).is_some());
+        if !times {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+/// "taxis that wait for passengers": who is waited for in general is not there.
+fn waited_for(tokens: &[Token]) -> Vec<Token> {
+    const WAIT: &str = "wait for|waits for|waiting for|waited for|looking for|hoping for";
+    const WHOM: &str = "passengers|customers|clients|guests|fares|orders|business|work|riders";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], WAIT).filter(|n| {
+            begins(&tokens[i + n..], WHOM).is_some_and(|m| {
+                ends(tokens.get(i + n + m)) || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))
+            })
+        });
+        match n {
+            Some(n) => {
+                out.push(tokens[i].clone());
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "two mopeds whose riders are waiting": which are.
+fn riders_wait(tokens: &[Token]) -> Vec<Token> {
+    let two_wheels = |t: &Token| {
+        matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
+    };
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], "whose rider|whose riders|whose driver|whose drivers")
+            .filter(|_| out.iter().rev().take(2).any(two_wheels));
+        match n {
+            Some(n) => {
+                out.push(word("which", &tokens[i]));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "a coach in each of the other two lanes": one in the left lane, one in the right lane.
+fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
+    const EACH: &str = "in each of the other two lanes|in each of the other lanes|in each of the two other lanes|in each of the neighbouring lanes|in each of the neighboring lanes|in each of the adjacent lanes|in each of the lanes beside us|in each of the lanes beside me|in each of the lanes next to us|in each of the lanes next to me|in each neighbouring lane|in each neighboring lane|in each adjacent lane|in both other lanes|in both the other lanes|in both of the other lanes|in both neighbouring lanes|in both neighboring lanes|in both adjacent lanes|in the lanes on both sides of us|in the lanes on both sides of me|in the lanes to both sides of us|in the lanes on either side of us|in the lanes on either side of me|in the lane on each side of us|in the lane on each side of me|in the lane on either side of us|in the lane on either side of me";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        // who is there: "a coach", "two parked cars"
+        let lead = begins(&tokens[i..], EACH).and_then(|n| {
+            let from = (0..out.len()).rev().take(5).find(|k| {
+                number(&out[*k]).is_some() || matches!(out[*k].text.as_str(), "a" | "an" | "one")
+            })?;
+            let np = &out[from..];
+            let plain = np.iter().filter(|t| is_noun(t)).count() == 1 && np.iter().all(|t| t.kind != TokenKind::Stop);
+            plain.then(|| (n, np.to_vec()))
+        });
+        match lead {
+            Some((n, np)) => {
+                let at = &tokens[i];
+                out.extend(["in", "the", "left", "lane", "and"].map(|w| word(w, at)));
+                out.extend(np.iter().map(|t| Token { span: at.span, ..t.clone() }));
+                out.extend(["in", "the", "right", "lane"].map(|w| word(w, at)));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 /// "the cones, of which there are seven": seven of them.

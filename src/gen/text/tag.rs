@@ -230,6 +230,21 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
             }
+            // "barriers close the oncoming lane"
+            ("close", _)
+                if next.is_some_and(|n| {
+                    n.tag == Tag::Is(Sense::Article(true)) || matches!(n.words.as_str(), "my" | "our")
+                }) && after_next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Place(..))))
+                    || next.is_some_and(|n| {
+                        (n.words.starts_with("my ") || n.words.starts_with("our "))
+                            && matches!(n.tag, Tag::Is(Sense::Place(..)))
+                    }) && item.words == "close" =>
+            {
+                out.push(Item {
+                    tag: look_up("closing").map_or(Tag::Unknown, Tag::Is),
+                    ..item.clone()
+                });
+            }
             ("parking", _) if !follows_place => out.push(Item {
                 tag: look_up("parked").map_or(Tag::Unknown, Tag::Is),
                 ..item.clone()

@@ -106,6 +106,17 @@ impl Parser<'_> {
             }
             return;
         }
+        // "two vans, and their drivers stand behind them": one each
+        let theirs = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "their" | "whose"));
+        if theirs && plural && pre.count.is_none() && matches!(word, "drivers" | "owners" | "operators") && !self.edits {
+            let hosts = if self.head.is_empty() { &self.before } else { &self.head };
+            let vehicles = hosts.iter().map(|i| &self.mentions[*i].spec);
+            let driven = vehicles.filter(|s| s.class.is_vehicle() && s.count.is_exact());
+            let many: u32 = driven.map(|s| s.count.n).sum();
+            pre.count = (many > 0).then(|| Count::exactly(many));
+        }
         let some_one = !plural
             && noun.several == 1
             && self

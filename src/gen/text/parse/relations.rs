@@ -2,6 +2,8 @@
 
 use super::super::description::Anchor;
 use super::super::mention::{Frag, Pre, Prep, apply};
+use super::super::lexicon::Sense;
+use super::super::tag::Tag;
 use super::super::tokens::Span;
 use super::{Parser, Pending};
 use crate::scene::Class;
@@ -130,7 +132,14 @@ impl Parser<'_> {
             return;
         }
         let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
+        // "20 m in front of me a car, 20 m behind me another one"
+        let another = !self.edits
+            && self.item(self.at + 1).is_some_and(|n| {
+                n.tag == Tag::Is(Sense::Part(false)) && (n.words.starts_with("another") || n.words.starts_with("a "))
+            })
+            && self.ends(self.at + 2);
         let new_noun = set_off
+            || another
             || self.noun_ahead(self.at + 1)
             || self.bare_number(self.at + 1)
             || self.inverted_ahead(self.at + 1);

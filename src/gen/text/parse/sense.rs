@@ -73,6 +73,12 @@ impl<'a> Parser<'a> {
             {
                 return true;
             }
+            // "the two cars in front of me move over to the right"
+            Sense::Verb(Verb::Move)
+                if !self.edits && !self.fresh && !self.last.is_empty() && self.pending.is_none() =>
+            {
+                self.state(ObjectState::Moving, true, false, item);
+            }
             Sense::Verb(verb) => {
                 // In a description, "remove all cars" means that there are none, other verbs add nothing.
                 self.flush();

@@ -6,6 +6,7 @@ use super::super::lexicon::Sense;
 use super::super::mention::Prep;
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
+use super::super::words::edits::Verb;
 use super::Parser;
 use crate::scene::graph::{LaneRole as L, RelationKind as R};
 
@@ -179,7 +180,8 @@ impl Parser<'_> {
         }
         let word = |k: usize| k.checked_sub(1).and_then(|i| self.item(i));
         let over = word(k).is_some_and(|b| matches!(b.words.as_str(), "to" | "onto"))
-            && word(k - 1).is_some_and(|b| matches!(b.tag, Tag::Is(Sense::State(..))));
+            && word(k.saturating_sub(1))
+                .is_some_and(|b| matches!(b.tag, Tag::Is(Sense::State(..) | Sense::Verb(Verb::Move))));
         if place && over && !self.last.is_empty() && !self.edits {
             return true;
         }

@@ -247,7 +247,7 @@ pub const REVERSED: &[(R, &str)] = &[
     (R::Crossing, "crossed by|is crossed by"),
     (
         R::On,
-        "taken by|is taken by|are taken by|taken up by|is taken up by|are taken up by|occupied with|lined with|lined by|is lined with|is lined by|are lined with|are lined by|packed with|filled with|crowded with|is full of|are full of",
+        "taken by|is taken by|are taken by|is used by|are used by|is being used by|are being used by|in use by|being used by|taken up by|is taken up by|are taken up by|occupied with|lined with|lined by|is lined with|is lined by|are lined with|are lined by|packed with|filled with|crowded with|is full of|are full of",
     ),
 ];
 
