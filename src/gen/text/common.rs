@@ -29,6 +29,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
+    let out = bounds(&out);
     let out = replaced(&out, ANY_KIND, "");
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
@@ -124,6 +125,31 @@ fn without_closing(tokens: &[Token]) -> Vec<Token> {
             .is_some_and(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "but"))
         {
             out.pop();
+        }
+    }
+    out
+}
+
+/// "no fewer than six": at least six, and not none.
+fn bounds(tokens: &[Token]) -> Vec<Token> {
+    const LEAST: &str = "no fewer than|no less than|not fewer than|not less than|nothing less than";
+    const MOST: &str = "no more than|not more than|no greater number than";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let bound = [(LEAST, "least"), (MOST, "most")]
+            .iter()
+            .find_map(|(said, word)| begins(&tokens[i..], said).map(|n| (n, *word)))
+            .filter(|(n, _)| tokens.get(i + n).is_some_and(is_number));
+        match bound {
+            Some((n, which)) => {
+                out.extend(["at", which].map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
         }
     }
     out

@@ -11,7 +11,8 @@ use crate::scene::graph::LaneRole;
 pub fn filled(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
     for sentence in sentences(tokens) {
-        let mut s = super::measures::same_distance(sentence, &out);
+        let mut s = super::measures::farther_by(sentence, &out);
+        s = super::measures::same_distance(&s, &out);
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = has_again(&s);
@@ -366,6 +367,12 @@ fn one_a_side(sentence: &[Token]) -> Vec<Token> {
             && w[1..].iter().any(is_noun)
     });
     let n = begins(&sentence[i..], EACH).unwrap_or(0);
+    // "flanked by two motorbikes, one on either side": that is what flanking is
+    let flanks = sentence[..i].windows(2).any(|w| w[0].text == "flanked" && w[1].text == "by");
+    if flanks && ends(sentence.get(i + n + 1)) {
+        let apart = usize::from(sentence[i - 1].kind == TokenKind::Comma);
+        return [&sentence[..i - apart], &sentence[i + n + 1..]].concat();
+    }
     let Some(place) = sentence
         .get(i + n)
         .filter(|t| two && (t.text == "side" || is_strip(&t.text)))

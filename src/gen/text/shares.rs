@@ -43,6 +43,16 @@ fn without_times(tokens: &[Token]) -> Vec<Token> {
             out.push(t.clone());
         }
     }
+    // "one (1) truck"
+    let mut i = 0;
+    while i + 3 < out.len() {
+        let said = |t: &Token| number(t).or((t.text == "zero").then_some(0));
+        let same = said(&out[i]).is_some() && said(&out[i]) == said(&out[i + 2]);
+        if same && out[i + 1].text == "(" && out[i + 3].text == ")" {
+            out.drain(i + 1..i + 4);
+        }
+        i += 1;
+    }
     out
 }
 

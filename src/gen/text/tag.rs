@@ -230,6 +230,17 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     ..item.clone()
                 });
             }
+            // "is walking back to it": towards it
+            ("back to", Tag::Is(Sense::Rel(_)))
+                if before.is_some_and(|b| {
+                    matches!(b.tag, Tag::Is(Sense::State(crate::scene::graph::ObjectState::Moving, _)))
+                }) =>
+            {
+                out.push(Item {
+                    tag: look_up("walking towards").map_or(Tag::Unknown, Tag::Is),
+                    ..item.clone()
+                });
+            }
             // "barriers close the oncoming lane"
             ("close", _)
                 if next.is_some_and(|n| {

@@ -222,6 +222,8 @@ impl<'a> Parser<'a> {
                     });
                 }
                 if item.words == ":" {
+                    // "we would like this: ..." is not about us
+                    self.ego_subject &= !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
                     self.heading();
                 }
                 self.flush();
@@ -317,6 +319,7 @@ impl<'a> Parser<'a> {
                 if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(..)))
                     && !self.noun_ahead(self.at + 1)
                     && (1.0..1000.0).contains(&v)
+                    && (back == 1 || self.ends(self.at + 1))
                     && let Some(&i) = self.last.last()
                     && self.mentions[i].uncounted
                 {

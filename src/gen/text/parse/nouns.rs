@@ -91,6 +91,7 @@ impl Parser<'_> {
             && self.noun_ahead(self.at + 2 + only)
         {
             // "oncoming traffic: two coaches" names them itself.
+            self.new_clause();
             for kinds in &wheres {
                 let kinds = RelationKind::ALL
                     .into_iter()
@@ -107,6 +108,15 @@ impl Parser<'_> {
             return;
         }
         // "two vans, and their drivers stand behind them": one each
+        // "a couple with a pushchair": theirs, and nobody more
+        let carried = noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
+        if carried
+            && !self.edits
+            && self.last.first().is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
+        {
+            self.with = false;
+            return;
+        }
         let theirs = self
             .item(self.at.wrapping_sub(1))
             .is_some_and(|b| matches!(b.words.as_str(), "their" | "whose"));

@@ -183,6 +183,17 @@ impl Parser<'_> {
         } else {
             targets
         };
+        // "two oncoming cars and a man on the pavement": the man is
+        let walk = matches!(
+            frag.anchor,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+        );
+        let on_foot = |t: &usize| !self.mentions[*t].spec.class.is_vehicle();
+        let mixed = walk && !self.edits && targets.iter().any(on_foot);
+        let targets: Vec<usize> = targets
+            .into_iter()
+            .filter(|t| !mixed || on_foot(t) || self.mentions[*t].spec.relations.is_empty())
+            .collect();
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()

@@ -32,6 +32,15 @@ impl Parser<'_> {
                     .item(self.at + 1)
                     .is_some_and(|n| n.words.starts_with("been")) => {}
             "with" | "has" | "have" | "having" => {
+                // "two cars and a man with his back to us": the man has
+                let own = self
+                    .item(self.at + 1)
+                    .is_some_and(|n| matches!(n.words.split(' ').next(), Some("his" | "her" | "its")));
+                if own && item.words == "with" && self.last.len() > 1 && !self.edits {
+                    self.last.drain(..self.last.len() - 1);
+                    self.head.clone_from(&self.last);
+                    self.chain = false;
+                }
                 self.with = true;
                 self.topic = None;
             }
