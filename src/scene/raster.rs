@@ -100,8 +100,10 @@ pub fn polygon_cells(points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
 }
 
 /// Visits the cells whose centre lies within `half_width_m` of an open polyline. Zero-length
-/// segments are skipped, vertices that are not finite end their segments.
+/// segments are skipped, vertices that are not finite end their segments. Every cell is visited once.
 pub fn line_cells(points_m: &[DVec2], half_width_m: f64, mut visit: impl FnMut(usize, usize)) {
+    // The short segments of a wide bend overlap almost wholly.
+    let mut seen = vec![false; GridSpec::COLUMNS];
     for pair in points_m.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         let d = b - a;
@@ -110,8 +112,13 @@ pub fn line_cells(points_m: &[DVec2], half_width_m: f64, mut visit: impl FnMut(u
             continue;
         }
         for_cells(a.min(b) - half_width_m, a.max(b) + half_width_m, |x, y, p| {
+            let seen = &mut seen[x * GridSpec::NY + y];
+            if *seen {
+                return;
+            }
             let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
             if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
+                *seen = true;
                 visit(x, y);
             }
         });

@@ -76,7 +76,8 @@ impl Parser<'_> {
             return false;
         };
         let many = m.plural || m.spec.count.n > 1;
-        if !m.uncounted || !many {
+        // ("a line of taxis, eight of them": how many was not said)
+        if !(m.uncounted || !m.spec.count.is_exact()) || !many {
             return false;
         }
         m.spec.count = count;
@@ -167,6 +168,11 @@ impl Parser<'_> {
         self.flush();
         let mut twin = self.mentions[last].clone();
         twin.spec.relations.clear();
+        // what was said of a group that is counted one by one holds for each
+        if let Some(group) = self.enumerated {
+            let theirs = self.mentions[group].spec.relations.iter();
+            twin.spec.relations = theirs.filter(|r| r.distance_m.is_none()).copied().collect();
+        }
         twin.spec.attributes.retain(|a| a != "in total");
         twin.spec.count = count;
         twin.spec.span = span;
@@ -217,11 +223,15 @@ impl Parser<'_> {
                 .as_ref()
                 .is_some_and(|p| p.prep == Prep::In && !p.not);
         let people: Vec<usize> = self.last.clone();
-        let fits = !people.is_empty()
-            && people
-                .iter()
-                .all(|i| self.mentions[*i].spec.class == Class::Pedestrian && !self.mentions[*i].is_anchor);
-        if !(fits && (riding || on)) {
+        let of_class = |class: Class| {
+            !people.is_empty()
+                && people
+                    .iter()
+                    .all(|i| self.mentions[*i].spec.class == class && !self.mentions[*i].is_anchor)
+        };
+        // "two bikers on their motorcycles" are named already
+        let named = of_class(noun.classes[0]) && before < self.at;
+        if !((of_class(Class::Pedestrian) || named) && (riding || on)) {
             return false;
         }
         self.pending = None;
@@ -413,7 +423,9 @@ impl Parser<'_> {
             return true;
         }
         // "three of them are trucks"
-        let sorted = matches!(lead, "are" | "were") && pre.count.is_none() && pre.article.is_none();
+        let sorted = matches!(lead, "are" | "were" | "being" | "of them")
+            && pre.count.is_none()
+            && pre.article.is_none();
         let is = matches!(
             lead,
             "is" | "are"

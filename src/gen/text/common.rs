@@ -16,6 +16,8 @@ const ORDINALS: [&str; 12] = [
     "eleventh", "twelfth",
 ];
 
+const CLOSING: &str = "that is all|thats all|this is all|and that is it|and thats it|that is everything|thats everything|that is already everything|thats already everything|nothing more than that|no more than that|that will be all|thatll be all|that would be all|that will do|that should be all|that is the lot|thats the lot";
+
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
         || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
@@ -27,9 +29,11 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
+    let out = bounds(&out);
     let out = replaced(&out, ANY_KIND, "");
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
+    let out = without_asides(&without_closing(&out));
     let out = both_the(&out);
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
@@ -86,6 +90,89 @@ fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
                         out.pop();
                     }
                 }
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "and that is all the traffic I want": what was named is everything, and no more of it.
+fn without_closing(tokens: &[Token]) -> Vec<Token> {
+    const MORE: &str = "the|i|we|there|you|that|of|for|to|it|please|folks|really";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let said = begins(&tokens[i..], CLOSING).filter(|n| {
+            let next = &tokens[i + n..];
+            let ends = next.first().is_none_or(|t| t.kind != TokenKind::Word);
+            // ("that is all in our lane" says where)
+            !out.is_empty() && (ends || begins(next, MORE).is_some())
+        });
+        let Some(n) = said else {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        };
+        i += n;
+        while i < tokens.len() && !matches!(tokens[i].kind, TokenKind::Stop | TokenKind::Comma) {
+            i += 1;
+        }
+        while out
+            .last()
+            .is_some_and(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "but"))
+        {
+            out.pop();
+        }
+    }
+    out
+}
+
+/// "no fewer than six": at least six, and not none.
+fn bounds(tokens: &[Token]) -> Vec<Token> {
+    const LEAST: &str = "no fewer than|no less than|not fewer than|not less than|nothing less than";
+    const MOST: &str = "no more than|not more than|no greater number than";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let bound = [(LEAST, "least"), (MOST, "most")]
+            .iter()
+            .find_map(|(said, word)| begins(&tokens[i..], said).map(|n| (n, *word)))
+            .filter(|(n, _)| tokens.get(i + n).is_some_and(is_number));
+        match bound {
+            Some((n, which)) => {
+                out.extend(["at", which].map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// ", unable to pass,": why somebody does what is told says nothing of where.
+fn without_asides(tokens: &[Token]) -> Vec<Token> {
+    const LEAD: &str = "unable|ready|willing|eager|keen|hoping|hesitant|reluctant|afraid|impatient|unwilling|intending|unsure|obliged|determined|prepared|anxious|desperate|wanting|meaning|wishing|refusing|failing";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let aside = begins(&tokens[i..], LEAD)
+            .filter(|_| out.last().is_some_and(|t| t.kind == TokenKind::Comma))
+            .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == "to"));
+        let end = aside.and_then(|n| {
+            (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word)
+        });
+        let plain = |k: usize| !tokens[i..k].iter().any(super::ellipsis::is_noun);
+        match end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k)) {
+            Some(end) => {
+                out.pop();
+                i = end;
             }
             None => {
                 out.push(tokens[i].clone());

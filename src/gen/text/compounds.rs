@@ -6,7 +6,9 @@ use super::tag::{Item, Tag};
 use crate::scene::Class;
 
 /// Endings of what somebody is called who does something.
-const AGENT: [&str; 6] = ["er", "or", "ist", "man", "woman", "eer"];
+const AGENT: [&str; 12] = [
+    "er", "or", "ist", "man", "woman", "eer", "boy", "girl", "lady", "guy", "ian", "ee",
+];
 /// Words with these endings that are things.
 const THINGS: &str = "detector|sensor|container|dumpster|planter|counter|bumper|banner|meter|mixer|roller|charger|printer|speaker|scanner|motor|reactor|error|mirror|floor|sector|vector|corridor|border|shelter|marker|divider|heater|cooler|number|letter|poster|power|tower|timer|trigger|header|chapter|quarter|center|filter|layer|order|paper|factor|color|odor|armor|harbor|elevator|escalator|indicator|reflector|generator|simulator|calculator|locker|sticker|ladder|gutter|hammer|feather|weather|leather|matter|water|tyre|twist|list|mist|exist|human|german|roman|former|latter|outer|inner|upper|lower|proper|super|clever|sober|sinister|minor|major|prior|exterior|interior|anterior|posterior|disaster|encounter|manner|corner|river|summer|winter|computer|controller|parameter|carrier|barrier|transporter|helicopter|character|register|sewer|wiper|buffer|crossover|cover|hover|loader|conveyor|monitor|projector|spoiler|trailer|tanker|stroller|walker|pusher|cluster|chamber|member";
 
@@ -61,13 +63,18 @@ fn own_vehicle(items: Vec<Item>) -> Vec<Item> {
 
 /// "a trolley collector is walking about": somebody, told by the ending of an unknown word and by what he does.
 fn agents(items: Vec<Item>) -> Vec<Item> {
-    let person = look_up("pedestrian").map_or(Tag::Unknown, Tag::Is);
+    let people = |many: bool| {
+        let word = if many { "pedestrians" } else { "pedestrian" };
+        look_up(word).map_or(Tag::Unknown, Tag::Is)
+    };
     let mut out = items;
     for i in 1..out.len() {
+        let stem = out[i].words.strip_suffix('s').unwrap_or(&out[i].words);
+        let many = stem.len() < out[i].words.len();
         let ending = AGENT
             .iter()
-            .any(|e| out[i].words.len() > e.len() + 2 && out[i].words.ends_with(e));
-        if out[i].tag != Tag::Unknown || !ending || THINGS.split('|').any(|w| w == out[i].words) {
+            .any(|e| stem.len() > e.len() + 2 && stem.ends_with(e));
+        if out[i].tag != Tag::Unknown || !ending || THINGS.split('|').any(|w| w == stem) {
             continue;
         }
         let before = (0..i).rev().find(|k| {
@@ -87,7 +94,7 @@ fn agents(items: Vec<Item>) -> Vec<Item> {
         while out.get(next).is_some_and(|n| {
             matches!(
                 n.words.as_str(),
-                "is" | "was" | "who" | "that" | "has" | "with" | "just" | "in" | "his" | "her"
+                "is" | "are" | "were" | "was" | "who" | "that" | "has" | "with" | "just" | "in" | "his" | "her"
             )
         }) {
             next += 1;
@@ -101,7 +108,7 @@ fn agents(items: Vec<Item>) -> Vec<Item> {
             .get(i + 1)
             .is_some_and(|n| matches!(n.tag, Tag::Is(Sense::In | Sense::At)));
         if counted && acts {
-            out[i].tag = person;
+            out[i].tag = people(many);
             out[i].read_as = Some("person");
         }
     }

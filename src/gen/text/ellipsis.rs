@@ -11,9 +11,11 @@ use crate::scene::graph::LaneRole;
 pub fn filled(tokens: &[Token]) -> Vec<Token> {
     let mut out = Vec::new();
     for sentence in sentences(tokens) {
-        let mut s = super::measures::same_distance(sentence, &out);
+        let mut s = super::measures::farther_by(sentence, &out);
+        s = super::measures::same_distance(&s, &out);
         s = same_side(&s, &out);
         s = one_lane(&s);
+        s = has_again(&s);
         s = second_side(&s);
         s = place_again(&s, &out);
         s = replaced(
@@ -150,6 +152,65 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
                 .filter(|t| t.kind == TokenKind::Comma)
             {
                 t.kind = TokenKind::Stop;
+            }
+        }
+    }
+    out
+}
+
+/// "the left lane contains two cars, and the right lane a truck": which has it again.
+fn has_again(sentence: &[Token]) -> Vec<Token> {
+    let place = |t: &Token| is_strip(&t.text) || matches!(t.text.as_str(), "lane" | "side" | "one");
+    let verb = sentence.iter().position(|t| {
+        matches!(
+            t.text.as_str(),
+            "has" | "holds" | "contains" | "carries" | "hosts" | "features" | "gets"
+        )
+    });
+    let Some(verb) = verb.filter(|v| sentence[..*v].iter().rev().take(5).any(place)) else {
+        return sentence.to_vec();
+    };
+    let mut out = sentence[..=verb].to_vec();
+    let mut i = verb + 1;
+    while i < sentence.len() {
+        let opens = sentence[i].kind == TokenKind::Comma || matches!(sentence[i].text.as_str(), "and" | "while");
+        let the = i + 1 + usize::from(sentence.get(i + 1).is_some_and(|t| matches!(t.text.as_str(), "and" | "while")));
+        let named = opens
+            && sentence
+                .get(the)
+                .is_some_and(|t| matches!(t.text.as_str(), "the" | "my" | "our"));
+        // the place, and what it has at once after it
+        let fresh = (the + 2..sentence.len().min(the + 8))
+            .take_while(|k| !ends(sentence.get(*k)) && !is_noun(&sentence[*k - 1]))
+            .find(|k| {
+                let again = sentence[*k].text == "one"
+                    && matches!(
+                        sentence[*k - 1].text.as_str(),
+                        "left" | "right" | "hand" | "other" | "far" | "near" | "opposite" | "oncoming"
+                    );
+                (matches!(sentence[*k].text.as_str(), "a" | "an" | "another") || number(&sentence[*k]).is_some())
+                    && !again
+                    && !sentence.get(k + 1).is_some_and(is_unit)
+            });
+        match fresh.filter(|k| named && sentence[the..*k].iter().any(place)) {
+            Some(fresh) => {
+                out.push(Token {
+                    kind: TokenKind::Stop,
+                    ..word(".", &sentence[i])
+                });
+                for t in &sentence[the..fresh] {
+                    let same = sentence[..verb].iter().rev().find(|p| place(p) && p.text != "one");
+                    match same.filter(|_| t.text == "one") {
+                        Some(p) => out.push(word(&p.text, t)),
+                        None => out.push(t.clone()),
+                    }
+                }
+                out.push(word("has", &sentence[fresh]));
+                i = fresh;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
             }
         }
     }
@@ -306,6 +367,12 @@ fn one_a_side(sentence: &[Token]) -> Vec<Token> {
             && w[1..].iter().any(is_noun)
     });
     let n = begins(&sentence[i..], EACH).unwrap_or(0);
+    // "flanked by two motorbikes, one on either side": that is what flanking is
+    let flanks = sentence[..i].windows(2).any(|w| w[0].text == "flanked" && w[1].text == "by");
+    if flanks && ends(sentence.get(i + n + 1)) {
+        let apart = usize::from(sentence[i - 1].kind == TokenKind::Comma);
+        return [&sentence[..i - apart], &sentence[i + n + 1..]].concat();
+    }
     let Some(place) = sentence
         .get(i + n)
         .filter(|t| two && (t.text == "side" || is_strip(&t.text)))

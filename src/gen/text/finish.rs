@@ -28,6 +28,82 @@ fn drop_totals(mentions: &mut [Mention]) {
     }
 }
 
+/// Nouns that only say of what sort the ones are that a list then names.
+const SORTS: &str = "vehicle|machine|construction machine|construction vehicle|work machine|site machine|building machine|heavy machine|person|people|pedestrian|road user|two wheeler|thing|object|obstacle|piece of construction equipment|piece of heavy machinery|motor vehicle|large vehicle|heavy vehicle|traffic participant|participant|vru|someone|folk|bike|passerby|passer by|human|individual|figure|adult";
+
+fn is_sort(noun: &str) -> bool {
+    use super::lexicon::{Sense, look_up};
+    let of = |w: &str| match look_up(w) {
+        Some(Sense::Noun(n, _)) => Some(n),
+        _ => None,
+    };
+    let singular = |w: &str| SORTS.split('|').any(|s| s == w || super::lexicon::plural(s) == w);
+    singular(noun) || matches!(noun, "people" | "persons") && of(noun).is_some()
+}
+
+/// "two machines, a crane and an excavator": the list says which two they are.
+fn drop_named(mentions: &mut [Mention], prompt: &str) {
+    let joined = |a: &Mention, b: &Mention| {
+        let gap = prompt.get(a.spec.span.end..b.spec.span.start).unwrap_or("?");
+        let gap = gap.trim().trim_start_matches([',', ':', '(', '-', '–', '—']).trim();
+        matches!(gap, "" | "and" | "plus" | "namely" | "and also" | "i.e." | "viz.")
+    };
+    for i in 0..mentions.len() {
+        let m = &mentions[i];
+        if m.gone || !m.plural || m.uncounted || !m.spec.count.is_exact() || !is_sort(&m.spec.noun) {
+            continue;
+        }
+        let apposed = prompt
+            .get(m.spec.span.end..)
+            .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
+        // "three vehicles ahead: a car in our lane and two vans behind it"
+        let listed = mentions.get(i + 1).is_some_and(|next| {
+            let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
+            !gap.contains(['.', ';', '!', '?'])
+                && [":", "namely", " - ", "–", "—", "(", "i.e", "to be exact", "specifically"]
+                    .iter()
+                    .any(|w| gap.contains(w))
+        });
+        let one_sentence = |a: &Mention, b: &Mention| {
+            prompt
+                .get(a.spec.span.end..b.spec.span.start)
+                .is_some_and(|gap| !gap.contains(['.', ';', '!', '?']))
+        };
+        let apposed = apposed || listed;
+        let mut sum = 0;
+        let mut last = i;
+        while last + 1 < mentions.len()
+            && sum < mentions[i].spec.count.n
+            && (joined(&mentions[last], &mentions[last + 1])
+                || listed && one_sentence(&mentions[last], &mentions[last + 1]))
+            && mentions[i].classes.contains(&mentions[last + 1].spec.class)
+            && !is_sort(&mentions[last + 1].spec.noun)
+        {
+            last += 1;
+            sum += mentions[last].spec.count.n;
+        }
+        if !apposed || last < i + 2 || sum != mentions[i].spec.count.n {
+            continue;
+        }
+        let theirs = mentions[i].spec.relations.clone();
+        let state = mentions[i].spec.state;
+        for m in &mut mentions[i + 1..=last] {
+            m.spec.state = m.spec.state.or(state);
+            if m.spec.relations.is_empty() {
+                m.spec.relations.clone_from(&theirs);
+            }
+        }
+        mentions[i].gone = true;
+        for m in mentions.iter_mut() {
+            for r in &mut m.spec.relations {
+                if r.anchor == Anchor::Object(i) {
+                    r.anchor = Anchor::Object(i + 1);
+                }
+            }
+        }
+    }
+}
+
 /// What has stopped on the other side of the road stands at its edge.
 fn stopped_across(mentions: &mut [Mention], prompt: &str) {
     for m in mentions.iter_mut() {
@@ -300,6 +376,7 @@ fn sun_shines(reading: &mut Reading) {
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
+    drop_named(mentions, prompt);
     super::reciprocal::face(mentions);
     super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);

@@ -35,6 +35,8 @@ pub fn infer(mentions: &mut [Mention]) {
         blocked_at(&mut mentions[i]);
         stranded(&mut mentions[i]);
         crosses(&mut mentions[i]);
+        on_its_lane(&mut mentions[i]);
+        pavement_beside(mentions, i);
         comes_towards(&mut mentions[i]);
         waits_for_crossers(mentions, i);
         goes_with(mentions, i);
@@ -58,7 +60,8 @@ pub fn infer(mentions: &mut [Mention]) {
                 mentions[i].spec.relations.push(Stated { span: r.span, ..more });
             }
             drawn(&mut mentions[i], &other, k);
-            let room = mentions[i].spec.class == Class::Trailer;
+            let ahead = mentions[i].spec.relations.iter().any(is_ahead_of_ego);
+            let room = mentions[i].spec.class == Class::Trailer || ahead && mentions[i].spec.count.n == 1;
             let room_m = room_m(other.spec.class, mentions[i].spec.class);
             let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
             if let (Some(far), true, R::Behind | R::Following) =
@@ -131,6 +134,44 @@ fn crosses(m: &mut Mention) {
         m.spec
             .relations
             .retain(|r| !(matches!(r.relation, R::LeftOf | R::RightOf) && r.anchor == Anchor::Ego));
+    }
+}
+
+/// "the street is full of people: eight on the left pavement": who is on a strip of the road is not just on the road.
+fn on_its_lane(m: &mut Mention) {
+    let strip = m.spec.relations.iter().any(|r| {
+        matches!(r.relation, R::On | R::ParkedOn)
+            && matches!(r.anchor, Anchor::Lane(role) if role != LaneRole::Road)
+    });
+    if strip {
+        m.spec
+            .relations
+            .retain(|r| !(r.relation == R::On && r.anchor == Anchor::Lane(LaneRole::Road)));
+    }
+}
+
+/// "a van stands at the right kerb, and its driver walks to it along the pavement": along the right one.
+fn pavement_beside(mentions: &mut [Mention], i: usize) {
+    let m = &mentions[i];
+    let side = m.spec.relations.iter().find_map(|r| {
+        let near = matches!(r.relation, R::NextTo | R::Near | R::Facing);
+        let Anchor::Object(k) = r.anchor else {
+            return None;
+        };
+        let other = mentions.get(k).filter(|_| near)?;
+        other.spec.relations.iter().find_map(|o| match o.anchor {
+            Anchor::Lane(LaneRole::RightRoadside | LaneRole::RightSidewalk) => Some(LaneRole::RightSidewalk),
+            Anchor::Lane(LaneRole::LeftRoadside | LaneRole::LeftSidewalk) => Some(LaneRole::LeftSidewalk),
+            _ => None,
+        })
+    });
+    let Some(side) = side else {
+        return;
+    };
+    for r in &mut mentions[i].spec.relations {
+        if r.relation == R::On && r.anchor == Anchor::Lane(LaneRole::Sidewalk) {
+            r.anchor = Anchor::Lane(side);
+        }
     }
 }
 
@@ -338,7 +379,16 @@ fn same_way(m: &Mention, other: &Mention) -> Option<Stated> {
             || is_lane(r.anchor)
     });
     let still = matches!(m.spec.state, Some(ObjectState::Parked | ObjectState::Waiting));
-    let way = other.spec.relations.iter().find(ways)?;
+    // "in the oncoming lane a bus, and after it two cars": in that lane
+    let lane = |r: &&Stated| {
+        r.relation == R::On
+            && matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+    };
+    let mut theirs = other.spec.relations.iter();
+    let way = theirs.clone().find(ways).or_else(|| theirs.find(lane))?;
     (drives(m) && drives(other) && !told && !still).then_some(Stated {
         distance_m: None,
         ..*way

@@ -1,9 +1,11 @@
 //! The lexicon: what a run of words may mean, longest first, and the nearest word for a slip of the pen.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::hash::BuildHasherDefault;
 use std::sync::LazyLock;
 
 use super::description::{Anchor, Count, Density, Environment, Road, TimeOfDay, Weather};
+use super::fnv::Fnv;
 use super::words::objects::{self, NOUNS, Noun};
 use super::words::{edits, phrases, places, style, verbs};
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
@@ -102,7 +104,7 @@ pub enum Sense {
 /// Longest run of words in the lexicon.
 pub const LONGEST: usize = 10;
 
-type Table = HashMap<String, Sense>;
+type Table = HashMap<String, Sense, BuildHasherDefault<Fnv>>;
 
 fn words(list: &'static str) -> impl Iterator<Item = &'static str> {
     list.split('|').map(str::trim).filter(|w| !w.is_empty())
@@ -122,8 +124,11 @@ pub fn plural(word: &str) -> String {
 
 static TABLE: LazyLock<Table> = LazyLock::new(build);
 
+/// Room for all entries: a table that grows moves them again and again.
+const ENTRIES: usize = 70_000;
+
 fn build() -> Table {
-    let mut t = Table::new();
+    let mut t = Table::with_capacity_and_hasher(ENTRIES, BuildHasherDefault::default());
     // What comes first stays: more telling senses before small words.
     let mut put = |word: &str, sense: Sense| {
         if word.split(' ').count() <= LONGEST {
@@ -288,16 +293,12 @@ fn build() -> Table {
     for (relation, anchor, list) in places::FIXED {
         words(list).for_each(|w| put(w, Sense::Fixed(*relation, *anchor)));
     }
+    let alone: HashSet<&str> = places::EGO_RELATIONS.iter().flat_map(|(_, l)| words(l)).collect();
     for (relation, list) in places::RELATIONS {
-        words(list).for_each(|w| {
-            // "behind" may stand alone.
-            let alone = places::EGO_RELATIONS
-                .iter()
-                .any(|(_, l)| words(l).any(|x| x == w));
-            if !alone {
-                put(w, Sense::Rel(*relation));
-            }
-        });
+        // "behind" may stand alone.
+        words(list)
+            .filter(|w| !alone.contains(w))
+            .for_each(|w| put(w, Sense::Rel(*relation)));
     }
     for (relations, list) in places::CLOSE {
         words(list).for_each(|w| put(w, Sense::EgoRel(relations)));

@@ -24,6 +24,53 @@ const MULTIPLES: [(f64, &str); 4] = [
     ),
 ];
 
+/// "another 12 m further on": so much more than was named last.
+pub(super) fn farther_by(sentence: &[Token], before: &[Token]) -> Vec<Token> {
+    const MORE: &str = "another|a further|a good|yet another";
+    const ON: &str = "further on|farther on|further ahead|farther ahead|further up|further along|beyond that|beyond|on|further|farther|further down|further down the road|further up the road";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let said: Vec<&Token> = before.iter().chain(&out).collect();
+        let last = said
+            .windows(2)
+            .rposition(|w| number(w[0]).is_some() && is_unit(w[1]))
+            .and_then(|k| Some((k, number(said[k])?)));
+        let more = begins(&sentence[i..], MORE).filter(|n| sentence.get(i + n + 1).is_some_and(is_unit));
+        let found = more.zip(last).and_then(|(n, (k, first))| {
+            let metres = number(sentence.get(i + n)?)?;
+            let on = begins(&sentence[i + n + 2..], ON)?;
+            // ("12 m further on than the bus" says from where)
+            let free = sentence
+                .get(i + n + 2 + on)
+                .is_none_or(|t| t.kind != TokenKind::Word || matches!(t.text.as_str(), "in" | "and" | "is" | "a"));
+            let way = said[k + 2..].iter().take(2).find_map(|t| match t.text.as_str() {
+                "behind" => Some("behind"),
+                "ahead" | "in" => Some("ahead of"),
+                _ => None,
+            });
+            free.then_some((n + 2 + on, first + metres, way.unwrap_or("ahead of")))
+        });
+        match found {
+            Some((n, metres, way)) => {
+                out.push(digits(metres, &sentence[i]));
+                out.push(sentence[i + n - 1].clone());
+                if let Some(unit) = out.last_mut() {
+                    unit.text = "m".into();
+                    unit.kind = TokenKind::Word;
+                }
+                out.extend(way.split(' ').chain(["me"]).map(|w| super::wording::word(w, &sentence[i])));
+                i += n;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
 /// "the same distance behind me": as many metres as were named last.
 pub(super) fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> {
     const SAME: &str = "the same distance|at the same distance|the very same distance|at an equal distance|an equal distance|just as far|equally far|as far again|the same number of metres|as many metres|that same distance";

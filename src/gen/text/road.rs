@@ -6,7 +6,7 @@ use super::to_graph::roles;
 use crate::generation::world::draw::hash;
 use crate::generation::world::template;
 use crate::scene::graph::{LaneRole, NodeKind, ObjectState, RelationKind, SceneGraph};
-use crate::scene::{BevLayer, BevLayout};
+use crate::scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A chosen road.
 #[derive(Clone, Debug)]
@@ -62,6 +62,11 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         let Some(layout) = template::layout(name, hash(seed ^ (k << 40)).wrapping_add(seed)) else {
             continue;
         };
+        let layout = if d.road.no_crossing {
+            without_crossings(&layout)
+        } else {
+            layout
+        };
         let (missing, wishes) = judge(d, &needs, junction, parked, graph.nodes.len(), &layout);
         let cost = missing.len() * 10 + wishes;
         if best.as_ref().is_none_or(|(c, _)| cost < *c) {
@@ -87,6 +92,19 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         },
         |b| b.1,
     )
+}
+
+/// The same road with no stripes painted on it.
+fn without_crossings(layout: &BevLayout) -> BevLayout {
+    let stripes = BevLayer::PedCrossing.bit();
+    let cells = layout.cells().iter().map(|c| c & !stripes).collect();
+    let lines = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind != PolylineKind::PedCrossing)
+        .cloned()
+        .collect();
+    BevLayout::from_cells(cells, lines).unwrap_or_else(|_| layout.clone())
 }
 
 /// What a layout lacks for a description, in words.

@@ -156,11 +156,9 @@ impl Gather<'_, '_> {
         let from = self.out.len();
         self.cells(lot, 2, |_| 0.0);
         for i in from..self.out.len() {
-            let lane = self.map.nearest(self.out[i].p).map_or(0.0, |l| l.dir.to_angle());
-            let beside = self
-                .map
-                .nearest(self.out[i].p)
-                .is_some_and(|l| l.p.distance(self.out[i].p) < 6.5);
+            let nearest = self.map.nearest(self.out[i].p);
+            let lane = nearest.map_or(0.0, |l| l.dir.to_angle());
+            let beside = nearest.is_some_and(|l| l.p.distance(self.out[i].p) < 6.5);
             let turn = if beside {
                 0.0
             } else {

@@ -91,6 +91,14 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
             if n > 1 && words.ends_with(" across") && word(i + n) == Some("from") {
                 return None;
             }
+            // "in our lane ahead of us"
+            if n > 1
+                && words.ends_with(" ahead")
+                && matches!(sense, Sense::Place(..))
+                && word(i + n) == Some("of")
+            {
+                return None;
+            }
             // "on the left" must not tear "left lane" apart.
             let torn = n > 1
                 && !is_place_like(sense)
@@ -211,12 +219,40 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                 }) && !next.is_some_and(|n| {
                     matches!(
                         n.tag,
-                        Tag::Is(Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_))
+                        Tag::Is(
+                            Sense::Place(..) | Sense::RoadKind(..) | Sense::Width(_) | Sense::Environment(_)
+                        )
                     )
                 }) =>
             {
                 out.push(Item {
                     tag: Tag::Is(Sense::Filler),
+                    ..item.clone()
+                });
+            }
+            // "is walking back to it": towards it
+            ("back to", Tag::Is(Sense::Rel(_)))
+                if before.is_some_and(|b| {
+                    matches!(b.tag, Tag::Is(Sense::State(crate::scene::graph::ObjectState::Moving, _)))
+                }) =>
+            {
+                out.push(Item {
+                    tag: look_up("walking towards").map_or(Tag::Unknown, Tag::Is),
+                    ..item.clone()
+                });
+            }
+            // "barriers close the oncoming lane"
+            ("close", _)
+                if next.is_some_and(|n| {
+                    n.tag == Tag::Is(Sense::Article(true)) || matches!(n.words.as_str(), "my" | "our")
+                }) && after_next.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Place(..))))
+                    || next.is_some_and(|n| {
+                        (n.words.starts_with("my ") || n.words.starts_with("our "))
+                            && matches!(n.tag, Tag::Is(Sense::Place(..)))
+                    }) && item.words == "close" =>
+            {
+                out.push(Item {
+                    tag: look_up("closing").map_or(Tag::Unknown, Tag::Is),
                     ..item.clone()
                 });
             }

@@ -4,7 +4,7 @@
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 
-const TITLES: &str = "test|case|scenario|scene|item|exercise|example|situation|drill|check|demo|task|entry|title|setup|recipe|variation|variant|question|lesson|clip|frame|experiment|trial|recording|sequence|snippet|story|report|notes|note|topic|subject|theme|manoeuvre|maneuver|validation|evaluation|catalogue|catalog|assessment|simulation|benchmark";
+const TITLES: &str = "test|case|scenario|scene|item|exercise|example|situation|drill|check|demo|task|entry|title|setup|recipe|variation|variant|question|lesson|clip|frame|experiment|trial|recording|sequence|snippet|story|report|notes|note|topic|subject|theme|manoeuvre|maneuver|validation|evaluation|catalogue|catalog|assessment|simulation|benchmark|actors|actor|participants|objects|entities|agents|preconditions|elements|contents|props|cast|players|parameters|setting|conditions|inventory";
 
 fn is_title(t: &Token) -> bool {
     TITLES.split('|').any(|w| w == t.text)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::description::{Anchor, Density, Description};
+use super::description::{Anchor, Density, Description, ObjectSpec, Stated};
 use super::finish::MOST_OF_ONE;
 use crate::generation::world::draw::Draw;
 use crate::scene::Class;
@@ -131,12 +131,30 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                     from,
                     to,
                     and,
-                    distance_m: r.distance_m.map(|d| d.min(1e6)),
+                    distance_m: r.distance_m.map(|d| (d + in_line_m(o, r, k)).min(1e6)),
                 });
             }
         }
     }
     out
+}
+
+/// How much farther off than the first the next of a group is: two cars so far ahead in one lane stand one behind the other.
+fn in_line_m(o: &ObjectSpec, r: &Stated, k: usize) -> f64 {
+    const GAP_M: f64 = 2.5;
+    let along = matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind);
+    let lane = o.relations.iter().any(|r| {
+        r.relation == RelationKind::On
+            && matches!(
+                r.anchor,
+                Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming)
+            )
+    });
+    if k == 0 || !along || !lane || !o.class.is_vehicle() {
+        return 0.0;
+    }
+    let length = o.size_m.or(o.class.typical_size_m()).map_or(5.0, |s| s[0]);
+    k as f64 * (length + GAP_M)
 }
 
 /// What a busy scene holds beside what was named: classes that were named or denied stay as they were said.

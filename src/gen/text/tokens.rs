@@ -89,6 +89,22 @@ fn plain(word: &str) -> Option<&'static str> {
     })
 }
 
+/// Words that a full stop shortens.
+fn shortened(word: &str) -> bool {
+    matches!(
+        word,
+        "ped" | "peds" | "veh" | "approx" | "appr" | "ca" | "min" | "max" | "incl" | "excl" | "opp" | "dist"
+            | "mtr" | "mtrs" | "nos" | "resp" | "eg" | "ie" | "vs" | "pcs" | "pc" | "nr" | "cyc" | "constr"
+    )
+}
+
+/// True if the sentence goes on: with a small letter, a digit or a comma.
+fn goes_on(rest: &[(usize, char)]) -> bool {
+    let next = rest.iter().map(|c| c.1).find(|c| *c != ' ');
+    next.is_some_and(|c| c.is_lowercase() || c.is_ascii_digit() || c == ',')
+        && rest.first().is_some_and(|c| c.1 != '\n')
+}
+
 /// Splits a prompt. Hyphens and underscores part words; `20m` is a number and a word; `2x` a number.
 pub fn tokens(prompt: &str) -> Vec<Token> {
     let chars: Vec<(usize, char)> = prompt.char_indices().take_while(|(i, _)| *i < LONGEST).collect();
@@ -97,10 +113,12 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             .get(i)
             .map_or(chars.last().map_or(0, |(at, c)| at + c.len_utf8()), |c| c.0)
     };
+    let signs = chars.iter().any(|(_, c)| *c == '+');
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < chars.len() {
         let c = chars[i].1;
+        let short = out.last().is_some_and(|t| shortened(&t.text));
         let mut j = i + 1;
         let digit = |k: usize| chars.get(k).is_some_and(|(_, c)| c.is_ascii_digit());
         let mut push = |kind, text: String, i: usize, j: usize| {
@@ -181,7 +199,9 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
             }
         } else {
             match c {
-                ',' | '，' | '、' | '&' | '+' => push(TokenKind::Comma, ",".into(), i, j),
+                ',' | '，' | '、' | '&' => push(TokenKind::Comma, ",".into(), i, j),
+                '+' => push(TokenKind::Comma, "+".into(), i, j),
+                '.' if short && goes_on(&chars[j..]) => {}
                 '.' | ';' | '!' | '?' | '\n' | '。' | '！' | '？' => {
                     push(TokenKind::Stop, ".".into(), i, j)
                 }
@@ -194,7 +214,9 @@ pub fn tokens(prompt: &str) -> Vec<Token> {
                     // Between spaces it parts clauses, inside a word it parts words.
                     let spaced =
                         i > 0 && chars[i - 1].1 == ' ' && chars.get(i + 1).is_some_and(|c| c.1 == ' ');
-                    if spaced {
+                    // "+ 2 cars\n- pedestrians": a sign
+                    let sign = signs && (i == 0 || matches!(chars[i - 1].1, '\n' | ' ' | ','));
+                    if spaced || sign {
                         push(TokenKind::Mark, "-".into(), i, j);
                     }
                 }

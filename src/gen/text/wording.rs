@@ -110,7 +110,7 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         out.extend(without_aim(&without_purpose(&super::titles::without(sentence))));
     }
-    let out = super::inverted::ordered(&super::ellipsis::filled(&out));
+    let out = super::inverted::ordered(&super::ellipsis::filled(&super::shares::counted(&out)));
     let out = replaced(&out, FRAMES, "");
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");

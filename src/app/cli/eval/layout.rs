@@ -83,8 +83,20 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/strangers_12.jsonl"),
     ),
     (
+        "strangers_13.jsonl",
+        include_str!("../../../../tests/data/strangers_13.jsonl"),
+    ),
+    (
+        "exam_5.jsonl",
+        include_str!("../../../../tests/data/exam_5.jsonl"),
+    ),
+    (
         "causes.jsonl",
         include_str!("../../../../tests/data/causes.jsonl"),
+    ),
+    (
+        "causes_2.jsonl",
+        include_str!("../../../../tests/data/causes_2.jsonl"),
     ),
     (
         "variants.jsonl",
@@ -167,8 +179,12 @@ pub(super) struct Tally {
     drivable: (usize, usize),
     headings: (usize, usize),
     wall_s: Vec<f64>,
+    slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
 }
+
+/// How many of the slowest cases the report names.
+const SLOWEST: usize = 8;
 
 /// Share and the half width of its 95 % interval (Wilson), as text for the report.
 fn share(good: usize, n: usize) -> Value {
@@ -219,6 +235,9 @@ impl Tally {
     pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
         self.cases += 1;
         self.wall_s.push(wall_s);
+        self.slowest.push((wall_s, case.text.clone()));
+        self.slowest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        self.slowest.truncate(SLOWEST);
         let frame = scene.frame();
         let boxes: Vec<SceneBox> = frame.boxes.values().copied().collect();
         let judge = Judge {
@@ -282,6 +301,7 @@ impl Tally {
             "moving_headings_within_15_deg": share(self.headings.0, self.headings.1),
             "wall_s_median": median(&self.wall_s),
             "wall_s_max": self.wall_s.iter().copied().fold(0.0, f64::max),
+            "slowest": self.slowest.iter().map(|(wall_s, text)| json!({ "wall_s": wall_s, "text": text })).collect::<Vec<_>>(),
             "failed": self.failed,
         })
     }

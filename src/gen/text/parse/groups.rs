@@ -2,7 +2,7 @@
 
 use super::super::description::{Anchor, Count};
 use super::super::lexicon::Sense;
-use super::super::mention::{Pre, Prep};
+use super::super::mention::{Pre, Prep, apply};
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::{Parser, is_color};
@@ -125,6 +125,9 @@ impl Parser<'_> {
                 twin.spec.relations.clear();
                 twin.spec.span = span;
                 twin.spec.count = Count::exactly(1);
+                for frag in &self.fronted {
+                    apply(&mut twin.spec, frag);
+                }
                 self.mentions.push(twin);
                 let index = self.mentions.len() - 1;
                 self.flush();
@@ -140,7 +143,8 @@ impl Parser<'_> {
         let of_them = self.item(self.at + 1).is_some_and(|i| i.words.starts_with("of"))
             || self.items[self.at].words.ends_with("of them")
             || self.items[self.at].words.ends_with("of which");
-        if of_them && self.mentions[parent].uncounted && self.ends(self.at + 2) {
+        let open = self.mentions[parent].uncounted || !left.is_exact();
+        if of_them && open && (self.ends(self.at + 2) || !self.edits && count.n >= left.n && !all) {
             // "cones along the edge, six of them"
             self.mentions[parent].spec.count = count;
             self.mentions[parent].uncounted = false;
@@ -152,7 +156,7 @@ impl Parser<'_> {
             && !of_them
             && !other
             && !self.edits
-            && (self.enumerated || open_whole.is_none() && self.elsewhere(parent))
+            && (self.enumerated.is_some() || open_whole.is_none() && self.elsewhere(parent))
         {
             self.again(count, span);
             return;
@@ -162,10 +166,10 @@ impl Parser<'_> {
             && !self.edits
             && self.mentions[parent].uncounted
             && self.mentions[parent].bare
-            && self.mentions[parent].spec.relations.is_empty()
+            && (self.mentions[parent].spec.relations.is_empty() || self.after_mark())
         {
-            // "People: two on the left, ..." counts them one after another
-            self.enumerated = true;
+            // "People: two on the left, ...", "cars flank me: one on my left, ..." counts them one after another
+            self.enumerated = Some(parent);
             self.again(count, span);
             self.mentions[parent].gone = true;
             return;
@@ -209,6 +213,12 @@ impl Parser<'_> {
         self.last = vec![index];
         self.chain = false;
         self.pre = Pre::default();
+    }
+
+    /// True if a colon or a dash stands right before.
+    fn after_mark(&self) -> bool {
+        self.item(self.at.wrapping_sub(1))
+            .is_some_and(|b| b.tag == Tag::Mark && matches!(b.words.as_str(), ":" | "-" | "—" | "–" | "("))
     }
 
     /// A verb in the singular after those that something has speaks of what has them.

@@ -61,7 +61,9 @@ impl Parser<'_> {
             .iter()
             .any(|a| a.rsplit(' ').next().is_some_and(|n| n.parse::<u8>().is_ok()));
         let fits = m.classes.contains(&noun.classes[0]) && noun.classes.len() == 1;
-        if !(named || m.definite) || !fits {
+        // "suspect vehicle, a van, parked on the left"
+        let sort = m.bare && !m.plural && m.classes.len() > 1;
+        if !(named || m.definite || sort) || !fits {
             return false;
         }
         m.classes = noun.classes;

@@ -74,7 +74,8 @@ pub(super) struct Parser<'a> {
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
     sentence: usize,                       // the first mention of the sentence
-    enumerated: bool,                      // "People: two on the left, ..." counts them one after another
+    pub(super) alike: Option<usize>, // "so is the bus": what the next noun is like
+    pub(super) enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
     front: Option<Anchor>,                 // what a place at the head of a clause was of
     pair: Vec<usize>,                      // the two of "between a van and a lorry"
     with: bool,
@@ -137,7 +138,8 @@ impl<'a> Parser<'a> {
             last_place: None,
             whole: None,
             sentence: 0,
-            enumerated: false,
+            alike: None,
+            enumerated: None,
             front: None,
             pair: Vec::new(),
             with: false,
@@ -190,7 +192,7 @@ impl<'a> Parser<'a> {
         match item.tag {
             Tag::Stop => {
                 self.ego_topic = false;
-                self.enumerated = false;
+                self.enumerated = None;
                 self.sentence = self.mentions.len();
                 self.order = None;
                 self.end_clause();
@@ -220,6 +222,8 @@ impl<'a> Parser<'a> {
                     });
                 }
                 if item.words == ":" {
+                    // "we would like this: ..." is not about us
+                    self.ego_subject &= !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
                     self.heading();
                 }
                 self.flush();
@@ -315,6 +319,7 @@ impl<'a> Parser<'a> {
                 if matches!(self.sense(self.at.wrapping_sub(back)), Some(Sense::Noun(..)))
                     && !self.noun_ahead(self.at + 1)
                     && (1.0..1000.0).contains(&v)
+                    && (back == 1 || self.ends(self.at + 1))
                     && let Some(&i) = self.last.last()
                     && self.mentions[i].uncounted
                 {

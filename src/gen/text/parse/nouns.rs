@@ -85,11 +85,13 @@ impl Parser<'_> {
             .filter_map(|a| a.strip_prefix('\u{1}').map(str::to_string))
             .collect();
         pre.attributes.retain(|a| !a.starts_with('\u{1}'));
+        let only = usize::from(self.item(self.at + 1).is_some_and(|i| i.words == "only"));
         if word == "traffic"
-            && matches!(self.item(self.at + 1).map(|i| i.tag), Some(Tag::Mark))
-            && self.noun_ahead(self.at + 2)
+            && matches!(self.item(self.at + 1 + only).map(|i| i.tag), Some(Tag::Mark))
+            && self.noun_ahead(self.at + 2 + only)
         {
             // "oncoming traffic: two coaches" names them itself.
+            self.new_clause();
             for kinds in &wheres {
                 let kinds = RelationKind::ALL
                     .into_iter()
@@ -104,6 +106,26 @@ impl Parser<'_> {
                 });
             }
             return;
+        }
+        // "two vans, and their drivers stand behind them": one each
+        // "a couple with a pushchair": theirs, and nobody more
+        let carried = noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
+        if carried
+            && !self.edits
+            && self.last.first().is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
+        {
+            self.with = false;
+            return;
+        }
+        let theirs = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "their" | "whose"));
+        if theirs && plural && pre.count.is_none() && matches!(word, "drivers" | "owners" | "operators") && !self.edits {
+            let hosts = if self.head.is_empty() { &self.before } else { &self.head };
+            let vehicles = hosts.iter().map(|i| &self.mentions[*i].spec);
+            let driven = vehicles.filter(|s| s.class.is_vehicle() && s.count.is_exact());
+            let many: u32 = driven.map(|s| s.count.n).sum();
+            pre.count = (many > 0).then(|| Count::exactly(many));
         }
         let some_one = !plural
             && noun.several == 1
@@ -280,6 +302,13 @@ impl Parser<'_> {
         }
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
+        }
+        if let Some(like) = self.alike.take().filter(|k| *k != index) {
+            let other = self.mentions[like].spec.clone();
+            let spec = &mut self.mentions[index].spec;
+            spec.state = spec.state.or(other.state);
+            let theirs = other.relations.into_iter().filter(|r| r.anchor != Anchor::Object(index));
+            spec.relations.extend(theirs);
         }
         if !old {
             self.next_in_order(index);

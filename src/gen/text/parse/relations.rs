@@ -2,6 +2,8 @@
 
 use super::super::description::Anchor;
 use super::super::mention::{Frag, Pre, Prep, apply};
+use super::super::lexicon::Sense;
+use super::super::tag::Tag;
 use super::super::tokens::Span;
 use super::{Parser, Pending};
 use crate::scene::Class;
@@ -105,7 +107,11 @@ impl Parser<'_> {
             return;
         }
         // "behind a bus that comes towards us, two cars": the bus comes
-        let of_front = match self.fronted.last().map(|f| f.anchor) {
+        let of_front = match self.fronted.last().map(|f| match (f.anchor, f.and) {
+            // "between us and the bus, which is 30 m ahead": the bus is
+            (Anchor::Ego, Some(and)) if self.relative => and,
+            (anchor, _) => anchor,
+        }) {
             Some(Anchor::Object(i))
                 if self.head.is_empty() && !p.fresh && !p.ego && frag.anchor != Anchor::Object(i) =>
             {
@@ -126,7 +132,14 @@ impl Parser<'_> {
             return;
         }
         let set_off = p.fresh && (p.anded || self.front.is_some()) && self.set_off();
+        // "20 m in front of me a car, 20 m behind me another one"
+        let another = !self.edits
+            && self.item(self.at + 1).is_some_and(|n| {
+                n.tag == Tag::Is(Sense::Part(false)) && (n.words.starts_with("another") || n.words.starts_with("a "))
+            })
+            && self.ends(self.at + 2);
         let new_noun = set_off
+            || another
             || self.noun_ahead(self.at + 1)
             || self.bare_number(self.at + 1)
             || self.inverted_ahead(self.at + 1);
@@ -170,6 +183,17 @@ impl Parser<'_> {
         } else {
             targets
         };
+        // "two oncoming cars and a man on the pavement": the man is
+        let walk = matches!(
+            frag.anchor,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+        );
+        let on_foot = |t: &usize| !self.mentions[*t].spec.class.is_vehicle();
+        let mixed = walk && !self.edits && targets.iter().any(on_foot);
+        let targets: Vec<usize> = targets
+            .into_iter()
+            .filter(|t| !mixed || on_foot(t) || self.mentions[*t].spec.relations.is_empty())
+            .collect();
         let own = |t: &usize| {
             let me = Anchor::Object(*t);
             frag.anchor == me && frag.and.is_none()

@@ -65,6 +65,20 @@ impl<'a> Parser<'a> {
                 }
                 self.pre.cover(span);
             }
+            // "a cyclist has to swing out into the oncoming lane"
+            Sense::Verb(Verb::Move)
+                if !self.edits
+                    && !self.head.is_empty()
+                    && self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to") =>
+            {
+                return true;
+            }
+            // "the two cars in front of me move over to the right"
+            Sense::Verb(Verb::Move)
+                if !self.edits && !self.fresh && !self.last.is_empty() && self.pending.is_none() =>
+            {
+                self.state(ObjectState::Moving, true, false, item);
+            }
             Sense::Verb(verb) => {
                 // In a description, "remove all cars" means that there are none, other verbs add nothing.
                 self.flush();

@@ -6,6 +6,7 @@ use super::super::lexicon::Sense;
 use super::super::mention::Prep;
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
+use super::super::words::edits::Verb;
 use super::Parser;
 use crate::scene::graph::{LaneRole as L, RelationKind as R};
 
@@ -59,10 +60,22 @@ impl Parser<'_> {
     /// "cones on either side, three on the left and three on the right", "cars on both sides, two on each": the parts say
     /// how many. True if it was that.
     pub(super) fn part_by_side(&mut self, count: Count, span: Span) -> bool {
-        let group = (0..self.mentions.len()).rev().find(|i| {
+        // "four parked cars, two on each side"
+        let twice = |i: &usize| {
             let m = &self.mentions[*i];
-            m.both.is_some() && !m.is_anchor && (m.plural || m.gone)
-        });
+            let each = matches!(self.sense(self.at + 1), Some(Sense::BothSides(true)));
+            each && count.is_exact() && !m.gone && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
+        };
+        let last = (0..self.mentions.len())
+            .rev()
+            .find(|i| !self.mentions[*i].is_anchor && self.mentions[*i].plural && !self.mentions[*i].gone);
+        let group = (0..self.mentions.len())
+            .rev()
+            .find(|i| {
+                let m = &self.mentions[*i];
+                m.both.is_some() && !m.is_anchor && (m.plural || m.gone)
+            })
+            .or(last.filter(twice));
         let Some(group) = group.filter(|_| !self.edits && self.pending.is_none()) else {
             return false;
         };
@@ -167,7 +180,8 @@ impl Parser<'_> {
         }
         let word = |k: usize| k.checked_sub(1).and_then(|i| self.item(i));
         let over = word(k).is_some_and(|b| matches!(b.words.as_str(), "to" | "onto"))
-            && word(k - 1).is_some_and(|b| matches!(b.tag, Tag::Is(Sense::State(..))));
+            && word(k.saturating_sub(1))
+                .is_some_and(|b| matches!(b.tag, Tag::Is(Sense::State(..) | Sense::Verb(Verb::Move))));
         if place && over && !self.last.is_empty() && !self.edits {
             return true;
         }

@@ -23,19 +23,49 @@ impl Parser<'_> {
             }
             "is" | "was" if self.pending.is_none() => self.back_to_host(),
             // "the left lane has two cars in it"
-            "with" | "has" | "have" | "having" | "holds" | "contains" if self.place_has(item) => {}
+            "with" | "has" | "have" | "having" | "holds" | "contains" | "contains only" | "has only"
+            | "holds only" | "with only"
+                if self.place_has(item) => {}
             // "my lane has been closed off by cones"
             "has" | "have"
                 if self
                     .item(self.at + 1)
                     .is_some_and(|n| n.words.starts_with("been")) => {}
             "with" | "has" | "have" | "having" => {
+                // "two cars and a man with his back to us": the man has
+                let own = self
+                    .item(self.at + 1)
+                    .is_some_and(|n| matches!(n.words.split(' ').next(), Some("his" | "her" | "its")));
+                if own && item.words == "with" && self.last.len() > 1 && !self.edits {
+                    self.last.drain(..self.last.len() - 1);
+                    self.head.clone_from(&self.last);
+                    self.chain = false;
+                }
                 self.with = true;
                 self.topic = None;
+            }
+            // "a street on which two cars are parked" sets the stage
+            "which"
+                if !self.edits
+                    && self.mentions.is_empty()
+                    && self.last_place.is_none()
+                    && self
+                        .pending
+                        .as_ref()
+                        .is_some_and(|p| p.first.is_none() && matches!(p.prep, Prep::In | Prep::At)) =>
+            {
+                self.pending = None;
+                self.soft_end();
             }
             // "a bus, behind which two cars wait"
             "which" | "who" | "whom"
                 if self.pending.as_ref().is_some_and(|p| p.first.is_none())
+                    // "a bus at a zebra on which two children walk": on the zebra
+                    && !(self.last_place.is_some()
+                        && matches!(
+                            self.at.checked_sub(2).and_then(|i| self.sense(i)),
+                            Some(Sense::Place(..) | Sense::Fixed(..))
+                        ))
                     && self.last.first().or(self.head.first()).is_some() =>
             {
                 let host = self.last.first().or(self.head.first()).copied();
@@ -101,7 +131,7 @@ impl Parser<'_> {
                 self.end_list();
             }
             // "... obstructs the crossing; four people wait there"
-            "there" | "over there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
+            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
                 self.there(span)
             }
             // "on both pavements stand three people each"
@@ -120,6 +150,12 @@ impl Parser<'_> {
                 for i in self.last.clone() {
                     self.mentions[i].spec.attributes.push("each".into());
                 }
+            }
+            // "the truck is parked, and so is the bus"
+            "soistoo" => {
+                let like = self.head.first().or(self.before.first()).copied();
+                self.soft_end();
+                self.alike = like;
             }
             "nearfirst" | "farfirst" => self.ordered_by(&item.words),
             // "a fire engine is behind me, so both cars have pulled over"

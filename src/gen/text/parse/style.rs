@@ -2,6 +2,7 @@
 
 use super::super::description::{Anchor, Became, Environment, Road, TimeOfDay, Weather};
 use super::super::mention::{Pre, Prep};
+use super::super::lexicon::Sense;
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::Parser;
@@ -110,6 +111,8 @@ impl Parser<'_> {
         if self.pending.is_some() {
             let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty());
             let next_noun = self.noun_ahead(self.at + 1)
+                // "in our lane ahead of us is a truck"
+                || self.inverted_ahead(self.at + 1)
                 || matches!(
                     self.item(self.at + 1).map(|i| i.tag),
                     Some(Tag::Comma | Tag::Mark)
@@ -150,6 +153,23 @@ impl Parser<'_> {
                 super::super::tag::Tag::Comma | super::super::tag::Tag::Mark
             )
         });
+        // "left lane one car, right lane two trucks"
+        let fresh = matches!(
+            self.item(self.at + 1).map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(false) | Sense::Count(_)))
+        ) && !matches!(self.sense(self.at + 2), Some(Sense::Unit(_)));
+        let told = !matches!(anchor, Anchor::Lane(LaneRole::Road) | Anchor::Junction);
+        if (opened || self.item(self.at.wrapping_sub(1)).is_none_or(|b| b.tag == Tag::Stop))
+            && !self.edits
+            && fresh
+            && told
+            && self.noun_ahead(self.at + 1)
+        {
+            self.new_clause();
+            self.begin(Prep::In, span);
+            self.anchor(anchor, span);
+            return;
+        }
         if opened
             && self.ends(self.at + 1)
             && !self.head.is_empty()
