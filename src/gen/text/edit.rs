@@ -152,7 +152,15 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     // Sentence by sentence: what is there when one is read is what those before have left.
     let mut reader = Reader::new(text);
     let mut done = 0;
-    while let Some(commands) = reader.next(&editor.map, &editor.boxes, &editor.last) {
+    while let Some(mut commands) = reader.next(&editor.map, &editor.boxes, &editor.last) {
+        // "keep the bus and remove the cars": among other commands that only says what stays
+        let others = commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
+        for c in commands.iter_mut().filter(|c| c.verb == Verb::Keep && others) {
+            let counted = c.change.is_some() || c.targets.iter().any(|t| !t.uncounted);
+            if !c.only && !counted && !c.targets.is_empty() {
+                c.verb = Verb::Note;
+            }
+        }
         for command in commands {
             if done < MOST_COMMANDS {
                 editor.read_command(text, done, &command);
@@ -271,6 +279,24 @@ impl Editor<'_> {
                 }
             }
             Verb::Add => {
+                // what is there and was only named is not added
+                let named = |m: &Mention| m.definite && m.pick != Some(Pick::More) && !m.is_anchor
+                    || m.uncounted && super::mention::means_all(m);
+                let theirs = ["their ", "his ", "her ", "its "].iter().any(|w| c.text.to_lowercase().starts_with(w));
+                let text = c.text.to_lowercase();
+                let orders = [
+                    "add", "insert", "include", "create", "generate", "spawn", "append", "duplicate", "introduce", "bring", "put",
+                    "place", "set", "park", "give", "draw", "show", "another", "more", "second", "extra",
+                ];
+                let ordered = text.split(|ch: char| !ch.is_alphanumeric()).any(|w| orders.contains(&w));
+                let there = |m: &Mention| {
+                    m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
+                };
+                let again = !ordered && !c.in_place && c.targets.iter().all(there);
+                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || c.targets.iter().all(named)) {
+                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                    return (!done.is_empty()).then(|| done.join(", "));
+                }
                 let d = &c.reading.description;
                 let there: Vec<BoxId> = self.last.clone();
                 let there: Vec<BoxId> = there
@@ -355,6 +381,13 @@ impl Editor<'_> {
                 }
             }
             Verb::Make => {
+                // "the pickup has stopped for the night": it was spoken of
+                if let [only] = c.targets.as_slice()
+                    && c.nth.is_none()
+                    && let Chosen::These(ids) = choose(&self.map, &self.boxes, only, &c.mentions)
+                {
+                    self.last = ids;
+                }
                 if done.is_empty() && !self.make(c) {
                     self.note(format!("{:?}: what it should become was not understood", c.text));
                 } else if done.is_empty() {

@@ -213,6 +213,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             Tag::Is(Sense::Rel(_) | Sense::EgoRel(_) | Sense::In | Sense::At | Sense::FarSide)
         )
     });
+    let given = verb;
     let mut verb = match verb {
         None if only => Verb::Keep,
         None if there_already && placed => Verb::Move,
@@ -245,7 +246,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         Some(Verb::Add) if definite_next && matches!(first, "drop") => Verb::Remove,
         Some(v) => v,
     };
+    let implied = given.is_none();
     let mut c = Command::new(verb, text, span);
+    c.implied = implied;
+    c.only = only || tokens.iter().take(3).any(|t| matches!(t.text.as_str(), "only" | "just" | "exactly"));
     c.state = match first {
         "stop" | "halt" => Some(ObjectState::Waiting),
         "park" => Some(ObjectState::Parked),

@@ -9,7 +9,7 @@ use super::holds::{overlap_m, role_of};
 use super::rephrase::Change;
 use super::select::{Chosen, choose};
 use crate::scene::graph::RelationKind;
-use crate::scene::{BoxId, SceneBox};
+use crate::scene::{BoxId, Class, SceneBox};
 
 impl Editor<'_> {
     pub(super) fn take_absent(&mut self, d: &Description) {
@@ -37,13 +37,36 @@ impl Editor<'_> {
             .for_each(|id| self.push(TextEdit::Remove { id: *id }));
     }
 
+    /// The boxes that a mention fits, children apart from adults where the scene has both.
+    fn those_meant(&self, m: &super::mention::Mention, c: &Command) -> Vec<BoxId> {
+        let mut m = m.clone();
+        // (people at a place are counted there, walking or not)
+        if m.spec.class == Class::Pedestrian && !m.spec.relations.is_empty() {
+            m.spec.state = None;
+        }
+        let m = &m;
+        let ids = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
+        let boxes: Vec<SceneBox> = ids.iter().map(|id| self.boxes[id]).collect();
+        super::select::of_size(&boxes, &m.spec.noun, m.spec.size_m)
+            .iter()
+            .map(|b| b.id)
+            .collect()
+    }
+
     /// "only two cars": removes the farthest or adds.
     pub(super) fn keep(&mut self, c: &Command) {
-        // "keep only the van and the woman"
-        let named = |m: &super::mention::Mention| m.definite && !m.plural;
+        if c.change.is_none() && c.targets.iter().any(super::mention::means_all) {
+            return; // "keep everything"
+        }
+        // "keep only the van and the woman", "keep only the cars and the cones"
+        let named = |m: &super::mention::Mention| m.definite || m.uncounted && m.plural;
         if c.change.is_none() && c.targets.len() > 1 && c.targets.iter().any(named) {
             let mut stay = Vec::new();
             for m in &c.targets {
+                if m.uncounted && m.plural {
+                    stay.extend(self.those_meant(m, c));
+                    continue;
+                }
                 match choose(&self.map, &self.boxes, m, &c.mentions) {
                     Chosen::These(ids) => stay.extend(ids),
                     _ => {
@@ -55,8 +78,15 @@ impl Editor<'_> {
             self.keep_only(&stay);
             return;
         }
+        // all else goes only where that is said: "only the bus", "keep the bus"
+        let said = c.text.to_lowercase();
+        let said = said.trim_start_matches(|ch: char| !ch.is_alphabetic());
+        let keeps = c.only
+            || ["keep", "leave", "retain", "preserve", "save", "spare", "only", "just", "let", "stick"]
+                .iter()
+                .any(|w| said.starts_with(w) || said.contains(&format!(" {w} ")));
         for m in &c.targets {
-            let fitting = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
+            let fitting = self.those_meant(m, c);
             let wanted = match c.change {
                 Some(Change::Times(f)) => (fitting.len() as f64 * f).round() as usize,
                 Some(Change::Plus(n)) => (fitting.len() as i64 + n).max(0) as usize,
@@ -64,6 +94,10 @@ impl Editor<'_> {
             };
             if c.change.is_none() && m.definite && !m.plural {
                 // "keep only the bus"
+                if !keeps {
+                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                    continue;
+                }
                 match choose(&self.map, &self.boxes, m, &c.mentions) {
                     Chosen::These(ids) => self.keep_only(&ids),
                     _ => self.note(format!("{:?}: which is to stay was not clear", c.text)),
@@ -71,7 +105,11 @@ impl Editor<'_> {
                 continue;
             }
             if c.change.is_none() && m.uncounted && m.plural {
-                // "only cars", "keep the cars": everything else of its kind goes.
+                // "only cars", "keep the cars"; "raise the cars" says not how many
+                if !keeps {
+                    self.note(format!("{:?}: how many was not understood", c.text));
+                    continue;
+                }
                 self.keep_only(&fitting);
                 continue;
             }

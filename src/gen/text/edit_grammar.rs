@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Piece, Talk, except, said, worded};
+use super::said::{Piece, Talk, chosen, except, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -113,6 +113,10 @@ pub struct Command {
     pub except: Vec<Mention>,
     /// What is added stands where others were taken away.
     pub in_place: bool,
+    /// "only", "just": all else goes.
+    pub only: bool,
+    /// No verb was said.
+    pub implied: bool,
 }
 
 impl Command {
@@ -138,6 +142,8 @@ impl Command {
             back: None,
             except: Vec::new(),
             in_place: false,
+            only: false,
+            implied: false,
         }
     }
 
@@ -212,6 +218,13 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// True if no sentence is left.
+    pub(super) fn ended(&self) -> bool {
+        self.tokens[self.at.min(self.tokens.len())..]
+            .iter()
+            .all(|t| t.kind != TokenKind::Word)
+    }
+
     /// The commands of the next sentence; `None` at the end.
     pub(super) fn next(
         &mut self,
@@ -253,7 +266,7 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let whole = &super::said::spared(&self.tokens[from..end])[..];
+        let whole = &super::said::spared(&chosen(&self.tokens[from..end], &talk))[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();

@@ -103,7 +103,7 @@ pub fn exchanged(clause: &[Token]) -> Option<Vec<Token>> {
     if matches!(text(first), "substitute" | "swap")
         && clause
             .get(1)
-            .is_some_and(|t| matches!(text(t), "a" | "an" | "in") || number(t).is_some())
+            .is_some_and(|t| matches!(text(t), "a" | "an" | "in") || number(t).is_some() && text(t) != "both")
     {
         let k = clause.iter().position(|t| text(t) == "for")?;
         let new = if text(&clause[1]) == "in" {

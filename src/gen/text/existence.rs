@@ -4,7 +4,7 @@
 use super::exchange::{begins_with, trimmed};
 use super::said::lists::{HELPERS, NEGATED};
 use super::said::words::{first_noun, has_noun, led as command, number, text};
-use super::tokens::Token;
+use super::tokens::{Token, TokenKind};
 
 /// What there should be, or should not: "there ought to be four cones", "the street shouldn't have any taxis".
 pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
@@ -124,7 +124,21 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         "nobody" | "noone" => 1,
         _ => begins_with(clause, &["no", "one"]).then_some(2)?,
     };
-    let rest: Vec<Token> = clause[n..]
+    let clause_end = clause
+        .iter()
+        .position(|t| matches!(text(t), "any" | "anymore" | "here") || t.kind == TokenKind::Comma)
+        .unwrap_or(clause.len());
+    // "nobody cycles here any more": who cycles goes
+    let who = match clause.get(n).map(text) {
+        Some("cycles" | "cycle" | "bikes" | "pedals") => "remove all cyclists",
+        Some("drives" | "drive") => "remove all vehicles",
+        Some("parks" | "park") => "remove all parked vehicles",
+        _ => "remove all people",
+    };
+    if who != "remove all people" {
+        return Some(command(who, first, &[clause.get(n + 1..clause_end).unwrap_or(&[])]));
+    }
+    let rest: Vec<Token> = clause[n..clause_end.max(n)]
         .iter()
         .filter(|t| !HELPERS.contains(&text(t)))
         .cloned()

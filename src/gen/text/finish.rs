@@ -392,8 +392,11 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         .filter(|m| !m.gone && !works.contains(&m.spec.span))
         .map(|m| m.spec.class)
         .collect();
+    // (where two of the three are named, the list is complete)
+    let parts = [Class::TrafficCone, Class::Barrier, Class::ConstructionVehicle];
+    let listed = parts.iter().filter(|p| counted.contains(p)).count() > 1;
     for m in mentions.iter_mut() {
-        if works.contains(&m.spec.span) && counted.contains(&m.spec.class) {
+        if works.contains(&m.spec.span) && (listed || counted.contains(&m.spec.class)) {
             m.gone = true;
         }
     }

@@ -131,6 +131,11 @@ impl Mention {
     }
 }
 
+/// True for "everything" and the like.
+pub fn means_all(m: &Mention) -> bool {
+    m.classes.len() > 8
+}
+
 impl Mention {
     /// A person turns out to ride something of this class.
     pub fn mounts(&mut self, class: Class) {

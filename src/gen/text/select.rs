@@ -293,6 +293,18 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
             Pick::All | Pick::Any | Pick::More => f64::from(id.0),
         }
     };
+    // ("all the kids" spares the grown-ups)
+    let fit = match fit.len() {
+        0 | 1 => fit,
+        _ => {
+            let all: Vec<SceneBox> = fit.iter().map(|id| boxes[id]).collect();
+            let all = super::names::plainly(all, m);
+            of_size(&all, &m.spec.noun, m.spec.size_m)
+                .iter()
+                .map(|b| b.id)
+                .collect()
+        }
+    };
     if let Some(pick) = m.pick
         && pick != Pick::More
     {
@@ -305,17 +317,6 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         sorted.truncate(n.max(1));
         return Chosen::These(sorted);
     }
-    let fit = match fit.len() {
-        0 | 1 => fit,
-        _ => {
-            let all: Vec<SceneBox> = fit.iter().map(|id| boxes[id]).collect();
-            let all = super::names::plainly(all, m);
-            of_size(&all, &m.spec.noun, m.spec.size_m)
-                .iter()
-                .map(|b| b.id)
-                .collect()
-        }
-    };
     let n = m.spec.count.n as usize;
     if m.plural && m.uncounted {
         return Chosen::These(fit); // "remove the cars"

@@ -4,7 +4,28 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::Token;
 use super::Piece;
 use super::lists::HELPERS;
-use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, text};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text};
+
+/// "every vehicle apart from the one that follows us": the vehicle that does.
+pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], &["but", "except for", "except", "apart from", "save for", "other than", "save", "besides", "aside from", "bar"])?;
+        let m = leads(&tokens[i + n..], &["the one", "the ones", "those"])?;
+        let next = &tokens[i + n + m..];
+        (is(next.first(), &["that", "which", "who"]) || is_place(next)).then_some((i, i + n, m))
+    });
+    let Some((i, from, m)) = found else {
+        return tokens;
+    };
+    let all = tokens[..i].iter().rposition(|t| matches!(text(t), "all" | "every" | "each" | "any" | "both"));
+    let Some((a, b)) = all.and_then(|all| first_noun(&tokens[all..i]).map(|x| (all + x.0, all + x.1))) else {
+        return tokens;
+    };
+    let many = is(tokens.get(from + m - 1), &["ones", "those"]);
+    let noun = if many { tokens[a..b].to_vec() } else { super::topics::singular_of(&tokens[a..b]) };
+    let the = led("the", &tokens[from], &[&noun]);
+    [&tokens[..from], &the, &tokens[from + m..]].concat()
+}
 
 /// The sentence without an exception, and the noun phrase that was excepted.
 pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
@@ -45,14 +66,105 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let end = (from + noun..tokens.len())
         .find(|k| {
             let t = &tokens[*k];
+            // (the verb of "that follows us" is no end)
+            let relative = (1..3).any(|n| is(tokens.get(k.wrapping_sub(n)), &["that", "which", "who"]));
             t.kind != super::super::tokens::TokenKind::Word
-                || HELPERS.contains(&text(t))
-                || is_finite(text(t), true)
+                || !relative && (HELPERS.contains(&text(t)) || is_finite(text(t), true))
                 || matches!(text(t), "and" | "with" | "by" | "into" | "to" | "onto")
         })
         .unwrap_or(tokens.len());
     let rest = [&tokens[..i], &tokens[end..]].concat();
     has_noun(&rest).then(|| (rest, tokens[from..end].to_vec()))
+}
+
+/// "everything except the bus and the kids should disappear": only those stay.
+pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "but for",
+            "but",
+            "except for",
+            "except",
+            "apart from",
+            "other than",
+            "save for",
+            "save",
+            "besides",
+            "aside from",
+            "bar",
+            "with the exception of",
+            "excluding",
+        ],
+    )
+    .filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let from = i + n;
+    let before = &tokens[..i];
+    let Some(whole) = before
+        .iter()
+        .position(|t| matches!(text(t), "everything" | "everyone" | "everybody"))
+        .or_else(|| find(before, &["all objects", "all the objects", "all things", "all else"]).map(|x| x.0))
+    else {
+        return tokens;
+    };
+    let many = is(tokens.get(from), &["the", "my", "that", "those", "these", "both", "our"])
+        || tokens.get(from).is_some_and(|t| number(t).is_some());
+    if is(tokens.get(from), &["that"]) && is(tokens.get(from + 1), &["the", "a", "an", "it", "my", "all", "both"]) {
+        return tokens;
+    }
+    let others = first_noun(&before[..whole]).is_some()
+        || before[whole + 1..]
+            .iter()
+            .any(|t| matches!(look_up(text(t)), Some(Sense::Noun(..))) && !is(Some(t), &["objects", "things"]));
+    let goes = |t: &Token| {
+        is(
+            Some(t),
+            &[
+                "go", "goes", "gone", "disappear", "disappears", "vanish", "vanishes", "leave", "leaves", "removed",
+                "deleted", "erased", "away", "out", "off", "cleared",
+            ],
+        )
+    };
+    let close = (from..tokens.len())
+        .find(|k| {
+            let t = &tokens[*k];
+            HELPERS.contains(&text(t))
+                || goes(t)
+                || (is(Some(t), &["and"]) || t.kind != super::super::tokens::TokenKind::Word)
+                    && tokens.get(k + 1).is_some_and(super::super::rephrase::is_verb)
+        })
+        .unwrap_or(tokens.len());
+    let np = super::words::trimmed(&tokens[from..close]);
+    let gone = (close..tokens.len().min(close + 5)).rev().find(|k| goes(&tokens[*k]));
+    let removing = before[..whole].iter().any(super::super::rephrase::is_verb)
+        && (before.iter().any(goes)
+            || super::some_of::removes(before.first())
+            || before[..whole].iter().any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
+    // everybody but the child speaks of people alone
+    let people = is(tokens.get(whole), &["everyone", "everybody"]) && only_people(np);
+    if !many || others || people || first_noun(np).is_none() || !(gone.is_some() || removing) {
+        return tokens;
+    }
+    let end = gone.map_or(close, |g| g + 1);
+    led("keep only", &tokens[0], &[np, &tokens[end..]])
+}
+
+/// True if all that is named walks.
+fn only_people(np: &[Token]) -> bool {
+    let mut rest = np;
+    while let Some((a, b)) = first_noun(rest) {
+        let walks = matches!(
+            super::words::longest(&rest[a..b]).map(|l| l.0),
+            Some(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian
+        );
+        if !walks {
+            return false;
+        }
+        rest = &rest[b..];
+    }
+    true
 }
 
 /// What nobody wants of a kind goes, where it was said.

@@ -80,6 +80,9 @@ pub fn filled(tokens: Vec<Token>) -> Vec<Token> {
 fn noun_before(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
     let (a, b) = first_noun(&tokens[..i])?;
     let mut noun = tokens[a..b].to_vec();
+    if !tokens[b - 1].text.ends_with('s') {
+        return Some(super::topics::singular_of(&noun));
+    }
     if let Some(last) = noun.last_mut()
         && let Some(one) = last.text.strip_suffix('s').map(str::to_string)
     {
@@ -98,7 +101,15 @@ fn people(mut tokens: Vec<Token>) -> Vec<Token> {
         && is_place(&tokens[i + n..])
         && first_noun(&tokens[i + n..]).is_none_or(|x| x.0 > 3)
     {
-        let all = led("all people", &tokens[i], &[]);
+        // who tails or blocks us drives
+        let drives = is(
+            tokens.get(i + n),
+            &[
+                "tailing", "following", "driving", "chasing", "tailgating", "overtaking", "pursuing", "parked", "parking",
+                "riding", "trailing", "coming", "oncoming",
+            ],
+        ) || tokens[i + n..].iter().any(|t| matches!(text(t), "lane" | "lanes"));
+        let all = led(if drives { "all vehicles" } else { "all people" }, &tokens[i], &[]);
         tokens.splice(i..i + n, all);
     }
     tokens
@@ -170,8 +181,16 @@ fn existing(mut tokens: Vec<Token>) -> Vec<Token> {
         let next = &tokens[x.0 + x.1..];
         is(next.first(), &["that", "thats", "which", "who", "whos"]) || is_place(next)
     });
+    // ("a lorry there and a second excavator near the first one": the first excavator)
+    let second = first.and_then(|x| {
+        let more = tokens[..x.0]
+            .iter()
+            .rposition(|t| matches!(text(t), "second" | "another" | "third" | "further" | "more"))?;
+        let (a, b) = first_noun(&tokens[more..x.0])?;
+        (a < 4).then(|| tokens[more + a..more + b].to_vec())
+    });
     if let Some((i, n)) = there.or(told).or(first)
-        && let Some(noun) = noun_before(&tokens, i)
+        && let Some(noun) = second.or_else(|| noun_before(&tokens, i))
     {
         let the = led("the", &tokens[i], &[&noun]);
         tokens.splice(i..i + n, the);

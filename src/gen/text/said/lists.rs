@@ -48,7 +48,7 @@ lists! {
     /// Words of `predicate.rs`.
     GONE = "no longer there|no longer here|not there|gone|missing|away|leave|leaves|left|leaving|depart|departs|departed|departing|\
         disappear|disappears|disappeared|vanish|vanishes|vanished|drive off|drives off|drove off|driven off|drive away|\
-        drives away|drove away|driven away|pull away|pulls away|pulled away|pull off|pulls off|pulled off|walk away|walks away|\
+        drives away|drove away|driven away|turned off|turns off|turned the corner|turned around the corner|turned into a side street|driven home|pull away|pulls away|pulled away|pull off|pulls off|pulled off|walk away|walks away|\
         walked away|walk off|walks off|walked off|go away|goes away|went away|go home|goes home|went home|gone home|go|goes|\
         go off|gone off|gone away|moved on|moves on|move on|moved off|moves off|move off|moved away|rides off|rode off|ride off|\
         ridden off|ridden away|rolled away|rolls away|towed away|towed|towed off|unnecessary|superfluous|redundant|unwanted|\
@@ -127,7 +127,8 @@ lists! {
         take their place|takes his place|takes her place|as a replacement|as replacement|as a substitute|exactly there|\
         right there|where it was|where it stood|where it is|where they were|where they stood|where he was|where she was|\
         where he stood|where she stood|where it has been|where it had been|on the spot|into its place|into the gap|in the gap|\
-        to replace it|to replace them";
+        to replace it|to replace them|taken its place|taken their place|taken his place|took its place|took their place|same place|\
+        same spot|same position|same location";
     /// What follows is where it ends.
     UNTIL = "until it is|until its|until they are|until he is|until she is|until it stands|until it reaches|until hes|until shes|\
         until theyre|until|till it is|till|so that it is|so that its|so that it stands|so that they are|so that they stand|\

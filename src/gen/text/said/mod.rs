@@ -10,9 +10,11 @@ mod exception;
 mod forms;
 mod frame;
 mod gaps;
+mod gifts;
 mod idioms;
 mod limits;
 pub(super) mod lists;
+mod of_several;
 mod orders;
 mod parting;
 mod passive;
@@ -29,6 +31,8 @@ mod swap;
 #[cfg(test)]
 mod tests;
 mod topics;
+mod totals;
+mod turns;
 mod untouched;
 mod ways;
 mod which;
@@ -112,6 +116,21 @@ pub enum Piece {
     Plain(Vec<Token>),
 }
 
+/// A sentence with choices among a group and totals said plainly: before exceptions are looked for.
+pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
+    let (body, stop) = match sentence.split_last() {
+        Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
+        _ => (sentence, &[][..]),
+    };
+    let out = gifts::plain(turns::plain(body.to_vec(), talk), talk);
+    let out = exception::the_one_spared(out);
+    let out = exception::everything_but(remaining::nobody_on_foot(out));
+    let out = of_several::plain(out, talk);
+    let mut out = totals::plain(out, talk);
+    out.extend_from_slice(stop);
+    out
+}
+
 /// Reads a sentence with its stop.
 pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     // "there must be a bus behind me, not a car"
@@ -182,6 +201,12 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
             others,
             ..*talk
         };
+        // "the workers have gone home, so leave them out": said twice
+        let twice = matches!(out.last(), Some(Piece::Meant(c, _)) if c.verb == Verb::Remove)
+            && some_of::removes_it(unwrapped(clause).0);
+        if twice {
+            continue;
+        }
         match clause_of(clause, &talk) {
             Some(found) => {
                 understood = true;
@@ -210,7 +235,13 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
             c.verb = Verb::Note;
         }
     }
-    if understood { out } else { plain() }
+    // ("whatever is behind us, make it a coach" is one)
+    let topic = is(body.first(), &["whatever", "whoever", "whichever", "what", "anything"]);
+    if understood || out.len() > 1 && !topic {
+        out
+    } else {
+        plain()
+    }
 }
 
 /// "why is the cyclist in front of me?" changes nothing; who it speaks of is remembered.
@@ -242,6 +273,16 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         text(&body[0]),
         "why" | "where" | "wheres" | "who" | "whos" | "does" | "is" | "are" | "did"
     );
+    // "how would the street look at midday?": so it shall
+    let looks = (text(first) == "how" || text(first) == "what")
+        && body.iter().any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
+    if looks && let Some(at) = (1..body.len()).find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_)))) {
+        let from = (0..at)
+            .rev()
+            .find(|i| is(body.get(*i), &["at", "in", "by", "with", "during", "on", "under"]))
+            .map_or(at, |i| i + 1);
+        return Some(vec![Piece::Plain(led("make it", &body[0], &[&body[from..]]))]);
+    }
     if !(asks || begun)
         || is(body.get(1), &["not", "dont"])
         || leads(
@@ -308,7 +349,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(vec![remembered(inner, talk)]);
     }
     // "leave the car behind me as it is"
-    if let Some(np) = untouched::stays(inner).filter(|np| talk.fits(np) > 0) {
+    if let Some(np) = untouched::stays(inner).or_else(|| untouched::stays(trimmed(clause))).filter(|np| talk.fits(np) > 0) {
         return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"

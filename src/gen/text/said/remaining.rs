@@ -1,6 +1,6 @@
 //! What shall be left, as a command: "let nothing remain but the truck", "not a single barrier should be left".
 
-use super::super::tokens::Token;
+use super::super::tokens::{Token, TokenKind};
 use super::words::{find, first_noun, has_noun, is, leads, led, text, trimmed};
 
 const NOTHING: &[&str] = &[
@@ -118,6 +118,67 @@ pub(super) fn plain(tokens: &[Token]) -> Option<Vec<Token>> {
     nothing_but(tokens)
         .or_else(|| alone(tokens))
         .or_else(|| none(tokens))
+        .or_else(|| nothing_there(tokens))
+}
+
+/// "nobody is on foot any more": the people who walk go; before "on foot" is taken for a turn of speech. "Not a single
+/// barrier", too, before "a single" is taken for a number.
+pub(super) fn nobody_on_foot(tokens: Vec<Token>) -> Vec<Token> {
+    let begin = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["nobody", "noone", "no"])
+            && (*i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["and", "but", "so"]))
+    });
+    if let Some(i) = begin
+        && let Some(n) = leads(&tokens[i..], &["nobody", "noone", "no one", "no pedestrian", "no person"])
+        && let Some((k, m)) = find(&tokens[i + n..], &["on foot"])
+        && tokens[i + n..i + n + k].iter().all(stays)
+    {
+        let end = i + n + k + m;
+        let late = leads(&tokens[end..], &["any more", "anymore", "any longer", "at all", "now"]).unwrap_or(0);
+        let all = led("remove all the pedestrians", &tokens[i], &[&tokens[end + late..]]);
+        return [&tokens[..i], &all].concat();
+    }
+    none(&tokens).unwrap_or(tokens)
+}
+
+/// "nothing should be in the oncoming lane any more": all that is there goes.
+fn nothing_there(tokens: &[Token]) -> Option<Vec<Token>> {
+    let n = leads(
+        tokens,
+        &[
+            "nothing",
+            "there should be nothing",
+            "there must be nothing",
+            "there shall be nothing",
+            "there is nothing",
+            "there is to be nothing",
+            "i want nothing",
+            "we want nothing",
+            "i dont want anything",
+            "we dont want anything",
+            "there should not be anything",
+            "there shouldnt be anything",
+            "there must not be anything",
+        ],
+    )?;
+    let said = tokens[n..]
+        .iter()
+        .take_while(|t| {
+            is(
+                Some(t),
+                &[
+                    "should", "must", "shall", "may", "is", "be", "to", "left", "standing", "parked", "driving", "can", "will",
+                    "there", "stand", "stands", "stay", "stays", "remain", "remains", "stopped", "blocks", "moving",
+                ],
+            )
+        })
+        .count();
+    let place = trimmed(&tokens[n + said..]);
+    let late = ["any more", "anymore", "any longer", "at all", "now", "no more", "please"];
+    let end = find(place, &late).map_or(place.len(), |x| x.0);
+    let place = trimmed(&place[..end]);
+    let one = !place.iter().any(|t| t.kind != TokenKind::Word) && find(place, BUT).is_none();
+    (one && super::words::is_place(place) && !has_noun(place)).then(|| led("remove all the objects", &tokens[0], &[place]))
 }
 
 /// "leave nothing but the truck", "nothing should be left except for the truck".
@@ -143,7 +204,8 @@ fn alone(tokens: &[Token]) -> Option<Vec<Token>> {
 /// "not a single barrier should be left", "no oncoming traffic": all of them go.
 fn none(tokens: &[Token]) -> Option<Vec<Token>> {
     let n = leads(tokens, NONE)?;
-    let of = trimmed(&tokens[n..]);
+    let of = &tokens[n..];
+    let of = if of.first().is_some_and(|t| t.kind != TokenKind::Word) { &[] } else { trimmed(of) };
     let (_, b) = first_noun(of).filter(|x| x.0 < 3)?;
     of[b..]
         .iter()

@@ -2,6 +2,7 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::Token;
+use super::super::wording::replaced;
 use super::words::{find, is, leads, led, text};
 
 const ENDS: &[&str] = &[
@@ -39,13 +40,38 @@ const SKIES: &[&str] = &[
     "murk",
 ];
 
+const CLOUDLESS: &str = "not a cloud in the sky|not a single cloud in the sky|not one cloud in the sky|without a cloud in the sky|without a single cloud in the sky|no cloud in the sky|no clouds in the sky|not a cloud|without clouds|without a cloud|no clouds|cloudless sky|a cloudless sky";
+const CLOUDED: &str = "cover the sky with clouds|cover the sky in clouds|fill the sky with clouds|clouds cover the sky|clouds fill the sky|clouds covering the sky|cloud the sky over|a sky full of clouds|the sky is full of clouds|let clouds gather|let clouds cover the sky|the sky clouds over|the sky has clouded over";
+const SET: &str = "set the time of day to|set the time to|change the time of day to|change the time to|switch the time to|move the time to|put the time at|turn the clock to|set the clock to|set the weather to|change the weather to|switch the weather to|turn the weather to|set the lighting to|change the lighting to|set the light to|change the light to|darken everything to|darken the scene to|darken the whole scene to|plunge everything into|plunge the scene into|brighten everything to|brighten the scene to|turn everything to|turn everything into|turn the scene into|bathe everything in|bathe the scene in|drown everything in|wrap everything in|wrap the scene in|cover everything in|shroud everything in|shroud the scene in";
+
+/// "fog replaces the rain": fog.
+fn taken_over(tokens: Vec<Token>) -> Vec<Token> {
+    const OVER: &[&str] = &[
+        "replaces", "replace", "takes over from", "takes the place of", "has replaced", "should replace", "is to replace",
+        "supersedes", "drives out", "drives away", "displaces", "must replace", "shall replace", "instead of", "follows",
+    ];
+    let found = (0..tokens.len()).find_map(|i| {
+        is_style(&tokens[i]).then_some(())?;
+        let n = leads(&tokens[i + 1..], OVER)?;
+        let the = i + 1 + n + usize::from(is(tokens.get(i + 1 + n), &["the", "this", "that"]));
+        tokens.get(the).is_some_and(is_style).then_some((i, the))
+    });
+    match found {
+        Some((i, old)) => [&tokens[..=i], &tokens[old + 1..]].concat(),
+        None => tokens,
+    }
+}
+
 fn is_style(t: &Token) -> bool {
     matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)))
 }
 
 /// The sentence with its weather in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let mut out = tokens.to_vec();
+    let mut out = replaced(tokens, CLOUDLESS, "clear weather");
+    out = replaced(&out, CLOUDED, "overcast weather");
+    out = replaced(&out, SET, "make it");
+    out = taken_over(out);
     if let Some((i, n)) = find(&out, ENDS) {
         let article = usize::from(is(out.get(i + n), &["the", "this", "that", "all"]));
         if is(out.get(i + n + article), SKIES) && (i == 0 || !is(out.get(i - 1), &["to", "not", "dont"])) {

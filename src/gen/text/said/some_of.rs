@@ -76,6 +76,19 @@ pub fn removes(t: Option<&Token>) -> bool {
     )
 }
 
+/// "remove them", "get rid of it".
+pub fn removes_it(clause: &[Token]) -> bool {
+    let verb = leads(
+        clause,
+        &["remove", "delete", "erase", "leave out", "take out", "take away", "get rid of", "do away with"],
+    )
+    .or_else(|| removes(clause.first()).then_some(1));
+    verb.is_some_and(|n| {
+        is(clause.get(n), &["it", "them", "him", "her"])
+            && clause[n + 1..].iter().all(|t| is(Some(t), &["out", "away", "too", "please", "off", "now"]))
+    })
+}
+
 fn digits(n: usize, at: &Token) -> Token {
     Token {
         kind: TokenKind::Number(n as f64),
@@ -272,11 +285,18 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let many = rest.get(k).filter(|t| number(t).is_some())?;
     let ends =
         rest.len() == k + 1 || leads(&rest[k + 1..], &["of them", "please", "instead", "of those"]).is_some();
-    (counted && ends && a < n + 5).then(|| {
+    // "three, all of them ahead of us"
+    let tail = trimmed(&rest[k + 1..]);
+    let all = leads(tail, &["all of them", "all", "each of them", "every one of them", "all three", "of them", "both", "both of them"])
+        .unwrap_or(0);
+    let place = trimmed(&tail[all..]);
+    let placed = super::words::is_place(place) && first_noun(place).is_none() && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let place = if placed { place } else { &[] };
+    (counted && (ends || placed) && a < n + 5).then(|| {
         led(
             "keep exactly",
             &tokens[0],
-            &[std::slice::from_ref(many), &tokens[a..b]],
+            &[std::slice::from_ref(many), &tokens[a..b], place],
         )
     })
 }

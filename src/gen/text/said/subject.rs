@@ -50,6 +50,9 @@ pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
         "the remaining three",
         "the remaining one",
         "the second one",
+        "the third one",
+        "the fourth one",
+        "the last one",
     ];
     if let Some(n) = super::words::leads(tokens, &others)
         && super::words::noun_at(&tokens[n..]).is_none()
@@ -377,6 +380,14 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
             (from..p).find(|i| is_place(&tokens[*i..p])).unwrap_or(p)
         }
         Some(p) => p,
+        // "I'd like to see the bus waiting at the crossing"
+        None if caused
+            && is(tokens.get(from), &["waiting", "standing", "driving", "walking", "riding", "crossing", "facing"])
+            && definite
+            && talk.fits(&tokens[..end]) == 1 =>
+        {
+            from
+        }
         // "I need the truck 15 m behind me"
         None if caused => (from..tokens.len()).find(|i| is_place(&tokens[*i..]))?,
         None => return None,

@@ -85,6 +85,12 @@ pub fn swap(tokens: &[Token], talk: &Talk<'_>) -> Option<Command> {
             .map(|x| x.0)
         })
         .or_else(|| (tokens.iter().filter(|t| text(t) == "where").count() == 2).then_some(0))?;
+    // "change to the right lane" is a way to go
+    let goes = is(tokens.get(verb + 1), &["to", "into", "over", "onto"])
+        || is(tokens.get(verb + 1), &["lane", "lanes", "sides"]) && is(tokens.get(verb + 2), &["to", "into"]);
+    if goes {
+        return None;
+    }
     let twice = tokens.iter().filter(|t| text(t) == "where").count() == 2;
     let places = twice
         || find(tokens, PLACES).is_some()

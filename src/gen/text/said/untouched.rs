@@ -142,8 +142,19 @@ fn edge(t: Option<&Token>) -> bool {
     t.is_none_or(|t| t.kind != TokenKind::Word)
 }
 
+/// "neither the van nor the people should be touched".
+fn neither(tokens: &[Token]) -> Option<usize> {
+    is(tokens.first(), &["neither"]).then_some(())?;
+    let (i, n) = find(tokens, &["be touched", "be changed", "be moved", "be altered", "be affected", "change", "changes", "move", "be removed", "be harmed", "be disturbed"])?;
+    let end = i + n;
+    (find(&tokens[..i], &["nor"]).is_some() && edge(tokens.get(end))).then_some(end)
+}
+
 /// How many tokens of such a phrase begin here.
 fn phrase(tokens: &[Token]) -> Option<usize> {
+    if let Some(n) = neither(tokens) {
+        return Some(n);
+    }
     let mut n = 0;
     while is(tokens.get(n), LEADS) {
         n += 1;
@@ -154,6 +165,14 @@ fn phrase(tokens: &[Token]) -> Option<usize> {
     let mut k = n + leads(&tokens[n..], ALL_ELSE)?;
     while is(tokens.get(k), BE) {
         k += 1;
+    }
+    // "but keep everything else"
+    let kept = is(tokens.get(n.wrapping_sub(1)), &["keep", "leave", "let", "keeping", "leaving"])
+        && leads(&tokens[n..], &["everything else", "all else", "all the rest", "the rest", "the other things"])
+            .is_some_and(|m| n + m == k)
+        && edge(tokens.get(k));
+    if kept {
+        return Some(k);
     }
     let stays = leads(&tokens[k..], STAYS).map(|m| k + m).or_else(|| {
         is(
@@ -197,7 +216,24 @@ pub fn cut(tokens: &[Token]) -> Vec<Token> {
         }
     }
     if cut {
-        trimmed(&out).to_vec()
+        // "everything stays as it is, only the lorry becomes a coach"
+        let rest = trimmed(&out);
+        let only = leads(
+            rest,
+            &[
+                "only that", "except that", "just that", "save that", "but that", "except", "only", "just",
+                "with the exception that", "other than that",
+            ],
+        )
+        .filter(|n| {
+            super::words::first_noun(&rest[*n..]).is_some_and(|x| {
+                x.0 < 5 && rest[n + x.1..].iter().any(|t| {
+                    super::words::is_finite(super::words::text(t), true) && !is(Some(t), &["stay", "stays", "remain", "remains"])
+                        || is(Some(t), &["should", "must", "is", "shall"])
+                })
+            })
+        });
+        trimmed(&rest[only.unwrap_or(0)..]).to_vec()
     } else {
         tokens.to_vec()
     }

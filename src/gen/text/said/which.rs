@@ -331,6 +331,9 @@ pub fn any_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         if found <= many as usize || is(np.first(), &["the", "other"]) {
             continue;
         }
+        if is(out.get(last), &["drop", "lose", "cut", "clear"]) {
+            out[last].text = "remove".into();
+        }
         let any = word("any", &tokens[i]);
         out.push(any);
         // ("a car" is any one car)

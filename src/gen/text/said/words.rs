@@ -163,6 +163,10 @@ pub fn noun_at(tokens: &[Token]) -> Option<usize> {
     if unit_at(tokens).is_some() {
         return None; // "car lengths"
     }
+    // "car park" is a place
+    if matches!(longest(tokens), Some((Sense::Place(..), n)) if n > 1) {
+        return None;
+    }
     (1..=4.min(tokens.len())).rev().find(|n| {
         let run = &tokens[..*n];
         let words: Vec<&str> = run.iter().map(text).collect();

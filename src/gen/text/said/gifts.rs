@@ -1,0 +1,277 @@
+//! Wishes in roundabout words: "give the worker two colleagues", "without the van it would be better", "increase the distance to
+//! the car behind to 20 m", "the crossing should be empty", "as many barriers as there are cones".
+
+use super::super::lexicon::{Sense, look_up, plural};
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::replaced;
+use super::Talk;
+use super::lists::HELPERS;
+use super::words::{find, first_noun, has_noun, is, is_place, is_unit, leads, led, longest, number, text, trimmed};
+
+const MAKE_DO: &str = "can do with just|could do with just|get by with|get along with|make do with|manage with|settle for|be content with|make do with just";
+const IN_TRUTH: &str = "in reality|in truth|as a matter of fact|in actual fact|strictly speaking";
+const NONE: &str = "i want to see none of them|i want to see none|i want none of them|i want none|i would like none|id like none|we want none|we need none|i need none|let there be none|there should be none|there must be none|make it none";
+const MOVING: &str = "whatever moves|everything that moves|anything that moves|all that moves|everything that is moving|anything that is moving|everything moving|whatever is moving|all that is moving|everything in motion|anything in motion";
+
+/// A sentence in plainer words.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = replaced(&tokens, MAKE_DO, "keep only");
+    let out = replaced(&out, IN_TRUTH, "");
+    let out = replaced(&out, NONE, "remove them");
+    let out = replaced(&out, MOVING, "all moving objects");
+    let out = seen(out, talk);
+    let out = given(out, talk);
+    let out = without(out, talk);
+    let out = distance_to(out, talk);
+    let out = emptied(out);
+    let out = every_second(out);
+    as_many_as(out, talk)
+}
+
+fn begins_at(tokens: &[Token], i: usize) -> bool {
+    i == 0
+        || !matches!(tokens[i - 1].kind, TokenKind::Word | TokenKind::Number(_))
+        || is(tokens.get(i - 1), &["and", "then", "but", "so", "please", "now", "also", "just"])
+}
+
+fn is_fresh(t: Option<&Token>) -> bool {
+    is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some())
+}
+
+/// "I see four pedestrians, ...", where there are four: a remark.
+fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have"]) else {
+        return tokens;
+    };
+    let Some(many) = tokens.get(n).and_then(number) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let close = (n + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"]));
+    let Some(close) = close.filter(|c| c + 2 < tokens.len()) else {
+        return tokens;
+    };
+    let np = &tokens[n + 1..close];
+    if talk.fits(np) != many.max(0) as usize {
+        return tokens;
+    }
+    let rest = trimmed(&tokens[close..]);
+    // what follows speaks of them
+    let it = rest.iter().position(|t| matches!(text(t), "them" | "they" | "those"));
+    match it {
+        Some(k) => [&rest[..k], &led("the", &rest[k], &[np]), &rest[k + 1..]].concat(),
+        None => tokens,
+    }
+}
+
+/// "give the worker two colleagues": two more beside him; "give the jogger some company" alone says nothing more.
+fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(i) = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["give", "get", "bring", "lend", "assign"])
+            && is(tokens.get(i + 1), &["the", "both", "that", "my", "each"])
+            && begins_at(&tokens, *i)
+    }) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let to = i + 1 + b;
+    let np = &tokens[i + 1..to];
+    if talk.fits(np) == 0 {
+        return tokens;
+    }
+    let rest = &tokens[to..];
+    let company = leads(rest, &["some company", "company", "a bit of company", "some support", "some help", "a hand", "a helping hand"]);
+    if let Some(n) = company {
+        let more = trimmed(&rest[n..]);
+        let more = if is(more.first(), &[":"]) { trimmed(&more[1..]) } else { more };
+        if has_noun(more) || more.iter().any(|t| number(t).is_some()) {
+            return [&tokens[..i], more].concat();
+        }
+        return tokens;
+    }
+    let Some((_, e)) = first_noun(rest).filter(|x| x.0 < 4 && is_fresh(rest.first())) else {
+        return tokens;
+    };
+    let new = &rest[..e];
+    let tail = &rest[e..];
+    if is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
+        return tokens;
+    }
+    let trailer = is(new.last(), &["trailer", "caravan"]);
+    let at = led(if trailer { "behind" } else { "next to" }, &tokens[i], &[np]);
+    let add = led("add", &tokens[i], &[new, &at]);
+    [&tokens[..i], &add, tail].concat()
+}
+
+/// "without the van behind us the scene would be better", "the street at night, without the people": they go.
+fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(i) = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["without", "minus", "sans"])
+            && is(tokens.get(i + 1), &["the", "that", "those", "these", "any", "all", "both", "my", "our"])
+            && (*i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["but", "and", "only", "just"]))
+    }) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let noun = i + 1 + b;
+    let close = (noun..tokens.len())
+        .find(|k| {
+            tokens[*k].kind != TokenKind::Word
+                || is(tokens.get(*k), &["it", "this", "id", "i", "we", "and", "would"])
+                || leads(&tokens[*k..], &["the scene", "the picture", "the street", "the whole", "the situation", "the road", "the view"])
+                    .is_some_and(|n| tokens.get(k + n).is_some_and(|t| HELPERS.contains(&text(t))))
+        })
+        .unwrap_or(tokens.len());
+    let any = usize::from(is(tokens.get(i + 1), &["any"]));
+    let np = &tokens[i + 1 + any..close];
+    if talk.fits(np) == 0 {
+        return tokens;
+    }
+    let remove = led(if any == 1 { "remove all the" } else { "remove" }, &tokens[i], &[np]);
+    let before = trimmed(&tokens[..i]);
+    let after = trimmed(&tokens[close..]);
+    // what follows only says that it is better so
+    let praise = !has_noun(after) || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner"));
+    if i == 0 {
+        return if praise && after.iter().all(|t| number(t).is_none()) { remove } else { tokens };
+    }
+    if !after.is_empty() && !is(tokens.get(close), &["and"]) && tokens.get(close).is_some_and(|t| t.kind == TokenKind::Word) {
+        return tokens;
+    }
+    let and = led("and", &tokens[i], &[&remove]);
+    [before, &and, &tokens[close..]].concat()
+}
+
+/// "increase the distance to the car behind to 20 m", "reduce the gap to the bus by 5 m".
+fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "the distance to", "the gap to", "the distance from us to", "the gap between us and", "the distance between us and",
+            "the spacing to", "the distance from me to", "the gap between me and", "the distance between me and", "our distance to",
+            "our distance from", "the distance from", "the headway to", "my distance to", "my distance from", "the distance of",
+        ],
+    )
+    .filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let from = i + n;
+    let Some((_, b)) = first_noun(&tokens[from..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let step = (from + b..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["to", "by", "at", "is", "of", "down", "up"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(k + 2))
+            || is(tokens.get(*k), &["should", "must"])
+    });
+    let Some(step) = step else {
+        return tokens;
+    };
+    let Some(metres) = (step..tokens.len()).find(|k| number(&tokens[*k]).is_some() && is_unit(tokens.get(k + 1))) else {
+        return tokens;
+    };
+    let mut np = tokens[from..step].to_vec();
+    if is(np.last(), &["behind", "ahead"]) {
+        np.extend(led(if text(&np[np.len() - 1]) == "ahead" { "of us" } else { "us" }, &tokens[i], &[]));
+    }
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    let lead = &tokens[..i];
+    let wider = lead.iter().any(|t| matches!(text(t), "increase" | "raise" | "widen" | "lengthen" | "extend" | "enlarge" | "grow"));
+    let start = (0..i).rev().find(|k| begins_at(&tokens, *k)).unwrap_or(0);
+    let far = &tokens[metres..metres + 2];
+    let out = if is(tokens.get(step), &["by"]) {
+        let way = led(if wider { "further away" } else { "closer" }, &tokens[i], &[]);
+        led("move", &tokens[i], &[&np, far, &way])
+    } else {
+        [&np[..], &led("should keep a distance of", &tokens[i], &[far])].concat()
+    };
+    [&tokens[..start], &out, &tokens[metres + 2..]].concat()
+}
+
+/// "the crossing is empty now", "our lane must be free of cones": who is there goes.
+fn emptied(tokens: Vec<Token>) -> Vec<Token> {
+    let body = trimmed(&tokens);
+    let the = usize::from(is(body.first(), &["the", "our", "my"]));
+    let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest) else {
+        return tokens;
+    };
+    let place = &body[..the + n];
+    let mut k = the + n;
+    while is(body.get(k), &["is", "are", "should", "must", "has", "have", "needs", "need", "ought", "shall", "to", "be", "now", "also", "completely", "totally", "entirely", "all", "absolutely", "again", "will", "stay", "remain", "kept"]) {
+        k += 1;
+    }
+    if k == the + n || !is(body.get(k), &["empty", "deserted", "vacant", "unoccupied", "clear", "free", "cleared", "emptied"]) {
+        return tokens;
+    }
+    let mut rest = &body[k + 1..];
+    let of = leads(rest, &["of all", "of any", "of", "from"]);
+    rest = &rest[of.unwrap_or(0)..];
+    let late = find(rest, &["now", "again", "any more", "please", "at last"]).map_or(rest.len(), |x| x.0);
+    let what = trimmed(&rest[..late]);
+    // ("my lane is free" is a remark)
+    let wish = body[the + n..k].iter().any(|t| matches!(text(t), "should" | "must" | "to" | "be" | "shall" | "needs" | "now"))
+        || is(body.get(k), &["empty", "deserted", "vacant"]);
+    let whole = of.is_some() == has_noun(what) && (of.is_some() || what.is_empty());
+    if !wish || !whole {
+        return tokens;
+    }
+    let lane = place.iter().any(|t| matches!(text(t), "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"));
+    let at = led(if lane { "in" } else { "on" }, &body[0], &[place]);
+    match of {
+        Some(_) => led("remove all the", &body[0], &[what, &at]),
+        None => led("remove all the objects", &body[0], &[&at]),
+    }
+}
+
+/// "every second cone": half of the cones.
+fn every_second(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["every second one of the", "every other one of the", "every second", "every other", "each second"]) else {
+        return tokens;
+    };
+    let Some((a, b)) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3) else {
+        return tokens;
+    };
+    let mut np = tokens[i + n..i + n + b].to_vec();
+    if let Some(last) = np.last_mut()
+        && matches!(look_up(&last.text), Some(Sense::Noun(_, false)))
+        && a < 3
+    {
+        last.text = plural(&last.text);
+    }
+    let half = led("half of the", &tokens[i], &[&np]);
+    [&tokens[..i], &half, &tokens[i + n + b..]].concat()
+}
+
+/// "as many barriers as there are cones": so many.
+fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], &["as many", "just as many", "exactly as many", "the same number of"])?;
+        let times = i > 0 && is(tokens.get(i - 1), &["twice", "times", "half", "double", "thrice"]);
+        let (_, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3 && !times)?;
+        let as_ = i + n + b;
+        let (k, m) = find(&tokens[as_..], &["as there are", "as we have", "as there is", "as"]).filter(|x| x.0 < 6)?;
+        let from = as_ + k + m;
+        let (c, d) = first_noun(&tokens[from..]).filter(|x| x.0 < 4)?;
+        Some((i, n, as_ + k, from, c, from + d))
+    });
+    let Some((i, n, as_, from, c, end)) = found else {
+        return tokens;
+    };
+    let many = talk.fits(&tokens[from + c..end]);
+    if many == 0 || many > 40 {
+        return tokens;
+    }
+    let digit = Token {
+        kind: TokenKind::Number(many as f64),
+        text: many.to_string(),
+        span: tokens[i].span,
+    };
+    [&tokens[..i], &[digit], &tokens[i + n..as_], &tokens[end..]].concat()
+}

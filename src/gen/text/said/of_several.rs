@@ -1,0 +1,202 @@
+//! Which of a group that is named first or afterwards: "the farthest of the three cars", "of the two cars, delete the one that
+//! is nearer", "of the motor vehicles only the one behind us remains".
+
+use super::super::foremost::ordinal;
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::some_of::bare_np;
+use super::topics::singular_of;
+use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
+
+const PICKS: &[&str] = &[
+    "nearest",
+    "closest",
+    "nearer",
+    "closer",
+    "farthest",
+    "furthest",
+    "farther",
+    "further",
+    "most distant",
+    "more distant",
+    "remotest",
+    "middle",
+    "central",
+    "leftmost",
+    "rightmost",
+    "foremost",
+    "frontmost",
+    "rearmost",
+    "hindmost",
+    "biggest",
+    "largest",
+    "smallest",
+    "oncoming",
+];
+const GROUPS: &[&str] = &["of the", "of these", "of those", "of my", "of our", "of all the", "of all"];
+const STAYS: &[&str] = &["remain", "remains", "stay", "stays", "survive", "survives"];
+
+/// The sentence with such a choice as one noun phrase.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = pick_of(tokens);
+    let out = pick_of_them(out, talk);
+    let out = only_the_one(out);
+    group_first(out)
+}
+
+/// How many tokens a word takes that picks one: an ordinal, too.
+fn pick_at(tokens: &[Token]) -> Option<usize> {
+    leads(tokens, PICKS).or_else(|| ordinal(text(tokens.first()?)).map(|_| 1))
+}
+
+/// One past the number that a group may have: "the three cars".
+fn counted(tokens: &[Token], at: usize) -> usize {
+    let many = tokens
+        .get(at)
+        .is_some_and(|t| number(t).is_some() || matches!(text(t), "both"));
+    at + usize::from(many)
+}
+
+/// "the farthest of the three parked cars": the farthest parked car.
+fn pick_of(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        is(tokens.get(i - 1), &["the", "that"]).then_some(())?;
+        let pick = pick_at(&tokens[i..])?;
+        let mut k = i + pick;
+        let many = tokens.get(k).filter(|t| number(t).is_some() && text(t) != "one").cloned();
+        k += usize::from(many.is_some() || is(tokens.get(k), &["one", "ones"]));
+        let of = k + leads(&tokens[k..], GROUPS)?;
+        let np = counted(&tokens, of);
+        let (_, b) = first_noun(&tokens[np..]).filter(|x| x.0 < 4)?;
+        Some((i, pick, many, np, np + b))
+    });
+    let Some((i, pick, many, np, end)) = found else {
+        return tokens;
+    };
+    let mut out = tokens[..i + pick].to_vec();
+    match many {
+        Some(many) => {
+            out.push(many);
+            out.extend_from_slice(&tokens[np..end]);
+        }
+        None => out.extend(singular_of(&tokens[np..end])),
+    }
+    out.extend_from_slice(&tokens[end..]);
+    out
+}
+
+/// "the nearest of them": of what was spoken of last.
+fn pick_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(last) = &talk.last else {
+        return tokens;
+    };
+    let found = (1..tokens.len()).find_map(|i| {
+        is(tokens.get(i - 1), &["the"]).then_some(())?;
+        let k = i + pick_at(&tokens[i..])?;
+        let k = k + usize::from(is(tokens.get(k), &["one"]));
+        let n = leads(&tokens[k..], &["of them", "of these", "of those", "of the group", "of the lot"])?;
+        (tokens.get(k + n).is_none_or(|t| t.kind != TokenKind::Word) || is_place(&tokens[k + n..]))
+            .then_some((i, k, n))
+    });
+    match found {
+        Some((i, k, n)) if first_noun(&tokens[..i]).is_none() => {
+            let mut out = tokens[..i].to_vec();
+            out.extend(tokens[i..k].iter().filter(|t| text(t) != "one").cloned());
+            out.extend(led(last, &tokens[i], &[&tokens[k + n..]]));
+            out
+        }
+        _ => tokens,
+    }
+}
+
+/// "of the motor vehicles only the one behind us remains": all but that one go.
+fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((np, end)) = group(&tokens) else {
+        return tokens;
+    };
+    let rest = trimmed(&tokens[end..]);
+    let Some(n) = leads(
+        rest,
+        &["only the one", "just the one", "only the ones", "just the ones", "keep only the one", "leave only the one", "keep only the ones", "leave only the ones", "keep the one", "leave the one", "spare the one", "spare only the one"],
+    ) else {
+        return tokens;
+    };
+    let verb = is(rest.first(), &["keep", "leave", "spare"]);
+    let close = rest
+        .iter()
+        .position(|t| {
+            STAYS.contains(&text(t)) || is(Some(t), &["should", "may", "must", "is", "are", "shall", "can"])
+                || t.kind != TokenKind::Word
+        })
+        .unwrap_or(rest.len());
+    let stays = verb || rest[close..].iter().any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
+    let skip = usize::from(is(rest.get(n), &["that", "which", "who"])) * 2;
+    let place = rest.get(n + skip..close).unwrap_or(&[]);
+    if !stays || !is_place(place) {
+        return tokens;
+    }
+    let all = bare_np(np);
+    let one = singular_of(&all);
+    led(
+        "remove all the",
+        &tokens[0],
+        &[&all, &led("except the", &rest[0], &[&one, place])],
+    )
+}
+
+/// "of the two cars,": the group, and one past it.
+fn group(tokens: &[Token]) -> Option<(&[Token], usize)> {
+    let n = leads(
+        tokens,
+        &["of", "out of", "from among", "among", "from", "as for", "as to"],
+    )?;
+    is(tokens.get(n), &["the", "these", "those", "my", "our", "all"]).then_some(())?;
+    let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 5)?;
+    let end = n + b;
+    // ("of the cars in my lane, ...")
+    let comma = (end..tokens.len().min(end + 8)).find(|k| tokens[*k].kind == TokenKind::Comma);
+    match comma.filter(|c| *c == end || is_place(&tokens[end..])) {
+        Some(c) => Some((&tokens[n..c], c + 1)),
+        None => Some((&tokens[n..end], end)),
+    }
+}
+
+/// "of the two cars, delete the one that is nearer to us": the car that is.
+fn group_first(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((np, end)) = group(&tokens) else {
+        return tokens;
+    };
+    let rest = trimmed(&tokens[end..]);
+    let noun = singular_of(&bare_np(np));
+    let one = find(rest, &["the one", "the ones"]).filter(|(i, n)| {
+        let next = &rest[i + n..];
+        is_place(next) || is(next.first(), &["that", "which", "who", "thats", "whos"])
+    });
+    if let Some((i, n)) = one {
+        let the = led("the", &rest[i], &[&noun]);
+        return [&rest[..i], &the, &rest[i + n..]].concat();
+    }
+    let picked = (1..rest.len()).find_map(|i| {
+        is(rest.get(i - 1), &["the"]).then_some(())?;
+        let k = i + pick_at(&rest[i..])?;
+        let one = usize::from(is(rest.get(k), &["one"]));
+        first_noun(&rest[k..]).is_none_or(|x| x.0 > 1).then_some((k, one))
+    });
+    let Some((k, one)) = picked else {
+        return tokens;
+    };
+    // "the nearest into a van and the farthest into a pickup": each of them
+    let mut out = [&rest[..k], &noun[..]].concat();
+    let mut rest = rest[k + one..].to_vec();
+    let next = (2..rest.len()).find_map(|i| {
+        (is(rest.get(i - 1), &["the"]) && is(rest.get(i - 2), &["and", ",", "but"])).then_some(())?;
+        let k = i + pick_at(&rest[i..])?;
+        let one = usize::from(is(rest.get(k), &["one"]));
+        first_noun(&rest[k..]).is_none_or(|x| x.0 > 1).then_some((k, one))
+    });
+    if let Some((k, one)) = next {
+        rest.splice(k..k + one, noun);
+    }
+    out.extend(rest);
+    out
+}

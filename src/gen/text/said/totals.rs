@@ -1,0 +1,311 @@
+//! How many there shall be in the end: "twice as many as there are now", "until only one is left", "to eight in all", "four
+//! would be better than two", "not two but four".
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::frame::unwrapped;
+use super::lists::HELPERS;
+use super::some_of::WISHES;
+use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
+
+const TIMES: &[&str] = &["twice", "double", "thrice", "triple", "half"];
+const IN_ALL: &[&str] = &["in all", "in total", "altogether", "all told", "overall", "all in all", "in sum", "all together"];
+const UNTIL: &[&str] = &[
+    "until there are", "until there is", "till there are", "till there is", "until we have", "till we have",
+    "until", "till", "leaving", "so that there are", "so that there is", "so that", "so there are", "so there is",
+    "such that there are", "so we have", "so that we have", "making it", "to make it", "to make", "for a total of",
+    "to a total of", "which makes", "which leaves", "making",
+];
+const LEFT: &[&str] = &[
+    "remain", "remains", "are left", "is left", "left", "stay", "stays", "are left over", "is left over", "remaining",
+    "are there", "is there", "are still there", "is still there",
+];
+const SAME_PLACE: &[&str] = &[
+    "all on the same sidewalk as before", "on the same sidewalk as before", "on the same sidewalk as now",
+    "all in the same place as before", "in the same place as before", "in the same lane as before",
+    "all in the same lane as before", "all on the same sidewalk", "all in the same lane", "where the others are",
+    "on the same side as before", "all on the same side as before", "on the same side as the others",
+    "in the same lane as the others", "on the same sidewalk as the others", "in the same place as the others",
+];
+
+/// The sentence with such a number as a command.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = same_place(tokens);
+    let out = times_as_many(out);
+    let out = until(out, talk);
+    let out = so_many_of_them(in_all(out, talk));
+    let out = not_but(out);
+    rather_than(out)
+}
+
+fn links(t: &Token) -> bool {
+    t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
+}
+
+/// "five, all on the same sidewalk as before": more of a kind stand where the others are anyhow.
+fn same_place(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, SAME_PLACE).filter(|x| x.0 > 2) else {
+        return tokens;
+    };
+    let counted = tokens[..i].iter().any(|t| number(t).is_some());
+    let closes = tokens.get(i + n).is_none_or(links);
+    if !counted || !closes {
+        return tokens;
+    }
+    let comma = usize::from(tokens[i - 1].kind == TokenKind::Comma);
+    [&tokens[..i - comma], &tokens[i + n..]].concat()
+}
+
+/// "I need twice as many cones as there are now": twice as many cones.
+fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        let times = is(tokens.get(i), TIMES).then_some(1).or_else(|| {
+            (number(&tokens[i]).is_some() && is(tokens.get(i + 1), &["times"])).then_some(2)
+        })?;
+        let n = leads(&tokens[i + times..], &["as many", "the number of", "the amount of", "as much"])?;
+        let (_, b) = first_noun(&tokens[i + times + n..]).filter(|x| x.0 < 4)?;
+        Some((i, i + times + n + b))
+    });
+    let Some((i, end)) = found else {
+        return tokens;
+    };
+    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
+    let wish = trimmed(&tokens[from..i]);
+    let wished = wish.is_empty()
+        || leads(wish, WISHES) == Some(wish.len())
+        || unwrapped(wish).0.is_empty()
+        || wish.iter().all(|t| {
+            is(
+                Some(t),
+                &["i", "we", "need", "want", "would", "like", "to", "see", "have", "there", "should", "be", "must", "id", "please", "could", "id", "make", "it", "add", "put", "us", "me", "give", "now", "shall", "lets", "show", "exactly"],
+            )
+        });
+    if !wished {
+        return tokens;
+    }
+    let mut rest = &tokens[end..];
+    if let Some((k, n)) = find(
+        rest,
+        &[
+            "as there are", "as we have", "as are there", "as now", "as before", "as you have", "as at present",
+            "as currently", "as today", "that there are", "as there were", "as i have", "as are", "as it has",
+            "as the scene has", "as they are",
+        ],
+    ) && k < 6
+    {
+        let place = &rest[..k];
+        let close = (k + n..rest.len()).find(|j| links(&rest[*j])).unwrap_or(rest.len());
+        let mut out = tokens[..from].to_vec();
+        out.extend_from_slice(&tokens[i..end]);
+        out.extend_from_slice(place);
+        out.extend_from_slice(&rest[close..]);
+        return out;
+    }
+    rest = &tokens[i..];
+    [&tokens[..from], rest].concat()
+}
+
+/// True if both name things of one kind.
+fn same_kind(a: &[Token], b: &[Token]) -> bool {
+    let class = |np: &[Token]| {
+        let (i, j) = first_noun(np)?;
+        match super::words::longest(&np[i..j]).map(|l| l.0) {
+            Some(Sense::Noun(n, _)) => Some(n.classes[0]),
+            _ => None,
+        }
+    };
+    class(a).is_some() && class(a) == class(b)
+}
+
+/// A noun phrase without the article, quantity and "all".
+fn bare(np: &[Token]) -> &[Token] {
+    let skip = |t: &Token| {
+        is(
+            Some(t),
+            &["the", "my", "these", "those", "all", "our", "of", "both", "some", "more", "a", "an", "few", "any", "enough", "other", "further", "up", "out", "down", "in", "away", "number", "another"],
+        ) || number(t).is_some()
+    };
+    &np[np.iter().position(|t| !skip(t)).unwrap_or(0)..]
+}
+
+/// "thin out the oncoming cars until only one remains", "add cones to our lane until there are six".
+fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, UNTIL).filter(|x| x.0 > 1) else {
+        return tokens;
+    };
+    let mut k = i + n;
+    while is(tokens.get(k), &["only", "just", "exactly", "there", "are", "is", "no", "more", "than", "them"]) {
+        k += 1;
+    }
+    let Some(many) = tokens.get(k).filter(|t| number(t).is_some()).cloned() else {
+        return tokens;
+    };
+    if super::words::is_unit(tokens.get(k + 1)) {
+        return tokens;
+    }
+    let close = (k + 1..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
+    let after = &tokens[k + 1..close];
+    let left = find(after, LEFT).or_else(|| find(after, IN_ALL));
+    let sure = left.is_some()
+        || is(tokens.get(i), &["until", "till", "leaving"])
+        || text(&tokens[i + n - 1]) == "of"
+        || n > 2 && text(&tokens[i]) == "so";
+    let of = left.map_or(after, |x| &after[..x.0]);
+    let own = first_noun(of).map(|x| &of[..x.1]);
+    let start = tokens[..i].iter().rposition(|t| text(t) == "and" || t.kind == TokenKind::Mark).map_or(0, |s| s + 1);
+    let before = trimmed(&tokens[start..i]);
+    let Some((a, b)) = first_noun(before).filter(|x| x.0 < 8) else {
+        return tokens;
+    };
+    let verb = before.iter().take(a).any(super::super::rephrase::is_verb);
+    // ("remove the cars, leaving two cones" speaks of others)
+    if !sure || !verb || own.is_some_and(|o| !same_kind(o, &before[..b])) {
+        return tokens;
+    }
+    let from = before[..a]
+        .iter()
+        .rposition(|t| super::super::rephrase::is_verb(t) && look_up(text(t)).is_none_or(|s| !matches!(s, Sense::State(..))))
+        .map_or(0, |v| v + 1);
+    let np = bare(&before[from..]);
+    let np = match talk.fits(np) {
+        0 if !is_place(&before[b.min(before.len())..]) => bare(&before[from..b]),
+        _ => np,
+    };
+    let mut out = tokens[..start].to_vec();
+    out.extend(led("keep exactly", &tokens[start], &[&[many], np, &tokens[close..]]));
+    out
+}
+
+/// "fill the place up a bit, to eight parked cars in all", "double the cars, so there are four altogether".
+fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, IN_ALL).filter(|x| x.0 > 1) else {
+        return tokens;
+    };
+    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
+    let clause = &tokens[from..i];
+    let Some(k) = clause.iter().position(|t| number(t).is_some()) else {
+        return tokens;
+    };
+    let lead_noun = first_noun(&clause[..k]);
+    let own = first_noun(&clause[k..]).map(|x| (k + x.0, k + x.1));
+    let closes = tokens.get(i + n).is_none_or(links);
+    if !closes || own.is_some_and(|o| o.0 > k + 4) || super::words::is_unit(clause.get(k + 1)) {
+        return tokens;
+    }
+    let many = &clause[k..=k];
+    let tail = &tokens[i + n..];
+    // whose number it is: named here, or in what is said before
+    let np = match (own, lead_noun) {
+        (Some(_), _) => clause[k + 1..].iter().filter(|t| !plain_verb(t)).cloned().collect(),
+        (None, Some(_)) => return tokens,
+        (None, None) => {
+            let before = &tokens[..from];
+            let Some((a, b)) = first_noun(before) else {
+                return tokens;
+            };
+            let lead = (0..a).rev().take_while(|j| matches!(look_up(text(&before[*j])), Some(Sense::State(_, false) | Sense::Size(_))) || is(before.get(*j), &["oncoming", "parked"])).last().unwrap_or(a);
+            let place = &before[b..];
+            let close = place.iter().position(links).unwrap_or(place.len());
+            let told = is_place(place) && talk.fits(&before[lead..b + close]) > 0;
+            before[lead..if told { b + close } else { b }].to_vec()
+        }
+    };
+    // what leads to that number is no command of its own, if it speaks of the same
+    let before = trimmed(&tokens[..from]);
+    let same = first_noun(before).is_none() || same_kind(before, &np);
+    let kept: &[Token] = if same { &[] } else { &tokens[..from] };
+    let mut out = kept.to_vec();
+    out.extend(led("keep exactly", &tokens[from], &[many, &np, tail]));
+    out
+}
+
+/// "pedestrians in greater number, five of them": five.
+fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(i) = (2..tokens.len()).find(|i| {
+        tokens[i - 1].kind == TokenKind::Comma
+            && number(&tokens[*i]).is_some()
+            && is(tokens.get(i + 1), &["of"])
+            && is(tokens.get(i + 2), &["them", "those", "these"])
+            && tokens.get(i + 3).is_none_or(links)
+    }) else {
+        return tokens;
+    };
+    let from = tokens[..i - 1].iter().rposition(links).map_or(0, |k| k + 1);
+    let Some((a, b)) = first_noun(&tokens[from..i - 1]).map(|x| (from + x.0, from + x.1)) else {
+        return tokens;
+    };
+    let plural = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
+    let adds = tokens[from..a].iter().any(|t| super::super::rephrase::is_verb(t) || is(Some(t), &["the", "more"]) || number(t).is_some());
+    if !plural || adds {
+        return tokens;
+    }
+    let place = &tokens[b..i - 1];
+    let place = if is_place(place) && !is(place.first(), &["in"]) { place } else { &[] };
+    let mut out = tokens[..from].to_vec();
+    out.extend(led("keep exactly", &tokens[from], &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]]));
+    out
+}
+
+/// Small words that only say that it shall be so.
+fn plain_verb(t: &Token) -> bool {
+    HELPERS.contains(&text(t)) || is(Some(t), &["to", "now", "rather", "better", "nicer", "preferable"])
+}
+
+/// "not two but four people should be walking across": four.
+fn not_but(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        is(tokens.get(i), &["not"]).then_some(())?;
+        let only = usize::from(is(tokens.get(i + 1), &["only", "just"]));
+        tokens.get(i + 1 + only).filter(|t| number(t).is_some())?;
+        let but = (i + 2 + only..tokens.len().min(i + 7 + only)).find(|k| is(tokens.get(*k), &["but"]))?;
+        let many = but + 1 + usize::from(is(tokens.get(but + 1), &["rather"]));
+        tokens.get(many).filter(|t| number(t).is_some())?;
+        Some((i, but, many))
+    });
+    let Some((i, but, many)) = found else {
+        return tokens;
+    };
+    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
+    let close = (many..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
+    let own = first_noun(&tokens[many..close]).filter(|x| x.0 < 4);
+    let old = first_noun(&tokens[i..but]);
+    let mut np: Vec<Token> = match (own, old) {
+        (Some(_), _) => tokens[many + 1..close].to_vec(),
+        (None, Some((a, b))) => [&tokens[i + a..i + b], &tokens[many + 1..close]].concat(),
+        _ => return tokens,
+    };
+    np.retain(|t| !plain_verb(t));
+    let mut out = tokens[..from].to_vec();
+    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[close..]]));
+    out
+}
+
+/// "five parked cars would be better than three", "I'd rather have four on the right than two".
+fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
+    let prefers = tokens.iter().any(|t| {
+        matches!(text(t), "better" | "rather" | "prefer" | "nicer" | "preferable" | "sooner" | "preferred")
+    });
+    let found = (2..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], &["rather than", "than", "to", "over", "instead of"])?;
+        let n = n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
+        let few = tokens.get(i + n).filter(|t| number(t).is_some())?;
+        let of = leads(&tokens[i + n + 1..], &["of them", "of those", "as now", "as before"]).unwrap_or(0);
+        let end = i + n + 1 + of;
+        (text(few) != "a" && tokens.get(end).is_none_or(links)).then_some((i, end))
+    });
+    let Some((i, end)) = found.filter(|_| prefers) else {
+        return tokens;
+    };
+    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
+    let Some(many) = (from..i).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1))) else {
+        return tokens;
+    };
+    if first_noun(&tokens[from..many]).is_some() || first_noun(&tokens[many..i]).is_none_or(|x| x.0 > 4) {
+        return tokens;
+    }
+    let np: Vec<Token> = tokens[many + 1..i].iter().filter(|t| !plain_verb(t)).cloned().collect();
+    let mut out = tokens[..from].to_vec();
+    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[end..]]));
+    out
+}
