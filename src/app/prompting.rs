@@ -354,6 +354,7 @@ fn road_under(
 mod tests {
     use super::*;
     use crate::generation::text::description::TimeOfDay;
+    use crate::scene::Class;
     use crate::generation::text::read;
 
     #[test]
