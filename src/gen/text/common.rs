@@ -18,6 +18,8 @@ const ORDINALS: [&str; 12] = [
 
 const CLOSING: &str = "that is all|thats all|this is all|and that is it|and thats it|that is everything|thats everything|that is already everything|thats already everything|nothing more than that|no more than that|that will be all|thatll be all|that would be all|that will do|that should be all|that is the lot|thats the lot";
 
+const CROSSES_OURS: &str = "street that crosses ours|road that crosses ours|street which crosses ours|road which crosses ours|street that crosses mine|road that crosses mine|street that crosses our street|street that crosses our road|road that crosses our road|road that crosses our street|street that crosses my street|road that crosses my road|street crossing ours|road crossing ours|street crossing our road|street crossing our street|road crossing our street|road crossing our road|street running across ours|road running across ours|street that runs across ours";
+
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
         || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
@@ -34,6 +36,8 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
     let out = without_asides(&without_closing(&out));
+    let out = own_thing(&out);
+    let out = replaced(&out, CROSSES_OURS, "cross street");
     let out = both_the(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
@@ -150,6 +154,21 @@ fn bounds(tokens: &[Token]) -> Vec<Token> {
                 out.push(tokens[i].clone());
                 i += 1;
             }
+        }
+    }
+    out
+}
+
+/// "his own car": his car.
+fn own_thing(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let whose = out
+            .last()
+            .is_some_and(|b| matches!(b.text.as_str(), "his" | "her" | "their" | "its"));
+        let thing = tokens.get(i + 1).is_some_and(super::ellipsis::is_noun);
+        if !(t.text == "own" && whose && thing) {
+            out.push(t.clone());
         }
     }
     out

@@ -16,6 +16,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = has_again(&s);
+        s = next_lane(&s);
         s = second_side(&s);
         s = place_again(&s, &out);
         s = replaced(
@@ -152,6 +153,34 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
                 .filter(|t| t.kind == TokenKind::Comma)
             {
                 t.kind = TokenKind::Stop;
+            }
+        }
+    }
+    out
+}
+
+/// "to the right of us, in the neighbouring lane": in the right lane.
+fn next_lane(sentence: &[Token]) -> Vec<Token> {
+    const NEXT: &str = "neighbouring lane|neighboring lane|adjacent lane|adjoining lane|next lane|lane next to us|lane next to me|lane next to ours|lane beside us|lane beside ours|lane beside me|lane alongside|lane next to mine|lane beside mine";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let side = |t: &&Token| matches!(t.text.as_str(), "left" | "right");
+        let stop = |t: &&Token| t.kind != TokenKind::Stop && t.text != "while";
+        let next = begins(&sentence[i..], NEXT).and_then(|n| {
+            let after = sentence[i + n..].iter().take(5).take_while(|t| stop(t) && t.kind != TokenKind::Comma);
+            let before = out.iter().rev().take(12).take_while(|t: &&Token| stop(t));
+            let side = after.into_iter().find(side).or_else(|| before.into_iter().find(side))?;
+            Some((n, side.text.clone()))
+        });
+        match next {
+            Some((n, side)) => {
+                out.extend([side.as_str(), "lane"].map(|w| word(w, &sentence[i])));
+                i += n;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
             }
         }
     }

@@ -249,6 +249,53 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
     }
 }
 
+/// "two buses at the kerb, and a taxi between them": the two apart, with room for it.
+fn apart_for(mentions: &mut Vec<Mention>) {
+    for i in 0..mentions.len() {
+        let between = mentions[i].spec.relations.iter().position(|r| {
+            r.relation == RelationKind::Between && r.and == Some(r.anchor) && matches!(r.anchor, Anchor::Object(_))
+        });
+        let Some((at, a)) = between.and_then(|k| match mentions[i].spec.relations[k].anchor {
+            Anchor::Object(a) => Some((k, a)),
+            _ => None,
+        }) else {
+            continue;
+        };
+        let two = mentions.get(a).is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && m.both.is_none());
+        if !two || a == i || mentions[a].spec.class == Class::Pedestrian {
+            continue;
+        }
+        let length = |m: &Mention| m.spec.size_m.or(m.spec.class.typical_size_m()).map_or(4.5, |s| s[0]);
+        let gap = length(&mentions[a]) + length(&mentions[i]) * f64::from(mentions[i].spec.count.n) + 4.0;
+        let span = mentions[i].spec.span;
+        mentions[a].spec.count = Count::exactly(1);
+        let mut twin = mentions[a].clone();
+        twin.spec.relations.retain(|r| r.distance_m.is_none());
+        twin.spec.relations.push(Stated {
+            relation: RelationKind::InFrontOf,
+            anchor: Anchor::Object(a),
+            and: None,
+            distance_m: Some(gap),
+            span,
+        });
+        let strip = mentions[a]
+            .spec
+            .relations
+            .iter()
+            .find(|r| matches!(r.relation, RelationKind::On | RelationKind::ParkedOn) && matches!(r.anchor, Anchor::Lane(_)))
+            .copied();
+        mentions.push(twin);
+        let second = Anchor::Object(mentions.len() - 1);
+        let m = &mut mentions[i].spec;
+        m.relations[at].and = Some(second);
+        let placed = m.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
+        if let (Some(strip), false, true) = (strip, placed, m.class.is_vehicle()) {
+            m.state = m.state.filter(|s| *s != ObjectState::Moving).or(Some(ObjectState::Waiting));
+            m.relations.push(Stated { distance_m: None, ..strip });
+        }
+    }
+}
+
 /// What was said of road works holds for what they are made of; what stands beside something in a car park stands there, too.
 fn share_places(mentions: &mut [Mention]) {
     use LaneRole as L;
@@ -381,6 +428,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
+    apart_for(mentions);
     // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions
         .windows(3)

@@ -19,6 +19,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
         "only",
     );
     let out = pointing_back(&led_by_others(&drivers(&out)));
+    let out = whom_we_follow(&held_by_place(&without_empty_places(&out)));
     let out = participle_first(&out);
     let out = crossed_over(&out);
     let out = beyond(&out);
@@ -121,6 +122,103 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
             _ => out.push(t.clone()),
         }
         i += 1;
+    }
+    out
+}
+
+/// "the coach that I am driving behind": which is in front of me.
+fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
+    const WE: &str = "i am|im|we are|were|i|we|i have been|we have been|ive been|weve been";
+    const DO: &str = "driving|travelling|traveling|riding|stuck|sitting|waiting|cruising|rolling|drive|travel|ride|wait|sit|standing|stand|queueing|queuing|am|are";
+    const FOLLOW: [(&str, &str); 2] = [
+        (
+            "behind|following|follow|trailing|tailing|chasing|trail|tail",
+            "in front of me",
+        ),
+        ("ahead of|in front of|leading", "behind me"),
+    ];
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let found = begins(&tokens[i..], "that|which|whom|who")
+            .map_or(Some(0), Some)
+            .filter(|_| out.last().is_some_and(is_noun))
+            .and_then(|that| {
+                let we = that + begins(&tokens[i + that..], WE)?;
+                let does = we + begins(&tokens[i + we..], DO).unwrap_or(0);
+                let (n, place) = FOLLOW
+                    .iter()
+                    .find_map(|(said, place)| begins(&tokens[i + does..], said).map(|n| (does + n, *place)))?;
+                // ("... that I am driving behind a truck" goes on)
+                let next = tokens.get(i + n);
+                let over = next.is_none_or(|t| {
+                    t.kind != TokenKind::Word
+                        || matches!(t.text.as_str(), "is" | "are" | "has" | "have" | "was" | "at" | "and" | "stops" | "brakes" | "in" | "does")
+                });
+                over.then_some((n, place))
+            });
+        match found {
+            Some((n, place)) => {
+                out.extend(place.split(' ').map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+fn is_place(t: &Token) -> bool {
+    matches!(look_up(&t.text), Some(Sense::Place(..))) || matches!(t.text.as_str(), "lane" | "side" | "lot" | "park")
+}
+
+/// "a car park holding only motorcycles": with them.
+fn held_by_place(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for t in tokens {
+        let holds = matches!(
+            t.text.as_str(),
+            "holding" | "containing" | "housing" | "hosting" | "accommodating" | "featuring"
+        );
+        if holds && out.last().is_some_and(is_place) {
+            out.push(word("with", t));
+        } else {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+/// "whereas the one on the right is empty": of a lane or pavement that says no more than nothing.
+fn without_empty_places(tokens: &[Token]) -> Vec<Token> {
+    const EMPTY: &str = "is empty|are empty|is free|are free|is clear|are clear|is deserted|are deserted|is unoccupied|is vacant|remains empty|stays empty|remains free|is completely empty|is quite empty|is entirely empty|is still free|stays free";
+    const HEAD: &str = "the one|the other one|the other|the lane|the left lane|the right lane|the left one|the right one|the pavement|the sidewalk|the left pavement|the right pavement|the left sidewalk|the right sidewalk|the footpath|the left kerb|the right kerb|the other pavement|the other sidewalk|the kerb";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let apart = |t: &Token| {
+            matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
+                || matches!(t.text.as_str(), "while" | "whereas" | "but" | "and")
+        };
+        let end = (i + 1..tokens.len()).find(|k| apart(&tokens[*k])).unwrap_or(tokens.len());
+        let clause = &tokens[i..end];
+        let opens = !out.is_empty() && out.last().is_some_and(apart);
+        let empty = (1..clause.len()).any(|k| begins(&clause[k..], EMPTY).is_some_and(|n| k + n == clause.len()));
+        if opens && empty && begins(clause, HEAD).is_some() && !clause.iter().any(is_noun) {
+            while out
+                .last()
+                .is_some_and(|t| t.kind == TokenKind::Comma || t.kind == TokenKind::Word && apart(t))
+            {
+                out.pop();
+            }
+            i = end;
+        } else {
+            out.push(tokens[i].clone());
+            i += 1;
+        }
     }
     out
 }

@@ -287,7 +287,10 @@ fn as_many_of_both(tokens: &[Token]) -> Vec<Token> {
             && (plural[0]..lead).all(|k| {
                 plural.contains(&k)
                     || ends(Some(&sentence[k]))
-                    || matches!(sentence[k].text.as_str(), "and" | "as" | "or" | "plus")
+                    || matches!(
+                        sentence[k].text.as_str(),
+                        "and" | "as" | "or" | "plus" | "in" | "this" | "the" | "scene" | "picture" | "here" | "there"
+                    )
                     || matches!(look_up(&sentence[k].text), Some(Sense::State(_, false) | Sense::Attribute(_)))
             });
         if !listed {

@@ -270,6 +270,19 @@ impl<'a> Parser<'a> {
                 if led && fresh && !self.edits {
                     self.pending = None;
                 }
+                // "a grader is levelling the oncoming lane": where it does that
+                let the = usize::from(matches!(self.sense(self.at + 1), Some(Sense::Article(true))));
+                let place = matches!(self.sense(self.at + 1 + the), Some(Sense::Place(Anchor::Lane(_), _)));
+                if place
+                    && item.words.ends_with("ing")
+                    && self.after_is()
+                    && self.pending.is_none()
+                    && !self.last.is_empty()
+                    && !self.edits
+                {
+                    self.begin(Prep::In, span);
+                    return true;
+                }
                 self.unread(span, None);
                 return true;
             }

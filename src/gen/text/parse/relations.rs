@@ -21,6 +21,7 @@ impl Parser<'_> {
         }
         self.pre = Pre::default();
         let distance_m = self.distance.take().map(|d| d.0);
+        let of_last = prep == Prep::Rels(vec![RelationKind::Following]);
         self.pending = Some(Pending {
             prep,
             span,
@@ -29,7 +30,10 @@ impl Parser<'_> {
             anded: self.anded || self.after_and(),
             not,
             finite: self.after_is() && !self.relative,
-            ego: self.ego_subject && self.head.is_empty(),
+            // ("we are behind a trailer pulled by a car": the trailer is)
+            ego: self.ego_subject
+                && self.head.is_empty()
+                && (self.last.is_empty() || self.fresh || !of_last),
             distance_m,
         });
     }

@@ -109,10 +109,15 @@ impl Parser<'_> {
             }
         }
         if self.pending.is_some() {
-            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty());
+            // "stopped by a pedestrian who is on the crosswalk" says where that one is
+            let of_one = self.relative
+                && self.fronted.last().is_some_and(|f| matches!(f.anchor, Anchor::Object(_)));
+            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty()) && !of_one;
             let next_noun = self.noun_ahead(self.at + 1)
                 // "in our lane ahead of us is a truck"
                 || self.inverted_ahead(self.at + 1)
+                // "at the zebra ahead four people are waiting"
+                || matches!(self.sense(self.at + 1), Some(Sense::EgoRel(_))) && self.noun_ahead(self.at + 2)
                 || matches!(
                     self.item(self.at + 1).map(|i| i.tag),
                     Some(Tag::Comma | Tag::Mark)
