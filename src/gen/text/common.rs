@@ -20,6 +20,8 @@ const CLOSING: &str = "that is all|thats all|this is all|and that is it|and that
 
 const CROSSES_OURS: &str = "street that crosses ours|road that crosses ours|street which crosses ours|road which crosses ours|street that crosses mine|road that crosses mine|street that crosses our street|street that crosses our road|road that crosses our road|road that crosses our street|street that crosses my street|road that crosses my road|street crossing ours|road crossing ours|street crossing our road|street crossing our street|road crossing our street|road crossing our road|street running across ours|road running across ours|street that runs across ours";
 
+const SET_OFF: &str = "quite near|quite close|very near|very close|rather close|rather near|of course|as usual|as always|by the way|for example|for instance|say|i think|i guess|i believe|apparently|obviously|as it happens|so it seems|it seems|sadly|luckily|unfortunately|fortunately|naturally|needless to say|believe it or not|as you can see|you see|mind you|i suppose|let us say|lets say|i would say|id say|in fact|actually|surprisingly|for a change|as so often";
+
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
         || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
@@ -186,6 +188,19 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
         let end = aside.and_then(|n| {
             (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word)
         });
+        // ", quite near,"
+        let said = begins(&tokens[i..], SET_OFF).filter(|n| {
+            let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
+            comma(out.last()) && comma(tokens.get(i + n))
+        });
+        if let Some(n) = said {
+            out.pop();
+            let verb = tokens.get(i + n + 1).is_some_and(|t| {
+                matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives")
+            });
+            i += n + usize::from(verb);
+            continue;
+        }
         let plain = |k: usize| !tokens[i..k].iter().any(super::ellipsis::is_noun);
         match end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k)) {
             Some(end) => {

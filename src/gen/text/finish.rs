@@ -177,6 +177,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
 /// "a bus 18 m out in our lane": a distance alone counts ahead.
 fn distance_ahead(spec: &mut ObjectSpec) {
     use RelationKind as R;
+    // "at a distance of 12 m a car is in front of us"
+    let far = spec
+        .relations
+        .iter()
+        .position(|r| r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some());
+    let side = spec.relations.iter().position(|r| {
+        matches!(r.relation, R::InFrontOf | R::Behind) && r.anchor == Anchor::Ego && r.distance_m.is_none()
+    });
+    let told = spec
+        .relations
+        .iter()
+        .any(|r| matches!(r.relation, R::InFrontOf | R::Behind) && r.distance_m.is_some());
+    if let (Some(far), Some(side), false) = (far, side, told) {
+        spec.relations[side].distance_m = spec.relations[far].distance_m;
+        spec.relations.remove(far);
+    }
     let sided = spec.relations.iter().any(|r| {
         r.anchor == Anchor::Ego
             && !matches!(

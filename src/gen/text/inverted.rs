@@ -25,7 +25,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = beyond(&out);
     let out = without_contact_clause(&out);
     let out = way_of_another(&out);
-    let out = lets_go(&parker(&out));
+    let out = lets_go(&parker(&put_up(&out)));
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
@@ -183,7 +183,10 @@ fn held_by_place(tokens: &[Token]) -> Vec<Token> {
             t.text.as_str(),
             "holding" | "containing" | "housing" | "hosting" | "accommodating" | "featuring"
         );
-        if holds && out.last().is_some_and(is_place) {
+        let held = matches!(t.text.as_str(), "holds" | "carries" | "hosts" | "houses" | "accommodates");
+        if held && out.last().is_some_and(is_place) {
+            out.push(word("has", t));
+        } else if holds && out.last().is_some_and(is_place) {
             out.push(word("with", t));
         } else {
             out.push(t.clone());
@@ -441,6 +444,33 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
                 let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
                 out.extend(state.iter().map(|w| word(w, &tokens[i])));
                 i = noun + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "someone has put up three barriers": there are three.
+fn put_up(tokens: &[Token]) -> Vec<Token> {
+    const WHO: &str = "someone|somebody|some idiot|some fool|some guy|they|the police|the workers|the builders|the council|people|the firemen|workmen|the road workers|the authorities|the city";
+    const PUT: &str = "has put up|have put up|put up|has set up|have set up|set up|has placed|have placed|placed|has erected|have erected|erected|has put|have put|has left|have left|has installed|have installed|has deployed|have deployed|has laid out|have laid out|has put out|have put out|put out|have positioned|has positioned";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let whole = begins(&tokens[i..], WHO)
+            .filter(|_| opens(tokens, i))
+            .and_then(|n| {
+                let k = i + n + begins(&tokens[i + n..], PUT)?;
+                (number(tokens.get(k)?)? > 1 && tokens[k + 1..].iter().take(4).any(is_noun)).then_some(k)
+            });
+        match whole {
+            Some(k) => {
+                out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
+                i = k;
             }
             None => {
                 out.push(tokens[i].clone());

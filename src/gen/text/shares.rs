@@ -12,11 +12,11 @@ use crate::scene::graph::LaneRole;
 /// A text with its shares in numbers.
 pub fn counted(tokens: &[Token]) -> Vec<Token> {
     let out = of_which_there_are(&without_times(tokens));
-    let out = riders_wait(&out);
+    let out = ranges(&riders_wait(&out));
     let out = in_each_lane(&waited_for(&out));
     let out = replaced(&out, "of which|of whom", "of them");
     let out = of_a_group(&out);
-    let out = halves(&out);
+    let out = some_of_so_many(&halves(&out));
     let out = as_many_of_both(&out);
     let out = added_and_taken(&out);
     let out = so_is(&out);
@@ -52,6 +52,40 @@ fn without_times(tokens: &[Token]) -> Vec<Token> {
             out.drain(i + 1..i + 4);
         }
         i += 1;
+    }
+    out
+}
+
+/// "10 to 20 m ahead": 15 m; "from 5 to 25 m ahead" is all along there.
+fn ranges(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let from = begins(&tokens[i..], "from|between|anywhere from|somewhere between|anywhere between|about").unwrap_or(0);
+        let range = tokens.get(i + from).and_then(number).and_then(|a| {
+            let to = i + from + 1;
+            let hyphen = tokens
+                .get(to)
+                .is_some_and(|t| matches!(t.kind, TokenKind::Number(_)) && tokens[to - 1].span.end + 1 == t.span.start);
+            let n = usize::from(!hyphen && begins(&tokens[to..], "to|and|or|till|until").is_some());
+            let b = tokens.get(to + n).and_then(number).filter(|b| *b > a && (hyphen || n == 1))?;
+            let unit = tokens.get(to + n + 1).filter(|t| is_unit(t))?;
+            let between = tokens[i].text.ends_with("between");
+            let and = tokens[to].text == "and";
+            (and == between || hyphen).then(|| ((a + b).div_ceil(2), unit.clone(), to + n + 2))
+        });
+        match range {
+            Some((_, _, end)) if from > 0 && tokens[i].text == "from" => i = end,
+            Some((mean, unit, end)) => {
+                out.push(digits(mean, &tokens[i]));
+                out.push(unit);
+                i = end;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
     }
     out
 }
@@ -113,7 +147,15 @@ fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
     let mut i = 0;
     while i < tokens.len() {
         // who is there: "a coach", "two parked cars"
-        let lead = begins(&tokens[i..], EACH).and_then(|n| {
+        let beside = || {
+            let a = begins(&tokens[i..], "in each lane|in each of the lanes|in both lanes|in both of the lanes|in the lanes|in the two lanes|in either lane|in each one of the lanes|in the lane|in every lane")?;
+            let b = begins(&tokens[i + a..], "beside|next to|alongside|adjacent to|on either side of|on both sides of|to either side of|on each side of|neighbouring|to both sides of|bordering")?;
+            let one = begins(&tokens[i..], "in the lane").is_some();
+            let sided = begins(&tokens[i + a..], "beside|next to|alongside|adjacent to|neighbouring|bordering").is_some();
+            let c = begins(&tokens[i + a + b..], "mine|ours|us|me|my lane|our lane|my own|our own|my own lane|our own lane")?;
+            (!(one && sided)).then_some(a + b + c)
+        };
+        let lead = begins(&tokens[i..], EACH).or_else(beside).and_then(|n| {
             let from = (0..out.len()).rev().take(5).find(|k| {
                 number(&out[*k]).is_some() || matches!(out[*k].text.as_str(), "a" | "an" | "one")
             })?;
@@ -196,12 +238,50 @@ fn whole(before: &[Token]) -> Option<u32> {
     })
 }
 
+/// "of the six parked cars": their number, their words, and how many words that is.
+fn own_group(rest: &[Token]) -> Option<((u32, &[Token]), usize)> {
+    let of = begins(rest, "of the|of these|of those|of my|of our|of all")?;
+    let whole = rest.get(of).and_then(number).filter(|n| *n > 1)?;
+    let noun = (of + 1..rest.len().min(of + 4)).find(|k| is_noun(&rest[*k]))?;
+    let plain = !rest[of..noun].iter().any(|t| ends(Some(t))) && !rest.get(noun + 1).is_some_and(is_noun);
+    plain.then(|| ((whole, &rest[of - 1..=noun]), noun + 1))
+}
+
+/// "one of the two men crosses, the other waits": the two men, one of them.
+fn some_of_so_many(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let many = number(&tokens[i]).filter(|_| opens(tokens, i));
+        let own = many.and_then(|m| Some((m, own_group(&tokens[i + 1..]).filter(|g| g.0.0 > m)?)));
+        match own {
+            Some((_, ((_, noun), len))) => {
+                out.extend_from_slice(noun);
+                out.push(Token {
+                    kind: TokenKind::Comma,
+                    ..word(",", &tokens[i])
+                });
+                out.push(tokens[i].clone());
+                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+                i += 1 + len;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
 /// "half of them": so many.
 fn halves(tokens: &[Token]) -> Vec<Token> {
-    const SHARES: [(u32, &str); 3] = [
-        (2, "one half|a half|half"),
-        (3, "a third|one third"),
-        (4, "a quarter|one quarter|a fourth"),
+    const SHARES: [((u32, u32), &str); 5] = [
+        ((1, 2), "one half|a half|half"),
+        ((1, 3), "a third|one third"),
+        ((1, 4), "a quarter|one quarter|a fourth"),
+        ((2, 3), "two thirds|2 thirds"),
+        ((3, 4), "three quarters|3 quarters|three fourths"),
     ];
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
@@ -209,7 +289,7 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
         let found = SHARES
             .iter()
             .find_map(|(d, said)| begins(&tokens[i..], said).map(|n| (*d, n)));
-        let Some((divisor, n)) = found else {
+        let Some(((share, divisor), n)) = found else {
             // "the other half", "the remaining half"
             match begins(&tokens[i..], "the other half of them|the other half|the remaining half|the second half") {
                 Some(n) if whole(&out).is_some() => {
@@ -224,6 +304,19 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
             continue;
         };
         let rest = &tokens[i + n..];
+        // "half of the six cars are parked": six cars, three of them
+        if let Some((group, len)) = own_group(rest).filter(|g| opens(tokens, i) && g.0.0 % divisor == 0) {
+            let (whole, noun) = group;
+            out.extend_from_slice(noun);
+            out.push(Token {
+                kind: TokenKind::Comma,
+                ..word(",", &tokens[i])
+            });
+            out.push(digits(whole / divisor * share, &tokens[i]));
+            out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+            i += n + len;
+            continue;
+        }
         let of = begins(rest, "of them|of these|of those").unwrap_or(0);
         // "half of the cars", "half the cars"
         let own = begins(rest, "of the|the|of my|of these|of those")
@@ -241,7 +334,7 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
         let many = whole(&out).filter(|w| w % divisor == 0 && (of + own > 0 || bare));
         match many {
             Some(many) => {
-                out.push(digits(many / divisor, &tokens[i]));
+                out.push(digits(many / divisor * share, &tokens[i]));
                 out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
                 i += n + of.max(own);
             }

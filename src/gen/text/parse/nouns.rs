@@ -127,6 +127,13 @@ impl Parser<'_> {
             let many: u32 = driven.map(|s| s.count.n).sum();
             pre.count = (many > 0).then(|| Count::exactly(many));
         }
+        // "two children and their parents"
+        let whose = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "their" | "his" | "her"));
+        if whose && matches!(word, "parents" | "grandparents") && pre.count.is_none() && !self.edits {
+            pre.count = Some(Count::exactly(2));
+        }
         let some_one = !plural
             && noun.several == 1
             && self
