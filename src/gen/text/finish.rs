@@ -277,7 +277,7 @@ fn apart_for(mentions: &mut Vec<Mention>) {
         }) else {
             continue;
         };
-        let two = mentions.get(a).is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && m.both.is_none());
+        let two = mentions.get(a).is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && !m.definite && m.both.is_none());
         if !two || a == i || mentions[a].spec.class == Class::Pedestrian {
             continue;
         }

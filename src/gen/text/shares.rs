@@ -66,7 +66,8 @@ fn ranges(tokens: &[Token]) -> Vec<Token> {
             let to = i + from + 1;
             let hyphen = tokens
                 .get(to)
-                .is_some_and(|t| matches!(t.kind, TokenKind::Number(_)) && tokens[to - 1].span.end + 1 == t.span.start);
+                .is_some_and(|t| matches!(t.kind, TokenKind::Number(_)) && tokens[to - 1].span.end + 1 == t.span.start)
+                && matches!(tokens[to - 1].kind, TokenKind::Number(_));
             let n = usize::from(!hyphen && begins(&tokens[to..], "to|and|or|till|until").is_some());
             let b = tokens.get(to + n).and_then(number).filter(|b| *b > a && (hyphen || n == 1))?;
             let unit = tokens.get(to + n + 1).filter(|t| is_unit(t))?;
@@ -93,10 +94,18 @@ fn ranges(tokens: &[Token]) -> Vec<Token> {
 /// "taxis that wait for passengers": who is waited for in general is not there.
 fn waited_for(tokens: &[Token]) -> Vec<Token> {
     const WAIT: &str = "wait for|waits for|waiting for|waited for|looking for|hoping for";
+    const WHAT: &str = "for the road to clear|for the street to clear|for the road to be clear|for the road to be free|for the way to be free|for the lights to change|for the light to change|for the lights to turn green|for the light to turn green|for the traffic lights to change|for the traffic to clear|for the traffic to pass|for the traffic to ease|for a gap|for a gap in the traffic|for a chance to cross|for the green light|for green|for a green light|for the green man|for the signal|for the signal to change|for a break in the traffic|for their turn|for its turn|for his turn|for her turn|for better weather|for a lift";
     const WHOM: &str = "passengers|customers|clients|guests|fares|orders|business|work|riders";
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
+        let waits = tokens[..i].iter().rev().take(6).any(|t| {
+            matches!(t.text.as_str(), "waiting" | "waits" | "wait" | "stand" | "stands" | "standing" | "queue" | "queueing")
+        });
+        if let Some(n) = begins(&tokens[i..], WHAT).filter(|_| waits) {
+            i += n;
+            continue;
+        }
         let n = begins(&tokens[i..], WAIT).filter(|n| {
             begins(&tokens[i + n..], WHOM).is_some_and(|m| {
                 ends(tokens.get(i + n + m)) || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))

@@ -53,7 +53,7 @@ pub(super) struct Parser<'a> {
     pub(super) last: Vec<usize>,
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
-    fronted_state: Option<ObjectState>,
+    pub(super) fronted_state: Option<ObjectState>,
     fronted_both: Option<bool>,  // "on both sides stand ..."
     pub(super) chain: bool,      // only nouns so far in this clause
     pub(super) list: Vec<usize>, // those nouns

@@ -112,7 +112,10 @@ impl Parser<'_> {
             // "stopped by a pedestrian who is on the crosswalk" says where that one is
             let of_one = self.relative
                 && self.fronted.last().is_some_and(|f| matches!(f.anchor, Anchor::Object(_)));
-            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty()) && !of_one;
+            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty())
+                && !of_one
+                // "waiting at the right kerb for a gap: an old man"
+                && (self.fronted_state.is_none() || anchor == Anchor::Lane(LaneRole::Road));
             let next_noun = self.noun_ahead(self.at + 1)
                 // "in our lane ahead of us is a truck"
                 || self.inverted_ahead(self.at + 1)
