@@ -38,7 +38,8 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
     let out = without_asides(&without_closing(&out));
-    let out = own_thing(&out);
+    let out = replaced(&own_thing(&out), "in number|in numbers", "in total");
+    let out = of_so_many(&out);
     let out = replaced(&out, CROSSES_OURS, "cross street");
     let out = both_the(&out);
     let out = sides_in_short(&out);
@@ -161,6 +162,44 @@ fn bounds(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
+/// "a family of five": five people.
+fn of_so_many(tokens: &[Token]) -> Vec<Token> {
+    const GROUP: &str =
+        "family of|group of|party of|team of|crew of|band of|gang of|bunch of|crowd of|class of";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], GROUP).filter(|n| {
+            let many = tokens.get(i + n).is_some_and(is_number);
+            let bare = tokens.get(i + n + 1).is_none_or(|t| {
+                !matches!(
+                    look_up(&t.text),
+                    Some(Sense::Noun(..) | Sense::Attribute(_) | Sense::Size(_) | Sense::Color(_))
+                )
+            });
+            many && bare
+        });
+        match n {
+            Some(n) => {
+                if out
+                    .last()
+                    .is_some_and(|t| matches!(t.text.as_str(), "a" | "the" | "one" | "another"))
+                {
+                    out.pop();
+                }
+                out.push(tokens[i + n].clone());
+                out.push(word("people", &tokens[i]));
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
 /// "his own car": his car.
 fn own_thing(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
@@ -185,9 +224,8 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
         let aside = begins(&tokens[i..], LEAD)
             .filter(|_| out.last().is_some_and(|t| t.kind == TokenKind::Comma))
             .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == "to"));
-        let end = aside.and_then(|n| {
-            (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word)
-        });
+        let end =
+            aside.and_then(|n| (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word));
         // ", quite near,"
         let said = begins(&tokens[i..], SET_OFF).filter(|n| {
             let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
@@ -196,7 +234,10 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
         if let Some(n) = said {
             out.pop();
             let verb = tokens.get(i + n + 1).is_some_and(|t| {
-                matches!(t.text.as_str(), "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives")
+                matches!(
+                    t.text.as_str(),
+                    "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives"
+                )
             });
             i += n + usize::from(verb);
             continue;

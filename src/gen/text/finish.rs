@@ -45,7 +45,10 @@ fn is_sort(noun: &str) -> bool {
 fn drop_named(mentions: &mut [Mention], prompt: &str) {
     let joined = |a: &Mention, b: &Mention| {
         let gap = prompt.get(a.spec.span.end..b.spec.span.start).unwrap_or("?");
-        let gap = gap.trim().trim_start_matches([',', ':', '(', '-', '–', '—']).trim();
+        let gap = gap
+            .trim()
+            .trim_start_matches([',', ':', '(', '-', '–', '—'])
+            .trim();
         matches!(gap, "" | "and" | "plus" | "namely" | "and also" | "i.e." | "viz.")
     };
     for i in 0..mentions.len() {
@@ -60,9 +63,19 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
         let listed = mentions.get(i + 1).is_some_and(|next| {
             let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
             !gap.contains(['.', ';', '!', '?'])
-                && [":", "namely", " - ", "–", "—", "(", "i.e", "to be exact", "specifically"]
-                    .iter()
-                    .any(|w| gap.contains(w))
+                && [
+                    ":",
+                    "namely",
+                    " - ",
+                    "–",
+                    "—",
+                    "(",
+                    "i.e",
+                    "to be exact",
+                    "specifically",
+                ]
+                .iter()
+                .any(|w| gap.contains(w))
         });
         let one_sentence = |a: &Mention, b: &Mention| {
             prompt
@@ -265,11 +278,45 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
     }
 }
 
+/// "the cross street is busy: from the left come two cars": on it.
+fn from_cross_street(mentions: &mut [Mention], prompt: &str) {
+    let prompt = prompt.to_lowercase();
+    let named = ["cross street", "side street", "crossing road", "crossing street"]
+        .iter()
+        .any(|w| prompt.contains(w));
+    for m in mentions.iter_mut().filter(|m| named && m.spec.class.is_vehicle()) {
+        let from = m.spec.relations.iter().find(|r| {
+            matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf)
+                && r.anchor == Anchor::Ego
+                && r.span.of(&prompt).starts_with("from the ")
+        });
+        let Some(span) = from.map(|r| r.span) else {
+            continue;
+        };
+        if !m
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Lane(_) | Anchor::Junction))
+        {
+            m.spec.relations.push(Stated {
+                relation: RelationKind::On,
+                anchor: Anchor::Lane(LaneRole::Cross),
+                and: None,
+                distance_m: None,
+                span,
+            });
+        }
+    }
+}
+
 /// "two buses at the kerb, and a taxi between them": the two apart, with room for it.
 fn apart_for(mentions: &mut Vec<Mention>) {
     for i in 0..mentions.len() {
         let between = mentions[i].spec.relations.iter().position(|r| {
-            r.relation == RelationKind::Between && r.and == Some(r.anchor) && matches!(r.anchor, Anchor::Object(_))
+            r.relation == RelationKind::Between
+                && r.and == Some(r.anchor)
+                && matches!(r.anchor, Anchor::Object(_))
         });
         let Some((at, a)) = between.and_then(|k| match mentions[i].spec.relations[k].anchor {
             Anchor::Object(a) => Some((k, a)),
@@ -277,11 +324,18 @@ fn apart_for(mentions: &mut Vec<Mention>) {
         }) else {
             continue;
         };
-        let two = mentions.get(a).is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && !m.definite && m.both.is_none());
+        let two = mentions
+            .get(a)
+            .is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && !m.definite && m.both.is_none());
         if !two || a == i || mentions[a].spec.class == Class::Pedestrian {
             continue;
         }
-        let length = |m: &Mention| m.spec.size_m.or(m.spec.class.typical_size_m()).map_or(4.5, |s| s[0]);
+        let length = |m: &Mention| {
+            m.spec
+                .size_m
+                .or(m.spec.class.typical_size_m())
+                .map_or(4.5, |s| s[0])
+        };
         let gap = length(&mentions[a]) + length(&mentions[i]) * f64::from(mentions[i].spec.count.n) + 4.0;
         let span = mentions[i].spec.span;
         mentions[a].spec.count = Count::exactly(1);
@@ -298,7 +352,10 @@ fn apart_for(mentions: &mut Vec<Mention>) {
             .spec
             .relations
             .iter()
-            .find(|r| matches!(r.relation, RelationKind::On | RelationKind::ParkedOn) && matches!(r.anchor, Anchor::Lane(_)))
+            .find(|r| {
+                matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
+                    && matches!(r.anchor, Anchor::Lane(_))
+            })
             .copied();
         mentions.push(twin);
         let second = Anchor::Object(mentions.len() - 1);
@@ -306,8 +363,14 @@ fn apart_for(mentions: &mut Vec<Mention>) {
         m.relations[at].and = Some(second);
         let placed = m.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
         if let (Some(strip), false, true) = (strip, placed, m.class.is_vehicle()) {
-            m.state = m.state.filter(|s| *s != ObjectState::Moving).or(Some(ObjectState::Waiting));
-            m.relations.push(Stated { distance_m: None, ..strip });
+            m.state = m
+                .state
+                .filter(|s| *s != ObjectState::Moving)
+                .or(Some(ObjectState::Waiting));
+            m.relations.push(Stated {
+                distance_m: None,
+                ..strip
+            });
         }
     }
 }
@@ -464,6 +527,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     sun_shines(reading);
     in_car_park(mentions, reading);
     share_places(mentions);
+    from_cross_street(mentions, prompt);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;

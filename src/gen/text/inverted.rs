@@ -57,8 +57,7 @@ fn namely(tokens: &[Token]) -> Vec<Token> {
         let sorts = before.is_some_and(|t| {
             matches!(look_up(&t.text), Some(Sense::Noun(n, many)) if n.classes.len() > 2 && many || t.text == "traffic")
         });
-        let n = begins(&tokens[i..], NAMELY)
-            .filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
+        let n = begins(&tokens[i..], NAMELY).filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
         match n {
             Some(n) => {
                 while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
@@ -101,12 +100,16 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
     while i < tokens.len() {
         let t = &tokens[i];
         let who = matches!(t.text.as_str(), "driver" | "drivers" | "motorist" | "motorists");
-        let clause = tokens[i + 1..].iter().take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma));
-        let foot = clause.into_iter().any(|t| FOOT.split('|').any(|w| w == t.text));
-        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !foot;
-        let vehicle = out.last().is_some_and(|b| {
-            matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
-        });
+        let on_foot = || {
+            tokens[i + 1..]
+                .iter()
+                .take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma))
+                .any(|t| FOOT.split('|').any(|w| w == t.text))
+        };
+        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !on_foot();
+        let vehicle = out.last().is_some_and(
+            |b| matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle()),
+        );
         let fresh = out
             .iter()
             .rev()
@@ -146,14 +149,26 @@ fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
             .and_then(|that| {
                 let we = that + begins(&tokens[i + that..], WE)?;
                 let does = we + begins(&tokens[i + we..], DO).unwrap_or(0);
-                let (n, place) = FOLLOW
-                    .iter()
-                    .find_map(|(said, place)| begins(&tokens[i + does..], said).map(|n| (does + n, *place)))?;
+                let (n, place) = FOLLOW.iter().find_map(|(said, place)| {
+                    begins(&tokens[i + does..], said).map(|n| (does + n, *place))
+                })?;
                 // ("... that I am driving behind a truck" goes on)
                 let next = tokens.get(i + n);
                 let over = next.is_none_or(|t| {
                     t.kind != TokenKind::Word
-                        || matches!(t.text.as_str(), "is" | "are" | "has" | "have" | "was" | "at" | "and" | "stops" | "brakes" | "in" | "does")
+                        || matches!(
+                            t.text.as_str(),
+                            "is" | "are"
+                                | "has"
+                                | "have"
+                                | "was"
+                                | "at"
+                                | "and"
+                                | "stops"
+                                | "brakes"
+                                | "in"
+                                | "does"
+                        )
                 });
                 over.then_some((n, place))
             });
@@ -172,7 +187,8 @@ fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
 }
 
 fn is_place(t: &Token) -> bool {
-    matches!(look_up(&t.text), Some(Sense::Place(..))) || matches!(t.text.as_str(), "lane" | "side" | "lot" | "park")
+    matches!(look_up(&t.text), Some(Sense::Place(..)))
+        || matches!(t.text.as_str(), "lane" | "side" | "lot" | "park")
 }
 
 /// "a car park holding only motorcycles": with them.
@@ -183,7 +199,10 @@ fn held_by_place(tokens: &[Token]) -> Vec<Token> {
             t.text.as_str(),
             "holding" | "containing" | "housing" | "hosting" | "accommodating" | "featuring"
         );
-        let held = matches!(t.text.as_str(), "holds" | "carries" | "hosts" | "houses" | "accommodates");
+        let held = matches!(
+            t.text.as_str(),
+            "holds" | "carries" | "hosts" | "houses" | "accommodates"
+        );
         if held && out.last().is_some_and(is_place) {
             out.push(word("has", t));
         } else if holds && out.last().is_some_and(is_place) {
@@ -206,11 +225,18 @@ fn without_empty_places(tokens: &[Token]) -> Vec<Token> {
             matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
                 || matches!(t.text.as_str(), "while" | "whereas" | "but" | "and")
         };
-        let end = (i + 1..tokens.len()).find(|k| apart(&tokens[*k])).unwrap_or(tokens.len());
+        if begins(&tokens[i..], HEAD).is_none() || !out.last().is_some_and(apart) {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        }
+        let end = (i + 1..tokens.len())
+            .find(|k| apart(&tokens[*k]))
+            .unwrap_or(tokens.len());
         let clause = &tokens[i..end];
-        let opens = !out.is_empty() && out.last().is_some_and(apart);
-        let empty = (1..clause.len()).any(|k| begins(&clause[k..], EMPTY).is_some_and(|n| k + n == clause.len()));
-        if opens && empty && begins(clause, HEAD).is_some() && !clause.iter().any(is_noun) {
+        let empty =
+            (1..clause.len()).any(|k| begins(&clause[k..], EMPTY).is_some_and(|n| k + n == clause.len()));
+        if empty && !clause.iter().any(is_noun) {
             while out
                 .last()
                 .is_some_and(|t| t.kind == TokenKind::Comma || t.kind == TokenKind::Word && apart(t))
@@ -250,7 +276,15 @@ fn led_by_others(tokens: &[Token]) -> Vec<Token> {
                 kind: TokenKind::Comma,
                 ..word(",", &sentence[comma])
             };
-            Some([&sentence[comma + 1..end], &[apart], &sentence[..comma], &sentence[end..]].concat())
+            Some(
+                [
+                    &sentence[comma + 1..end],
+                    &[apart],
+                    &sentence[..comma],
+                    &sentence[end..],
+                ]
+                .concat(),
+            )
         });
         out.extend(moved.unwrap_or_else(|| sentence.to_vec()));
     }

@@ -31,7 +31,10 @@ fn opens(tokens: &[Token], i: usize) -> bool {
             tokens[i - 1].kind,
             TokenKind::Comma | TokenKind::Stop | TokenKind::Mark
         )
-        || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but" | "where" | "with")
+        || matches!(
+            tokens[i - 1].text.as_str(),
+            "and" | "while" | "but" | "where" | "with"
+        )
 }
 
 /// "1 x pedestrian": one.
@@ -61,15 +64,21 @@ fn ranges(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let from = begins(&tokens[i..], "from|between|anywhere from|somewhere between|anywhere between|about").unwrap_or(0);
+        let from = begins(
+            &tokens[i..],
+            "from|between|anywhere from|somewhere between|anywhere between|about",
+        )
+        .unwrap_or(0);
         let range = tokens.get(i + from).and_then(number).and_then(|a| {
             let to = i + from + 1;
-            let hyphen = tokens
-                .get(to)
-                .is_some_and(|t| matches!(t.kind, TokenKind::Number(_)) && tokens[to - 1].span.end + 1 == t.span.start)
-                && matches!(tokens[to - 1].kind, TokenKind::Number(_));
+            let hyphen = tokens.get(to).is_some_and(|t| {
+                matches!(t.kind, TokenKind::Number(_)) && tokens[to - 1].span.end + 1 == t.span.start
+            }) && matches!(tokens[to - 1].kind, TokenKind::Number(_));
             let n = usize::from(!hyphen && begins(&tokens[to..], "to|and|or|till|until").is_some());
-            let b = tokens.get(to + n).and_then(number).filter(|b| *b > a && (hyphen || n == 1))?;
+            let b = tokens
+                .get(to + n)
+                .and_then(number)
+                .filter(|b| *b > a && (hyphen || n == 1))?;
             let unit = tokens.get(to + n + 1).filter(|t| is_unit(t))?;
             let between = tokens[i].text.ends_with("between");
             let and = tokens[to].text == "and";
@@ -100,7 +109,10 @@ fn waited_for(tokens: &[Token]) -> Vec<Token> {
     let mut i = 0;
     while i < tokens.len() {
         let waits = tokens[..i].iter().rev().take(6).any(|t| {
-            matches!(t.text.as_str(), "waiting" | "waits" | "wait" | "stand" | "stands" | "standing" | "queue" | "queueing")
+            matches!(
+                t.text.as_str(),
+                "waiting" | "waits" | "wait" | "stand" | "stands" | "standing" | "queue" | "queueing"
+            )
         });
         if let Some(n) = begins(&tokens[i..], WHAT).filter(|_| waits) {
             i += n;
@@ -108,7 +120,8 @@ fn waited_for(tokens: &[Token]) -> Vec<Token> {
         }
         let n = begins(&tokens[i..], WAIT).filter(|n| {
             begins(&tokens[i + n..], WHOM).is_some_and(|m| {
-                ends(tokens.get(i + n + m)) || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))
+                ends(tokens.get(i + n + m))
+                    || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))
             })
         });
         match n {
@@ -127,14 +140,15 @@ fn waited_for(tokens: &[Token]) -> Vec<Token> {
 
 /// "two mopeds whose riders are waiting": which are.
 fn riders_wait(tokens: &[Token]) -> Vec<Token> {
-    let two_wheels = |t: &Token| {
-        matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
-    };
+    let two_wheels = |t: &Token| matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Bicycle | Class::Motorcycle));
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let n = begins(&tokens[i..], "whose rider|whose riders|whose driver|whose drivers")
-            .filter(|_| out.iter().rev().take(2).any(two_wheels));
+        let n = begins(
+            &tokens[i..],
+            "whose rider|whose riders|whose driver|whose drivers",
+        )
+        .filter(|_| out.iter().rev().take(2).any(two_wheels));
         match n {
             Some(n) => {
                 out.push(word("which", &tokens[i]));
@@ -157,11 +171,24 @@ fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
     while i < tokens.len() {
         // who is there: "a coach", "two parked cars"
         let beside = || {
-            let a = begins(&tokens[i..], "in each lane|in each of the lanes|in both lanes|in both of the lanes|in the lanes|in the two lanes|in either lane|in each one of the lanes|in the lane|in every lane")?;
-            let b = begins(&tokens[i + a..], "beside|next to|alongside|adjacent to|on either side of|on both sides of|to either side of|on each side of|neighbouring|to both sides of|bordering")?;
+            let a = begins(
+                &tokens[i..],
+                "in each lane|in each of the lanes|in both lanes|in both of the lanes|in the lanes|in the two lanes|in either lane|in each one of the lanes|in the lane|in every lane",
+            )?;
+            let b = begins(
+                &tokens[i + a..],
+                "beside|next to|alongside|adjacent to|on either side of|on both sides of|to either side of|on each side of|neighbouring|to both sides of|bordering",
+            )?;
             let one = begins(&tokens[i..], "in the lane").is_some();
-            let sided = begins(&tokens[i + a..], "beside|next to|alongside|adjacent to|neighbouring|bordering").is_some();
-            let c = begins(&tokens[i + a + b..], "mine|ours|us|me|my lane|our lane|my own|our own|my own lane|our own lane")?;
+            let sided = begins(
+                &tokens[i + a..],
+                "beside|next to|alongside|adjacent to|neighbouring|bordering",
+            )
+            .is_some();
+            let c = begins(
+                &tokens[i + a + b..],
+                "mine|ours|us|me|my lane|our lane|my own|our own|my own lane|our own lane",
+            )?;
             (!(one && sided)).then_some(a + b + c)
         };
         let lead = begins(&tokens[i..], EACH).or_else(beside).and_then(|n| {
@@ -169,14 +196,18 @@ fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
                 number(&out[*k]).is_some() || matches!(out[*k].text.as_str(), "a" | "an" | "one")
             })?;
             let np = &out[from..];
-            let plain = np.iter().filter(|t| is_noun(t)).count() == 1 && np.iter().all(|t| t.kind != TokenKind::Stop);
+            let plain =
+                np.iter().filter(|t| is_noun(t)).count() == 1 && np.iter().all(|t| t.kind != TokenKind::Stop);
             plain.then(|| (n, np.to_vec()))
         });
         match lead {
             Some((n, np)) => {
                 let at = &tokens[i];
                 out.extend(["in", "the", "left", "lane", "and"].map(|w| word(w, at)));
-                out.extend(np.iter().map(|t| Token { span: at.span, ..t.clone() }));
+                out.extend(np.iter().map(|t| Token {
+                    span: at.span,
+                    ..t.clone()
+                }));
                 out.extend(["in", "the", "right", "lane"].map(|w| word(w, at)));
                 i += n;
             }
@@ -195,8 +226,9 @@ fn of_which_there_are(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let n = begins(&tokens[i..], LEAD)
-            .filter(|n| tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1)));
+        let n = begins(&tokens[i..], LEAD).filter(|n| {
+            tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1))
+        });
         match n {
             Some(n) => {
                 out.push(tokens[i + n].clone());
@@ -219,7 +251,10 @@ fn of_a_group(tokens: &[Token]) -> Vec<Token> {
         let the = tokens
             .get(i + 1)
             .is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "my" | "our"));
-        let stop = matches!(i.checked_sub(1).map(|k| &tokens[k].kind), None | Some(TokenKind::Stop));
+        let stop = matches!(
+            i.checked_sub(1).map(|k| &tokens[k].kind),
+            None | Some(TokenKind::Stop)
+        );
         let rest = &tokens[i + 1..];
         let group = rest.iter().take(6).take_while(|t| !ends(Some(t))).any(is_noun)
             && rest.iter().take(7).any(|t| t.kind == TokenKind::Comma)
@@ -300,7 +335,10 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
             .find_map(|(d, said)| begins(&tokens[i..], said).map(|n| (*d, n)));
         let Some(((share, divisor), n)) = found else {
             // "the other half", "the remaining half"
-            match begins(&tokens[i..], "the other half of them|the other half|the remaining half|the second half") {
+            match begins(
+                &tokens[i..],
+                "the other half of them|the other half|the remaining half|the second half",
+            ) {
                 Some(n) if whole(&out).is_some() => {
                     out.extend(["the", "others"].map(|w| word(w, &tokens[i])));
                     i += n;
@@ -376,7 +414,10 @@ fn as_many_of_both(tokens: &[Token]) -> Vec<Token> {
         let mut lead = at - 1;
         while lead > 0
             && (ends(Some(&sentence[lead - 1]))
-                || matches!(sentence[lead - 1].text.as_str(), "namely" | "that" | "is" | "which" | "exactly" | "with"))
+                || matches!(
+                    sentence[lead - 1].text.as_str(),
+                    "namely" | "that" | "is" | "which" | "exactly" | "with"
+                ))
         {
             lead -= 1;
         }
@@ -391,16 +432,32 @@ fn as_many_of_both(tokens: &[Token]) -> Vec<Token> {
                     || ends(Some(&sentence[k]))
                     || matches!(
                         sentence[k].text.as_str(),
-                        "and" | "as" | "or" | "plus" | "in" | "this" | "the" | "scene" | "picture" | "here" | "there"
+                        "and"
+                            | "as"
+                            | "or"
+                            | "plus"
+                            | "in"
+                            | "this"
+                            | "the"
+                            | "scene"
+                            | "picture"
+                            | "here"
+                            | "there"
                     )
-                    || matches!(look_up(&sentence[k].text), Some(Sense::State(_, false) | Sense::Attribute(_)))
+                    || matches!(
+                        look_up(&sentence[k].text),
+                        Some(Sense::State(_, false) | Sense::Attribute(_))
+                    )
             });
         if !listed {
             out.extend_from_slice(sentence);
             continue;
         }
-        let first = begins(&sentence[plural[0].saturating_sub(2)..], "as many|equally many|just as many")
-            .map_or(plural[0], |_| plural[0] - 2);
+        let first = begins(
+            &sentence[plural[0].saturating_sub(2)..],
+            "as many|equally many|just as many",
+        )
+        .map_or(plural[0], |_| plural[0] - 2);
         out.extend_from_slice(&sentence[..first]);
         for (j, k) in plural.iter().enumerate() {
             if j > 0 {
@@ -447,10 +504,16 @@ fn so_is(tokens: &[Token]) -> Vec<Token> {
     const SO: &str = "so is|so are|so was|so were|so does|so do|so did|so has|so have|so stands|so stand|as is|as are|as does|as do|just as is|likewise is|likewise are";
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
+    let mut named = false;
     while i < tokens.len() {
-        let led = opens(tokens, i) && out.iter().any(is_noun);
+        named |= is_noun(&tokens[i]);
+        let led = opens(tokens, i) && named;
         match begins(&tokens[i..], SO).filter(|n| {
-            led && tokens[i + n..].iter().take(5).take_while(|t| !ends(Some(t))).any(is_noun)
+            led && tokens[i + n..]
+                .iter()
+                .take(5)
+                .take_while(|t| !ends(Some(t)))
+                .any(is_noun)
         }) {
             Some(n) => {
                 out.push(word("soistoo", &tokens[i]));
@@ -470,8 +533,11 @@ fn two_strips(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let two = begins(&tokens[i..], "the two|our two|these two|the 2")
-            .filter(|n| tokens.get(i + n).is_some_and(|t| t.text.ends_with('s') && is_strip(&t.text)));
+        let two = begins(&tokens[i..], "the two|our two|these two|the 2").filter(|n| {
+            tokens
+                .get(i + n)
+                .is_some_and(|t| t.text.ends_with('s') && is_strip(&t.text))
+        });
         match two {
             Some(n) => {
                 out.push(word("both", &tokens[i]));
@@ -525,10 +591,14 @@ fn one_by_one(tokens: &[Token]) -> Vec<Token> {
         let unit = tokens.get(i + at + 1).is_some_and(is_unit);
         (tokens.get(i + at).is_some_and(|t| number(t).is_some()) && unit).then_some(())
     };
-    let lead = |i: usize| begins(&tokens[i..], "and then|then|and next|next|and finally|finally|and lastly|lastly");
-    let first = (1..tokens.len()).find(|i| {
-        tokens[*i].text == "first" && opens(tokens, *i) && far(i + 1).is_some()
-    });
+    let lead = |i: usize| {
+        begins(
+            &tokens[i..],
+            "and then|then|and next|next|and finally|finally|and lastly|lastly",
+        )
+    };
+    let first =
+        (1..tokens.len()).find(|i| tokens[*i].text == "first" && opens(tokens, *i) && far(i + 1).is_some());
     let Some(first) = first else {
         return tokens.to_vec();
     };
@@ -573,9 +643,15 @@ mod tests {
             said("six cars: half of them come, the other half go"),
             "six cars : 3 of them come , the others go"
         );
-        assert_eq!(said("parked cars on both sides, two each"), "parked cars on both sides , two on each side");
+        assert_eq!(
+            said("parked cars on both sides, two each"),
+            "parked cars on both sides , two on each side"
+        );
         assert_eq!(said("four cars, two per side"), "four cars , two on each side");
-        assert_eq!(said("as many buses as trucks, namely two of each"), "2 buses and 2 trucks");
+        assert_eq!(
+            said("as many buses as trucks, namely two of each"),
+            "2 buses and 2 trucks"
+        );
         assert_eq!(said("half a mile ahead"), "half a mile ahead");
         assert_eq!(
             said("cars: first at 10 m, then at 20 m"),

@@ -74,10 +74,11 @@ pub(super) struct Parser<'a> {
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
     sentence: usize,                       // the first mention of the sentence
-    pub(super) alike: Option<usize>, // "so is the bus": what the next noun is like
+    sentence_before: usize,                // of the last one that named something
+    pub(super) alike: Option<usize>,       // "so is the bus": what the next noun is like
     pub(super) enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
-    front: Option<Anchor>,                 // what a place at the head of a clause was of
-    pair: Vec<usize>,                      // the two of "between a van and a lorry"
+    front: Option<Anchor>,                // what a place at the head of a clause was of
+    pair: Vec<usize>,                     // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
     pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
@@ -138,6 +139,7 @@ impl<'a> Parser<'a> {
             last_place: None,
             whole: None,
             sentence: 0,
+            sentence_before: 0,
             alike: None,
             enumerated: None,
             front: None,
@@ -193,6 +195,9 @@ impl<'a> Parser<'a> {
             Tag::Stop => {
                 self.ego_topic = false;
                 self.enumerated = None;
+                if self.sentence < self.mentions.len() {
+                    self.sentence_before = self.sentence;
+                }
                 self.sentence = self.mentions.len();
                 self.order = None;
                 self.end_clause();
@@ -223,7 +228,8 @@ impl<'a> Parser<'a> {
                 }
                 if item.words == ":" {
                     // "we would like this: ..." is not about us
-                    self.ego_subject &= !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
+                    self.ego_subject &=
+                        !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
                     self.heading();
                 }
                 self.flush();
@@ -272,7 +278,10 @@ impl<'a> Parser<'a> {
                 }
                 // "a grader is levelling the oncoming lane": where it does that
                 let the = usize::from(matches!(self.sense(self.at + 1), Some(Sense::Article(true))));
-                let place = matches!(self.sense(self.at + 1 + the), Some(Sense::Place(Anchor::Lane(_), _)));
+                let place = matches!(
+                    self.sense(self.at + 1 + the),
+                    Some(Sense::Place(Anchor::Lane(_), _))
+                );
                 if place
                     && item.words.ends_with("ing")
                     && self.after_is()

@@ -1,8 +1,8 @@
 //! Prepositions: where a relation begins, what it ends in, of whom it speaks.
 
 use super::super::description::Anchor;
-use super::super::mention::{Frag, Pre, Prep, apply};
 use super::super::lexicon::Sense;
+use super::super::mention::{Frag, Pre, Prep, apply};
 use super::super::tag::Tag;
 use super::super::tokens::Span;
 use super::{Parser, Pending};
@@ -31,9 +31,7 @@ impl Parser<'_> {
             not,
             finite: self.after_is() && !self.relative,
             // ("we are behind a trailer pulled by a car": the trailer is)
-            ego: self.ego_subject
-                && self.head.is_empty()
-                && (self.last.is_empty() || self.fresh || !of_last),
+            ego: self.ego_subject && self.head.is_empty() && (self.last.is_empty() || self.fresh || !of_last),
             distance_m,
         });
     }
@@ -139,7 +137,8 @@ impl Parser<'_> {
         // "20 m in front of me a car, 20 m behind me another one"
         let another = !self.edits
             && self.item(self.at + 1).is_some_and(|n| {
-                n.tag == Tag::Is(Sense::Part(false)) && (n.words.starts_with("another") || n.words.starts_with("a "))
+                n.tag == Tag::Is(Sense::Part(false))
+                    && (n.words.starts_with("another") || n.words.starts_with("a "))
             })
             && self.ends(self.at + 2);
         let new_noun = set_off
@@ -187,6 +186,37 @@ impl Parser<'_> {
         } else {
             targets
         };
+        // "a jogger passes a parked bus on the right pavement": the jogger is there
+        let read = &self.items[..self.items.len().min(self.at + 1)];
+        let prep = read.iter().rposition(|i| i.span.start == frag.span.start);
+        let at_noun = prep
+            .and_then(|k| self.sense(k.checked_sub(1)?))
+            .is_some_and(|s| matches!(s, Sense::Noun(..)));
+        let pavement = matches!(
+            frag.anchor,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+        );
+        let drives = targets.iter().all(|t| self.mentions[*t].spec.class.is_vehicle());
+        let walkers: Vec<usize> = self
+            .head
+            .iter()
+            .copied()
+            .filter(|h| {
+                let m = &self.mentions[*h];
+                m.spec.class == Class::Pedestrian
+                    && !m
+                        .spec
+                        .relations
+                        .iter()
+                        .any(|r| matches!(r.anchor, Anchor::Lane(_)))
+            })
+            .collect();
+        let targets =
+            if pavement && at_noun && drives && !self.edits && !targets.is_empty() && !walkers.is_empty() {
+                walkers
+            } else {
+                targets
+            };
         // "two oncoming cars and a man on the pavement": the man is
         let walk = matches!(
             frag.anchor,

@@ -60,7 +60,9 @@ impl<'a> Parser<'a> {
                         return false;
                     }
                     // "one car 10 m ahead and one 20 m ahead, all in our lane"
-                    Pick::All if item.words == "all" && self.all_named() => return false,
+                    Pick::All if matches!(item.words.as_str(), "all" | "all of") && self.all_named() => {
+                        return false;
+                    }
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);
@@ -69,7 +71,9 @@ impl<'a> Parser<'a> {
             Sense::Verb(Verb::Move)
                 if !self.edits
                     && !self.head.is_empty()
-                    && self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to") =>
+                    && self
+                        .item(self.at.wrapping_sub(1))
+                        .is_some_and(|b| b.words == "to") =>
             {
                 return true;
             }

@@ -131,7 +131,9 @@ impl Parser<'_> {
                 self.end_list();
             }
             // "... obstructs the crossing; four people wait there"
-            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
+            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there"
+                if self.ends(self.past_too(self.at + 1)) && !self.edits =>
+            {
                 self.there(span)
             }
             // "on both pavements stand three people each"
