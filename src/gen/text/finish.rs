@@ -278,6 +278,42 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
     }
 }
 
+/// "workmen have closed the left lane with eight cones and a trailer": these stand in it.
+fn closed_with(mentions: &mut [Mention], prompt: &str) {
+    for i in 1..mentions.len() {
+        let Some(h) = mentions[i]
+            .host
+            .filter(|h| *h < i && mentions[*h].spec.class == Class::Pedestrian)
+        else {
+            continue;
+        };
+        let thing = |m: &Mention| m.spec.class != Class::Pedestrian && m.spec.relations.is_empty() && !m.gone;
+        let blocks = mentions[h]
+            .spec
+            .relations
+            .iter()
+            .position(|r| r.relation == RelationKind::Blocking && matches!(r.anchor, Anchor::Lane(_)));
+        let Some(k) = blocks.filter(|_| thing(&mentions[i])) else {
+            continue;
+        };
+        let theirs: Vec<Stated> = mentions[h].spec.relations.clone();
+        mentions[h].spec.relations.remove(k);
+        let mut j = i;
+        loop {
+            mentions[j].spec.state = Some(ObjectState::Waiting);
+            mentions[j].spec.relations.clone_from(&theirs);
+            let next = mentions
+                .get(j + 1)
+                .filter(|n| thing(n))
+                .and_then(|n| prompt.get(mentions[j].spec.span.end..n.spec.span.start));
+            if !next.is_some_and(|gap| matches!(gap.trim(), "and" | "," | ", and" | "plus")) {
+                break;
+            }
+            j += 1;
+        }
+    }
+}
+
 /// "the cross street is busy: from the left come two cars": on it.
 fn from_cross_street(mentions: &mut [Mention], prompt: &str) {
     let prompt = prompt.to_lowercase();
@@ -528,6 +564,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     in_car_park(mentions, reading);
     share_places(mentions);
     from_cross_street(mentions, prompt);
+    closed_with(mentions, prompt);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;

@@ -13,7 +13,7 @@ use crate::scene::graph::LaneRole;
 pub fn counted(tokens: &[Token]) -> Vec<Token> {
     let out = of_which_there_are(&without_times(tokens));
     let out = ranges(&riders_wait(&out));
-    let out = in_each_lane(&waited_for(&out));
+    let out = in_each_lane(&waited_for(&as_for(&out)));
     let out = replaced(&out, "of which|of whom", "of them");
     let out = of_a_group(&out);
     let out = some_of_so_many(&halves(&out));
@@ -90,6 +90,47 @@ fn ranges(tokens: &[Token]) -> Vec<Token> {
                 out.push(digits(mean, &tokens[i]));
                 out.push(unit);
                 i = end;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "as for pedestrians, I want five": five pedestrians.
+fn as_for(tokens: &[Token]) -> Vec<Token> {
+    const WANT: &str = "i want|we want|i need|we need|there should be|there are|there must be|i would like|we would like|id like|wed like|let there be|i see|we see|there will be|make it";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let found = begins(
+            &tokens[i..],
+            "as for|as to|as regards|regarding|concerning|as far as",
+        )
+        .and_then(|n| {
+            let the = usize::from(tokens.get(i + n)?.text == "the");
+            let from = i + n + the;
+            let comma =
+                (from + 1..tokens.len().min(from + 4)).find(|k| tokens[*k].kind == TokenKind::Comma)?;
+            let want = comma + 1 + begins(&tokens[comma + 1..], WANT)?;
+            let many = tokens.get(want)?;
+            let none = matches!(many.text.as_str(), "none" | "nobody" | "zero");
+            let noun = tokens[from..comma].iter().any(is_noun);
+            (noun && (none || number(many).is_some()) && ends(tokens.get(want + 1)))
+                .then_some((from, comma, want, none))
+        });
+        match found {
+            Some((from, comma, want, none)) => {
+                out.push(if none {
+                    word("no", &tokens[want])
+                } else {
+                    tokens[want].clone()
+                });
+                out.extend_from_slice(&tokens[from..comma]);
+                i = want + 1;
             }
             None => {
                 out.push(tokens[i].clone());

@@ -53,6 +53,7 @@ pub(super) struct Parser<'a> {
     pub(super) last: Vec<usize>,
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
+    pub(super) headed: Vec<Frag>, // "our lane: a van at 10 m, another at 25 m": of all of the list
     pub(super) fronted_state: Option<ObjectState>,
     fronted_both: Option<bool>,  // "on both sides stand ..."
     pub(super) chain: bool,      // only nouns so far in this clause
@@ -118,6 +119,7 @@ impl<'a> Parser<'a> {
             last: Vec::new(),
             before: Vec::new(),
             fronted: Vec::new(),
+            headed: Vec::new(),
             fronted_state: None,
             fronted_both: None,
             chain: true,
@@ -195,6 +197,7 @@ impl<'a> Parser<'a> {
             Tag::Stop => {
                 self.ego_topic = false;
                 self.enumerated = None;
+                self.headed.clear();
                 if self.sentence < self.mentions.len() {
                     self.sentence_before = self.sentence;
                 }
@@ -282,13 +285,15 @@ impl<'a> Parser<'a> {
                     self.sense(self.at + 1 + the),
                     Some(Sense::Place(Anchor::Lane(_), _))
                 );
-                if place
-                    && item.words.ends_with("ing")
-                    && self.after_is()
-                    && self.pending.is_none()
-                    && !self.last.is_empty()
-                    && !self.edits
-                {
+                let mine = self
+                    .item(self.at + 1)
+                    .is_some_and(|n| n.words.starts_with("our ") || n.words.starts_with("my "));
+                let does = item.words.ends_with("ing") && self.after_is()
+                    // "a snow plough clears our lane"
+                    || item.words.ends_with('s')
+                        && the + usize::from(mine) > 0
+                        && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)));
+                if place && does && self.pending.is_none() && !self.last.is_empty() && !self.edits {
                     self.begin(Prep::In, span);
                     return true;
                 }

@@ -320,6 +320,11 @@ impl Parser<'_> {
                 apply(&mut self.mentions[index].spec, &frag);
             }
         }
+        if !old && self.fronted.is_empty() && self.mentions[index].spec.relations.is_empty() {
+            for frag in self.headed.clone() {
+                apply(&mut self.mentions[index].spec, &frag);
+            }
+        }
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
         }

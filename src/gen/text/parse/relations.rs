@@ -145,6 +145,10 @@ impl Parser<'_> {
             || another
             || self.noun_ahead(self.at + 1)
             || self.bare_number(self.at + 1)
+            // "to the right stand three"
+            || self.bare_number(self.at + 2)
+                && (matches!(self.sense(self.at + 1), Some(Sense::State(_, true)))
+                    || self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "is" | "are")))
             || self.inverted_ahead(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();

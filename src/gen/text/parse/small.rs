@@ -164,9 +164,10 @@ impl Parser<'_> {
             "so" | "because" | "since" | "therefore" | "hence"
                 if !self.edits
                     && self.noun_ahead(self.at + 1)
-                    && self
-                        .item(self.at.wrapping_sub(1))
-                        .is_some_and(|b| matches!(b.tag, Tag::Comma | Tag::Mark)) =>
+                    && (item.words == "because"
+                        || self
+                            .item(self.at.wrapping_sub(1))
+                            .is_some_and(|b| matches!(b.tag, Tag::Comma | Tag::Mark))) =>
             {
                 self.soft_end();
             }
