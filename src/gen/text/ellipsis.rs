@@ -16,6 +16,7 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         s = same_side(&s, &out);
         s = one_lane(&s);
         s = has_again(&s);
+        s = next_lane(&s);
         s = second_side(&s);
         s = place_again(&s, &out);
         s = replaced(
@@ -158,6 +159,40 @@ fn one_lane(sentence: &[Token]) -> Vec<Token> {
     out
 }
 
+/// "to the right of us, in the neighbouring lane": in the right lane.
+fn next_lane(sentence: &[Token]) -> Vec<Token> {
+    const NEXT: &str = "neighbouring lane|neighboring lane|adjacent lane|adjoining lane|next lane|lane next to us|lane next to me|lane next to ours|lane beside us|lane beside ours|lane beside me|lane alongside|lane next to mine|lane beside mine";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < sentence.len() {
+        let side = |t: &&Token| matches!(t.text.as_str(), "left" | "right");
+        let stop = |t: &&Token| t.kind != TokenKind::Stop && t.text != "while";
+        let next = begins(&sentence[i..], NEXT).and_then(|n| {
+            let after = sentence[i + n..]
+                .iter()
+                .take(5)
+                .take_while(|t| stop(t) && t.kind != TokenKind::Comma);
+            let before = out.iter().rev().take(12).take_while(|t: &&Token| stop(t));
+            let side = after
+                .into_iter()
+                .find(side)
+                .or_else(|| before.into_iter().find(side))?;
+            Some((n, side.text.clone()))
+        });
+        match next {
+            Some((n, side)) => {
+                out.extend([side.as_str(), "lane"].map(|w| word(w, &sentence[i])));
+                i += n;
+            }
+            None => {
+                out.push(sentence[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
 /// "the left lane contains two cars, and the right lane a truck": which has it again.
 fn has_again(sentence: &[Token]) -> Vec<Token> {
     let place = |t: &Token| is_strip(&t.text) || matches!(t.text.as_str(), "lane" | "side" | "one");
@@ -173,8 +208,15 @@ fn has_again(sentence: &[Token]) -> Vec<Token> {
     let mut out = sentence[..=verb].to_vec();
     let mut i = verb + 1;
     while i < sentence.len() {
-        let opens = sentence[i].kind == TokenKind::Comma || matches!(sentence[i].text.as_str(), "and" | "while");
-        let the = i + 1 + usize::from(sentence.get(i + 1).is_some_and(|t| matches!(t.text.as_str(), "and" | "while")));
+        let opens =
+            sentence[i].kind == TokenKind::Comma || matches!(sentence[i].text.as_str(), "and" | "while");
+        let the = i
+            + 1
+            + usize::from(
+                sentence
+                    .get(i + 1)
+                    .is_some_and(|t| matches!(t.text.as_str(), "and" | "while")),
+            );
         let named = opens
             && sentence
                 .get(the)
@@ -188,7 +230,8 @@ fn has_again(sentence: &[Token]) -> Vec<Token> {
                         sentence[*k - 1].text.as_str(),
                         "left" | "right" | "hand" | "other" | "far" | "near" | "opposite" | "oncoming"
                     );
-                (matches!(sentence[*k].text.as_str(), "a" | "an" | "another") || number(&sentence[*k]).is_some())
+                (matches!(sentence[*k].text.as_str(), "a" | "an" | "another")
+                    || number(&sentence[*k]).is_some())
                     && !again
                     && !sentence.get(k + 1).is_some_and(is_unit)
             });
@@ -199,7 +242,10 @@ fn has_again(sentence: &[Token]) -> Vec<Token> {
                     ..word(".", &sentence[i])
                 });
                 for t in &sentence[the..fresh] {
-                    let same = sentence[..verb].iter().rev().find(|p| place(p) && p.text != "one");
+                    let same = sentence[..verb]
+                        .iter()
+                        .rev()
+                        .find(|p| place(p) && p.text != "one");
                     match same.filter(|_| t.text == "one") {
                         Some(p) => out.push(word(&p.text, t)),
                         None => out.push(t.clone()),
@@ -368,8 +414,10 @@ fn one_a_side(sentence: &[Token]) -> Vec<Token> {
     });
     let n = begins(&sentence[i..], EACH).unwrap_or(0);
     // "flanked by two motorbikes, one on either side": that is what flanking is
-    let flanks = sentence[..i].windows(2).any(|w| w[0].text == "flanked" && w[1].text == "by");
-    if flanks && ends(sentence.get(i + n + 1)) {
+    let flanks = sentence[..i]
+        .windows(2)
+        .any(|w| w[0].text == "flanked" && w[1].text == "by");
+    if flanks && i + n < sentence.len() && ends(sentence.get(i + n + 1)) {
         let apart = usize::from(sentence[i - 1].kind == TokenKind::Comma);
         return [&sentence[..i - apart], &sentence[i + n + 1..]].concat();
     }

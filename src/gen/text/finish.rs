@@ -45,7 +45,10 @@ fn is_sort(noun: &str) -> bool {
 fn drop_named(mentions: &mut [Mention], prompt: &str) {
     let joined = |a: &Mention, b: &Mention| {
         let gap = prompt.get(a.spec.span.end..b.spec.span.start).unwrap_or("?");
-        let gap = gap.trim().trim_start_matches([',', ':', '(', '-', '–', '—']).trim();
+        let gap = gap
+            .trim()
+            .trim_start_matches([',', ':', '(', '-', '–', '—'])
+            .trim();
         matches!(gap, "" | "and" | "plus" | "namely" | "and also" | "i.e." | "viz.")
     };
     for i in 0..mentions.len() {
@@ -60,9 +63,19 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
         let listed = mentions.get(i + 1).is_some_and(|next| {
             let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
             !gap.contains(['.', ';', '!', '?'])
-                && [":", "namely", " - ", "–", "—", "(", "i.e", "to be exact", "specifically"]
-                    .iter()
-                    .any(|w| gap.contains(w))
+                && [
+                    ":",
+                    "namely",
+                    " - ",
+                    "–",
+                    "—",
+                    "(",
+                    "i.e",
+                    "to be exact",
+                    "specifically",
+                ]
+                .iter()
+                .any(|w| gap.contains(w))
         });
         let one_sentence = |a: &Mention, b: &Mention| {
             prompt
@@ -177,6 +190,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
 /// "a bus 18 m out in our lane": a distance alone counts ahead.
 fn distance_ahead(spec: &mut ObjectSpec) {
     use RelationKind as R;
+    // "at a distance of 12 m a car is in front of us"
+    let far = spec
+        .relations
+        .iter()
+        .position(|r| r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some());
+    let side = spec.relations.iter().position(|r| {
+        matches!(r.relation, R::InFrontOf | R::Behind) && r.anchor == Anchor::Ego && r.distance_m.is_none()
+    });
+    let told = spec
+        .relations
+        .iter()
+        .any(|r| matches!(r.relation, R::InFrontOf | R::Behind) && r.distance_m.is_some());
+    if let (Some(far), Some(side), false) = (far, side, told) {
+        spec.relations[side].distance_m = spec.relations[far].distance_m;
+        spec.relations.remove(far);
+    }
     let sided = spec.relations.iter().any(|r| {
         r.anchor == Anchor::Ego
             && !matches!(
@@ -246,6 +275,139 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
         push(RelationKind::On, Anchor::Lane(strip));
     } else if state == Some(ObjectState::Parked) {
         push(RelationKind::ParkedOn, Anchor::Lane(strip));
+    }
+}
+
+/// "workmen have closed the left lane with eight cones and a trailer": these stand in it.
+fn closed_with(mentions: &mut [Mention], prompt: &str) {
+    for i in 1..mentions.len() {
+        let Some(h) = mentions[i]
+            .host
+            .filter(|h| *h < i && mentions[*h].spec.class == Class::Pedestrian)
+        else {
+            continue;
+        };
+        let thing = |m: &Mention| m.spec.class != Class::Pedestrian && m.spec.relations.is_empty() && !m.gone;
+        let blocks = mentions[h]
+            .spec
+            .relations
+            .iter()
+            .position(|r| r.relation == RelationKind::Blocking && matches!(r.anchor, Anchor::Lane(_)));
+        let Some(k) = blocks.filter(|_| thing(&mentions[i])) else {
+            continue;
+        };
+        let theirs: Vec<Stated> = mentions[h].spec.relations.clone();
+        mentions[h].spec.relations.remove(k);
+        let mut j = i;
+        loop {
+            mentions[j].spec.state = Some(ObjectState::Waiting);
+            mentions[j].spec.relations.clone_from(&theirs);
+            let next = mentions
+                .get(j + 1)
+                .filter(|n| thing(n))
+                .and_then(|n| prompt.get(mentions[j].spec.span.end..n.spec.span.start));
+            if !next.is_some_and(|gap| matches!(gap.trim(), "and" | "," | ", and" | "plus")) {
+                break;
+            }
+            j += 1;
+        }
+    }
+}
+
+/// "the cross street is busy: from the left come two cars": on it.
+fn from_cross_street(mentions: &mut [Mention], prompt: &str) {
+    let prompt = prompt.to_lowercase();
+    let named = ["cross street", "side street", "crossing road", "crossing street"]
+        .iter()
+        .any(|w| prompt.contains(w));
+    for m in mentions.iter_mut().filter(|m| named && m.spec.class.is_vehicle()) {
+        let from = m.spec.relations.iter().find(|r| {
+            matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf)
+                && r.anchor == Anchor::Ego
+                && r.span.of(&prompt).starts_with("from the ")
+        });
+        let Some(span) = from.map(|r| r.span) else {
+            continue;
+        };
+        if !m
+            .spec
+            .relations
+            .iter()
+            .any(|r| matches!(r.anchor, Anchor::Lane(_) | Anchor::Junction))
+        {
+            m.spec.relations.push(Stated {
+                relation: RelationKind::On,
+                anchor: Anchor::Lane(LaneRole::Cross),
+                and: None,
+                distance_m: None,
+                span,
+            });
+        }
+    }
+}
+
+/// "two buses at the kerb, and a taxi between them": the two apart, with room for it.
+fn apart_for(mentions: &mut Vec<Mention>) {
+    for i in 0..mentions.len() {
+        let between = mentions[i].spec.relations.iter().position(|r| {
+            r.relation == RelationKind::Between
+                && r.and == Some(r.anchor)
+                && matches!(r.anchor, Anchor::Object(_))
+        });
+        let Some((at, a)) = between.and_then(|k| match mentions[i].spec.relations[k].anchor {
+            Anchor::Object(a) => Some((k, a)),
+            _ => None,
+        }) else {
+            continue;
+        };
+        let two = mentions
+            .get(a)
+            .is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && !m.definite && m.both.is_none());
+        if !two || a == i || mentions[a].spec.class == Class::Pedestrian {
+            continue;
+        }
+        let length = |m: &Mention| {
+            m.spec
+                .size_m
+                .or(m.spec.class.typical_size_m())
+                .map_or(4.5, |s| s[0])
+        };
+        let gap = length(&mentions[a]) + length(&mentions[i]) * f64::from(mentions[i].spec.count.n) + 4.0;
+        let span = mentions[i].spec.span;
+        mentions[a].spec.count = Count::exactly(1);
+        let mut twin = mentions[a].clone();
+        twin.spec.relations.retain(|r| r.distance_m.is_none());
+        twin.spec.relations.push(Stated {
+            relation: RelationKind::InFrontOf,
+            anchor: Anchor::Object(a),
+            and: None,
+            distance_m: Some(gap),
+            span,
+        });
+        let strip = mentions[a]
+            .spec
+            .relations
+            .iter()
+            .find(|r| {
+                matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
+                    && matches!(r.anchor, Anchor::Lane(_))
+            })
+            .copied();
+        mentions.push(twin);
+        let second = Anchor::Object(mentions.len() - 1);
+        let m = &mut mentions[i].spec;
+        m.relations[at].and = Some(second);
+        let placed = m.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
+        if let (Some(strip), false, true) = (strip, placed, m.class.is_vehicle()) {
+            m.state = m
+                .state
+                .filter(|s| *s != ObjectState::Moving)
+                .or(Some(ObjectState::Waiting));
+            m.relations.push(Stated {
+                distance_m: None,
+                ..strip
+            });
+        }
     }
 }
 
@@ -381,6 +543,7 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
+    apart_for(mentions);
     // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions
         .windows(3)
@@ -403,6 +566,8 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     sun_shines(reading);
     in_car_park(mentions, reading);
     share_places(mentions);
+    from_cross_street(mentions, prompt);
+    closed_with(mentions, prompt);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;

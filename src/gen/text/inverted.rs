@@ -19,12 +19,13 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
         "only",
     );
     let out = pointing_back(&led_by_others(&drivers(&out)));
+    let out = whom_we_follow(&held_by_place(&without_empty_places(&out)));
     let out = participle_first(&out);
     let out = crossed_over(&out);
     let out = beyond(&out);
     let out = without_contact_clause(&out);
     let out = way_of_another(&out);
-    let out = lets_go(&parker(&out));
+    let out = lets_go(&parker(&put_up(&out)));
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
@@ -56,8 +57,7 @@ fn namely(tokens: &[Token]) -> Vec<Token> {
         let sorts = before.is_some_and(|t| {
             matches!(look_up(&t.text), Some(Sense::Noun(n, many)) if n.classes.len() > 2 && many || t.text == "traffic")
         });
-        let n = begins(&tokens[i..], NAMELY)
-            .filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
+        let n = begins(&tokens[i..], NAMELY).filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
         match n {
             Some(n) => {
                 while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
@@ -100,12 +100,16 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
     while i < tokens.len() {
         let t = &tokens[i];
         let who = matches!(t.text.as_str(), "driver" | "drivers" | "motorist" | "motorists");
-        let clause = tokens[i + 1..].iter().take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma));
-        let foot = clause.into_iter().any(|t| FOOT.split('|').any(|w| w == t.text));
-        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !foot;
-        let vehicle = out.last().is_some_and(|b| {
-            matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
-        });
+        let on_foot = || {
+            tokens[i + 1..]
+                .iter()
+                .take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma))
+                .any(|t| FOOT.split('|').any(|w| w == t.text))
+        };
+        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !on_foot();
+        let vehicle = out.last().is_some_and(
+            |b| matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle()),
+        );
         let fresh = out
             .iter()
             .rev()
@@ -121,6 +125,129 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
             _ => out.push(t.clone()),
         }
         i += 1;
+    }
+    out
+}
+
+/// "the coach that I am driving behind": which is in front of me.
+fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
+    const WE: &str = "i am|im|we are|were|i|we|i have been|we have been|ive been|weve been";
+    const DO: &str = "driving|travelling|traveling|riding|stuck|sitting|waiting|cruising|rolling|drive|travel|ride|wait|sit|standing|stand|queueing|queuing|am|are";
+    const FOLLOW: [(&str, &str); 2] = [
+        (
+            "behind|following|follow|trailing|tailing|chasing|trail|tail",
+            "in front of me",
+        ),
+        ("ahead of|in front of|leading", "behind me"),
+    ];
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let found = begins(&tokens[i..], "that|which|whom|who")
+            .map_or(Some(0), Some)
+            .filter(|_| out.last().is_some_and(is_noun))
+            .and_then(|that| {
+                let we = that + begins(&tokens[i + that..], WE)?;
+                let does = we + begins(&tokens[i + we..], DO).unwrap_or(0);
+                let (n, place) = FOLLOW.iter().find_map(|(said, place)| {
+                    begins(&tokens[i + does..], said).map(|n| (does + n, *place))
+                })?;
+                // ("... that I am driving behind a truck" goes on)
+                let next = tokens.get(i + n);
+                let over = next.is_none_or(|t| {
+                    t.kind != TokenKind::Word
+                        || matches!(
+                            t.text.as_str(),
+                            "is" | "are"
+                                | "has"
+                                | "have"
+                                | "was"
+                                | "at"
+                                | "and"
+                                | "stops"
+                                | "brakes"
+                                | "in"
+                                | "does"
+                        )
+                });
+                over.then_some((n, place))
+            });
+        match found {
+            Some((n, place)) => {
+                out.extend(place.split(' ').map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+fn is_place(t: &Token) -> bool {
+    matches!(look_up(&t.text), Some(Sense::Place(..)))
+        || matches!(t.text.as_str(), "lane" | "side" | "lot" | "park")
+}
+
+/// "a car park holding only motorcycles": with them.
+fn held_by_place(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for t in tokens {
+        let holds = matches!(
+            t.text.as_str(),
+            "holding" | "containing" | "housing" | "hosting" | "accommodating" | "featuring"
+        );
+        let held = matches!(
+            t.text.as_str(),
+            "holds" | "carries" | "hosts" | "houses" | "accommodates"
+        );
+        if held && out.last().is_some_and(is_place) {
+            out.push(word("has", t));
+        } else if holds && out.last().is_some_and(is_place) {
+            out.push(word("with", t));
+        } else {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
+/// "whereas the one on the right is empty": of a lane or pavement that says no more than nothing.
+fn without_empty_places(tokens: &[Token]) -> Vec<Token> {
+    const EMPTY: &str = "is empty|are empty|is free|are free|is clear|are clear|is deserted|are deserted|is unoccupied|is vacant|remains empty|stays empty|remains free|is completely empty|is quite empty|is entirely empty|is still free|stays free";
+    const HEAD: &str = "the one|the other one|the other|the lane|the left lane|the right lane|the left one|the right one|the pavement|the sidewalk|the left pavement|the right pavement|the left sidewalk|the right sidewalk|the footpath|the left kerb|the right kerb|the other pavement|the other sidewalk|the kerb";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let apart = |t: &Token| {
+            matches!(t.kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)
+                || matches!(t.text.as_str(), "while" | "whereas" | "but" | "and")
+        };
+        if begins(&tokens[i..], HEAD).is_none() || !out.last().is_some_and(apart) {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        }
+        let end = (i + 1..tokens.len())
+            .find(|k| apart(&tokens[*k]))
+            .unwrap_or(tokens.len());
+        let clause = &tokens[i..end];
+        let empty =
+            (1..clause.len()).any(|k| begins(&clause[k..], EMPTY).is_some_and(|n| k + n == clause.len()));
+        if empty && !clause.iter().any(is_noun) {
+            while out
+                .last()
+                .is_some_and(|t| t.kind == TokenKind::Comma || t.kind == TokenKind::Word && apart(t))
+            {
+                out.pop();
+            }
+            i = end;
+        } else {
+            out.push(tokens[i].clone());
+            i += 1;
+        }
     }
     out
 }
@@ -149,7 +276,15 @@ fn led_by_others(tokens: &[Token]) -> Vec<Token> {
                 kind: TokenKind::Comma,
                 ..word(",", &sentence[comma])
             };
-            Some([&sentence[comma + 1..end], &[apart], &sentence[..comma], &sentence[end..]].concat())
+            Some(
+                [
+                    &sentence[comma + 1..end],
+                    &[apart],
+                    &sentence[..comma],
+                    &sentence[end..],
+                ]
+                .concat(),
+            )
         });
         out.extend(moved.unwrap_or_else(|| sentence.to_vec()));
     }
@@ -343,6 +478,33 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
                 let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
                 out.extend(state.iter().map(|w| word(w, &tokens[i])));
                 i = noun + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "someone has put up three barriers": there are three.
+fn put_up(tokens: &[Token]) -> Vec<Token> {
+    const WHO: &str = "someone|somebody|some idiot|some fool|some guy|they|the police|the workers|the builders|the council|people|the firemen|workmen|the road workers|the authorities|the city";
+    const PUT: &str = "has put up|have put up|put up|has set up|have set up|set up|has placed|have placed|placed|has erected|have erected|erected|has put|have put|has left|have left|has installed|have installed|has deployed|have deployed|has laid out|have laid out|has put out|have put out|put out|have positioned|has positioned";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let whole = begins(&tokens[i..], WHO)
+            .filter(|_| opens(tokens, i))
+            .and_then(|n| {
+                let k = i + n + begins(&tokens[i + n..], PUT)?;
+                (number(tokens.get(k)?)? > 1 && tokens[k + 1..].iter().take(4).any(is_noun)).then_some(k)
+            });
+        match whole {
+            Some(k) => {
+                out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
+                i = k;
             }
             None => {
                 out.push(tokens[i].clone());

@@ -268,7 +268,11 @@ impl Parser<'_> {
 
     pub(super) fn pronoun(&mut self, item: &Item) -> bool {
         if matches!(item.words.as_str(), "that" | "this" | "those" | "these")
-            && matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+            && (matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+                // "at this intersection"
+                || matches!(item.words.as_str(), "this" | "these")
+                    && !self.edits
+                    && matches!(self.sense(self.at + 1), Some(Sense::Place(..) | Sense::RoadKind(..) | Sense::Environment(_))))
         {
             self.pre.article = Some(true); // "that car"
             self.pre.cover(item.span);

@@ -63,13 +63,15 @@ impl Parser<'_> {
             && !matches!(anchor, Anchor::Lane(crate::scene::graph::LaneRole::Road))
         {
             self.topic = None;
-            self.fronted.push(super::super::mention::Frag {
+            let frag = super::super::mention::Frag {
                 prep: Prep::In,
                 anchor,
                 and: None,
                 distance_m: None,
                 span,
-            });
+            };
+            self.headed = vec![frag.clone()];
+            self.fronted.push(frag);
             self.chain = true;
         }
     }

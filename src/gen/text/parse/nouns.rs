@@ -109,10 +109,14 @@ impl Parser<'_> {
         }
         // "two vans, and their drivers stand behind them": one each
         // "a couple with a pushchair": theirs, and nobody more
-        let carried = noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
+        let carried =
+            noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
         if carried
             && !self.edits
-            && self.last.first().is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
+            && self
+                .last
+                .first()
+                .is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
         {
             self.with = false;
             return;
@@ -120,12 +124,28 @@ impl Parser<'_> {
         let theirs = self
             .item(self.at.wrapping_sub(1))
             .is_some_and(|b| matches!(b.words.as_str(), "their" | "whose"));
-        if theirs && plural && pre.count.is_none() && matches!(word, "drivers" | "owners" | "operators") && !self.edits {
-            let hosts = if self.head.is_empty() { &self.before } else { &self.head };
+        if theirs
+            && plural
+            && pre.count.is_none()
+            && matches!(word, "drivers" | "owners" | "operators")
+            && !self.edits
+        {
+            let hosts = if self.head.is_empty() {
+                &self.before
+            } else {
+                &self.head
+            };
             let vehicles = hosts.iter().map(|i| &self.mentions[*i].spec);
             let driven = vehicles.filter(|s| s.class.is_vehicle() && s.count.is_exact());
             let many: u32 = driven.map(|s| s.count.n).sum();
             pre.count = (many > 0).then(|| Count::exactly(many));
+        }
+        // "two children and their parents"
+        let whose = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "their" | "his" | "her"));
+        if whose && matches!(word, "parents" | "grandparents") && pre.count.is_none() && !self.edits {
+            pre.count = Some(Count::exactly(2));
         }
         let some_one = !plural
             && noun.several == 1
@@ -300,6 +320,11 @@ impl Parser<'_> {
                 apply(&mut self.mentions[index].spec, &frag);
             }
         }
+        if !old && self.fronted.is_empty() && self.mentions[index].spec.relations.is_empty() {
+            for frag in self.headed.clone() {
+                apply(&mut self.mentions[index].spec, &frag);
+            }
+        }
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
         }
@@ -307,7 +332,10 @@ impl Parser<'_> {
             let other = self.mentions[like].spec.clone();
             let spec = &mut self.mentions[index].spec;
             spec.state = spec.state.or(other.state);
-            let theirs = other.relations.into_iter().filter(|r| r.anchor != Anchor::Object(index));
+            let theirs = other
+                .relations
+                .into_iter()
+                .filter(|r| r.anchor != Anchor::Object(index));
             spec.relations.extend(theirs);
         }
         if !old {

@@ -64,7 +64,9 @@ impl Parser<'_> {
         let twice = |i: &usize| {
             let m = &self.mentions[*i];
             let each = matches!(self.sense(self.at + 1), Some(Sense::BothSides(true)));
-            each && count.is_exact() && !m.gone && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
+            each && count.is_exact()
+                && !m.gone
+                && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
         };
         let last = (0..self.mentions.len())
             .rev()
