@@ -35,6 +35,7 @@ impl Editor<'_> {
         others
             .iter()
             .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+        self.last = ids.to_vec();
     }
 
     /// The boxes that a mention fits, children apart from adults where the scene has both.

@@ -62,7 +62,16 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let it = rest.iter().position(|t| matches!(text(t), "them" | "they" | "those"));
     match it {
         Some(k) => [&rest[..k], &led("the", &rest[k], &[np]), &rest[k + 1..]].concat(),
-        None => tokens,
+        None => {
+            // "I count four cars but I need seven"
+            let k = rest.iter().take(5).position(|t| number(t).is_some());
+            let ends = k.is_some_and(|k| rest.get(k + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "instead", "of"])));
+            match k.filter(|_| ends && !has_noun(rest)) {
+                Some(k) => led("keep exactly", &tokens[0], &[&rest[k..=k], np]),
+                None if has_noun(rest) => rest.to_vec(),
+                None => tokens,
+            }
+        }
     }
 }
 
@@ -88,8 +97,17 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if let Some(n) = company {
         let more = trimmed(&rest[n..]);
         let more = if is(more.first(), &[":"]) { trimmed(&more[1..]) } else { more };
-        if has_noun(more) || more.iter().any(|t| number(t).is_some()) {
+        if has_noun(more) {
             return [&tokens[..i], more].concat();
+        }
+        // "add three more": of those
+        if let Some(k) = more.iter().position(|t| number(t).is_some() || is(Some(t), &["another"])) {
+            let k = k + 1 + usize::from(is(more.get(k + 1), &["more", "one"]));
+            let mut noun = super::some_of::bare_np(np);
+            if let Some(last) = noun.last_mut() {
+                last.text = plural(&last.text);
+            }
+            return [&tokens[..i], &more[..k], &noun, &more[k..]].concat();
         }
         return tokens;
     }
@@ -98,7 +116,8 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let new = &rest[..e];
     let tail = &rest[e..];
-    if is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
+    let told = is(trimmed(tail).first(), &["who", "that", "which"]);
+    if told || is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
         return tokens;
     }
     let trailer = is(new.last(), &["trailer", "caravan"]);
@@ -137,9 +156,14 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let before = trimmed(&tokens[..i]);
     let after = trimmed(&tokens[close..]);
     // what follows only says that it is better so
-    let praise = !has_noun(after) || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner"));
+    let praise = after.is_empty()
+        || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner" | "best" | "simpler"));
     if i == 0 {
-        return if praise && after.iter().all(|t| number(t).is_none()) { remove } else { tokens };
+        return match (praise, is(tokens.get(close), &["and"]) || tokens[close..].iter().any(|t| text(t) == "and")) {
+            (true, _) => remove,
+            (false, true) => [&remove[..], &led("and", &tokens[0], &[after])].concat(),
+            _ => tokens,
+        };
     }
     if !after.is_empty() && !is(tokens.get(close), &["and"]) && tokens.get(close).is_some_and(|t| t.kind == TokenKind::Word) {
         return tokens;
@@ -213,8 +237,12 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
     let mut rest = &body[k + 1..];
     let of = leads(rest, &["of all", "of any", "of", "from"]);
     rest = &rest[of.unwrap_or(0)..];
-    let late = find(rest, &["now", "again", "any more", "please", "at last"]).map_or(rest.len(), |x| x.0);
-    let what = trimmed(&rest[..late]);
+    let late = find(rest, &["now", "again", "any more", "please", "at last"]);
+    let what = trimmed(&rest[..late.map_or(rest.len(), |x| x.0)]);
+    // (what is to be done for it is said)
+    if late.is_some_and(|(k, n)| !trimmed(&rest[k + n..]).is_empty()) || what.iter().any(|t| t.kind == TokenKind::Comma) {
+        return tokens;
+    }
     // ("my lane is free" is a remark)
     let wish = body[the + n..k].iter().any(|t| matches!(text(t), "should" | "must" | "to" | "be" | "shall" | "needs" | "now"))
         || is(body.get(k), &["empty", "deserted", "vacant"]);

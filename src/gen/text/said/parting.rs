@@ -93,6 +93,10 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
             let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            // "undo the barriers, and instead of the digger put a truck there"
+            let instead = is(body.get(next - 1), &["and", "but", "then"])
+                && leads(rest, &["instead of the", "in place of the", "rather than the"]).is_some()
+                && super::super::rephrase::is_verb(&body[from]);
             // "the van and the truck are to disappear": two subjects of one verb
             let joined = text(t) == "and"
                 && is(body.get(from), &["the", "both", "my", "that", "those", "these"])
@@ -121,14 +125,14 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !named
                 && !therefore
                 && spoken
-                && opens(
+                && (instead || opens(
                     rest,
                     &Talk {
                         carried: text(t) == "and" && carries(&body[from..i]),
                         last: None,
                         ..*talk
                     },
-                )
+                ))
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -223,9 +227,23 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 "i want",
                 "i need",
                 "we need",
+                "away with",
+                "off with",
+                "out with",
+                "down with",
+                "no more",
+                "enough of",
             ],
         )
         .is_some()
+    {
+        return true;
+    }
+    // "and no bus"
+    if is(rest.first(), &["no"])
+        && first_noun(rest).is_some_and(|n| {
+            n.0 < 3 && rest.get(n.1).is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
+        })
     {
         return true;
     }
@@ -288,6 +306,12 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     // "and now only one worker is there"
     if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
+        return true;
+    }
+    // "one car fewer"
+    if number(first).is_some()
+        && first_noun(inner).is_some_and(|n| n.0 < 4 && is(inner.get(n.1), &["fewer", "less"]))
+    {
         return true;
     }
     // "two would do"

@@ -127,6 +127,12 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
                 .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"]))
                 .map(|k| k - 1)
                 .filter(|k| first_noun(&tokens[n..=*k]).is_some())
+        })
+        // "of the four barriers one can go"
+        .or_else(|| {
+            let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
+            tokens.get(n + b).filter(|t| number(t).is_some())?;
+            Some(n + b - 1)
         })?;
     let end = comma + usize::from(tokens[comma].kind != TokenKind::Comma);
     let np = tokens.get(n..end).filter(|np| first_noun(np).is_some())?;
