@@ -114,6 +114,11 @@ impl Editor<'_> {
                 self.keep_only(&fitting);
                 continue;
             }
+            // "leave only the two cars": nothing else stays
+            if c.only && c.change.is_none() && m.definite && !m.uncounted && fitting.len() == wanted {
+                self.keep_only(&fitting);
+                continue;
+            }
             if fitting.len() > wanted {
                 let mut by_range: Vec<(f64, BoxId)> = fitting
                     .iter()

@@ -24,8 +24,14 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = without(out, talk);
     let out = distance_to(out, talk);
     let out = emptied(out);
-    let out = every_second(out);
+    let out = every_second(by_half(out));
     as_many_as(out, talk)
+}
+
+/// What is only spoken of.
+pub(super) fn remark(np: &[Token]) -> Vec<Token> {
+    let the = if is(np.first(), &["the", "both", "all", "that", "this", "my", "those", "these"]) { "leave" } else { "leave the" };
+    led(the, &np[0], &[np, &led("alone", &np[0], &[])])
 }
 
 fn begins_at(tokens: &[Token], i: usize) -> bool {
@@ -40,7 +46,7 @@ fn is_fresh(t: Option<&Token>) -> bool {
 
 /// "I see four pedestrians, ...", where there are four: a remark.
 fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have"]) else {
+    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have", "there are", "there is"]) else {
         return tokens;
     };
     let Some(many) = tokens.get(n).and_then(number) else {
@@ -50,8 +56,12 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let close = (n + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"]));
+    // (alone it says only what is meant next)
     let Some(close) = close.filter(|c| c + 2 < tokens.len()) else {
-        return tokens;
+        let np = &tokens[n + 1..];
+        let now = np.iter().any(|t| matches!(text(t), "now" | "more" | "only" | "just"));
+        let same = close.is_none() && !now && many > 1 && talk.fits(np) == many.max(0) as usize;
+        return if same { remark(np) } else { tokens };
     };
     let np = &tokens[n + 1..close];
     if talk.fits(np) != many.max(0) as usize {
@@ -256,6 +266,29 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
         Some(_) => led("remove all the", &body[0], &[what, &at]),
         None => led("remove all the objects", &body[0], &[&at]),
     }
+}
+
+/// "reduce the cones by half": halve them.
+fn by_half(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["half"])
+            && is(tokens.get(i - 1), &["by", "to", "in"])
+            && tokens.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please"]))
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let Some(v) = (0..i - 1).rev().find(|k| is(tokens.get(*k), &["reduce", "cut", "decrease", "lower", "bring", "shrink", "trim", "thin"]) && begins_at(&tokens, *k)) else {
+        return tokens;
+    };
+    let end = if is(tokens.get(i - 2), &["down", "back"]) { i - 2 } else { i - 1 };
+    let skip = leads(&tokens[v + 1..end], &["down the number of", "the number of", "down", "the amount of", "out"]).unwrap_or(0);
+    let np = &tokens[v + 1 + skip..end];
+    if first_noun(np).is_none_or(|x| x.0 > 3) {
+        return tokens;
+    }
+    let the = usize::from(is(np.first(), &["the"]));
+    [&tokens[..v], &led("half the number of", &tokens[v], &[&np[the..]]), &tokens[i + 1..]].concat()
 }
 
 /// "every second cone": half of the cones.

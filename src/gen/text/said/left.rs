@@ -4,7 +4,7 @@
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::words::{first_noun, is, led, longest, number};
+use super::words::{first_noun, is, is_place, led, longest, number};
 
 /// Words for strips that "one" may stand for.
 const STRIPS: &[&str] = &[
@@ -21,6 +21,26 @@ pub struct Left {
     place: Option<Vec<Token>>,
     /// It was a question.
     asked: bool,
+    /// What it spoke of with a number, if it changed nothing: "there are two cyclists behind us".
+    counted: Option<Vec<Token>>,
+}
+
+/// The number of a sentence that names nothing else: "I need four", "eight is right".
+fn only_number(body: &[Token]) -> Option<&Token> {
+    let small = [
+        "i", "we", "need", "want", "would", "like", "should", "be", "there", "id", "make", "it", "is", "are", "right", "enough",
+        "better", "fine", "correct", "ideal", "perfect", "needed", "ok", "good", "do", "suffice", "suffices", "please", "at",
+        "least", "rather", "let", "us", "have", "will", "must", "nicer", "them", "of", "exactly", "only", "just", "in", "all",
+        "total", "say", "the", "number", "but", "however", "actually", "instead", "to", "prefer", "more", "like", "see",
+    ];
+    let mut many = body.iter().filter(|t| number(t).is_some() && !is(Some(t), &["a", "an"]));
+    let first = many.next()?;
+    let plain = body
+        .iter()
+        .all(|t| number(t).is_some() || t.kind == TokenKind::Comma || is(Some(t), &small));
+    // ("two more" is two more)
+    let more = body.iter().any(|t| t.text == "more");
+    (many.next().is_none() && plain && !more).then_some(first)
 }
 
 impl Left {
@@ -38,7 +58,17 @@ impl Left {
             let at = tokens.get(i + 1 + the..).and_then(longest)?;
             matches!(at.0, Sense::Place(..)).then(|| tokens[i..i + 1 + the + at.1].to_vec())
         });
+        let body = tokens.len() - usize::from(tokens.last().is_some_and(|t| t.kind == TokenKind::Stop));
+        let counted = (0..body).find_map(|i| {
+            let few = is(tokens.get(i), &["few", "many"]);
+            (few || number(&tokens[i]).is_some()).then_some(())?;
+            let (_, b) = first_noun(&tokens[i + 1..body]).filter(|x| x.0 < 3)?;
+            let place = &tokens[i + 1 + b..body];
+            let told = is_place(place) && !place.iter().any(|t| t.kind == TokenKind::Comma);
+            Some(tokens[i + 1..i + 1 + b + if told { place.len() } else { 0 }].to_vec())
+        });
         Self {
+            counted: counted.filter(|_| quiet),
             strip,
             place: place.filter(|_| quiet),
             asked,
@@ -71,6 +101,12 @@ impl Left {
         {
             out.splice(body - 1..body, place.iter().cloned());
             return out;
+        }
+        if let Some(np) = &self.counted
+            && let Some(many) = only_number(&out[..body])
+            && talk.fits(np) > 0
+        {
+            return led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, &tokens[body..]]);
         }
         // the answer to a question says nothing new
         if self.asked

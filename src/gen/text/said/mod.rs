@@ -382,6 +382,14 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             "there is too much",
             "there are far too many",
             "there are way too many",
+            "we have too many",
+            "we have too few",
+            "i see too many",
+            "i see too few",
+            "i have too many",
+            "i have too few",
+            "too many",
+            "too few",
         ],
     ) && has_noun(&inner[n..])
     {

@@ -102,7 +102,12 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && is(body.get(from), &["the", "both", "my", "that", "those", "these"])
                 && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
                 && is(body.get(next), &["the", "my", "that", "those", "these"]);
-            if joined {
+            // "only the cones and barriers are left"
+            let only = text(t) == "and"
+                && is(body.get(from), &["only", "just"])
+                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
+                && first_noun(&body[next.min(body.len())..]).is_some_and(|n| n.0 < 3);
+            if joined || only {
                 i += 1;
                 continue;
             }
@@ -306,6 +311,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     // "and now only one worker is there"
     if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
+        return true;
+    }
+    // "and double the barriers"
+    if is(inner.first(), &["double", "halve", "triple", "treble", "quadruple"]) && is(inner.get(1), &["the", "all", "my"]) {
         return true;
     }
     // "one car fewer"

@@ -38,7 +38,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = better(out, talk);
     let out = condition(out, talk);
     let out = some_then(out);
-    let out = not_that(out, talk);
+    let out = same_with(is_another(not_that(out, talk)), talk);
     with_gone(out, talk)
 }
 
@@ -80,7 +80,7 @@ fn disliked(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     match comma.and_then(|c| asked_for(&body[c..])) {
         Some(new) => led("replace", &tokens[0], &[&the, &led("with", &tokens[0], &[new])]),
         // a complaint alone says only what "it" will mean
-        None if comma.is_none() && leads(first, DISLIKES).is_none() => the,
+        None if comma.is_none() && leads(first, DISLIKES).is_none() => super::gifts::remark(&the),
         None => tokens,
     }
 }
@@ -180,6 +180,50 @@ fn not_that(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     led("replace the", &tokens[0], &[&whose, &led("with", &tokens[0], &[&new[..b]])])
+}
+
+/// "the car isn't a car, it's a van": it should be a van.
+fn is_another(tokens: Vec<Token>) -> Vec<Token> {
+    let known = is(tokens.first(), &["the", "that", "this", "my"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 4) else {
+        return tokens;
+    };
+    let place = (b..tokens.len()).find(|k| is(tokens.get(*k), &["isnt", "is", "shouldnt", "should"])).unwrap_or(b);
+    let Some(n) = leads(&tokens[place..], &["isnt a", "isnt really a", "is not a", "is not really a", "is no", "shouldnt be a", "should not be a", "is no longer a", "isnt a real"]) else {
+        return tokens;
+    };
+    let Some((_, c)) = first_noun(&tokens[place + n..]).filter(|x| x.0 < 3) else {
+        return tokens;
+    };
+    let end = place + n + c;
+    let link = usize::from(tokens.get(end).is_some_and(|t| t.kind == TokenKind::Comma));
+    let Some(m) = leads(&tokens[end + link..], &["its", "it is", "but", "but rather", "it should be", "rather", "it must be"]) else {
+        return tokens;
+    };
+    let new = &tokens[end + link + m..];
+    if !is(new.first(), &["a", "an"]) || (place > b && !is_place(&tokens[b..place])) {
+        return tokens;
+    }
+    [&tokens[..place], &led("should be", &tokens[place], &[]), new].concat()
+}
+
+/// "show the same with the children on the left sidewalk": they should be there.
+fn same_with(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let skip = leads(&tokens, &["show me", "give me", "show", "draw", "make", "i want", "id like", "do"]).unwrap_or(0);
+    let Some(n) = leads(&tokens[skip..], &["the same again", "the same scene", "the same thing", "the same situation", "the same", "it again", "that again", "the scene", "this scene"]) else {
+        return tokens;
+    };
+    let from = skip + n;
+    let from = from + usize::from(tokens.get(from).is_some_and(|t| t.kind == TokenKind::Comma));
+    let from = from + usize::from(is(tokens.get(from), &["but", "only", "just"]));
+    if !is(tokens.get(from), &["with"]) || !is(tokens.get(from + 1), &["the", "both", "all", "my"]) {
+        return tokens;
+    }
+    let np = &tokens[from + 1..];
+    match first_noun(np).filter(|x| x.0 < 4 && is_place(&np[x.1..]) && talk.fits(&np[..x.1]) > 0) {
+        Some((_, b)) => [&np[..b], &led("should be", &tokens[from], &[&np[b..]])].concat(),
+        None => tokens,
+    }
 }
 
 /// "by night and with the bus gone": the bus goes.

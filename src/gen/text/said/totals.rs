@@ -36,7 +36,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
     let out = not_but(out);
-    from_to(not_enough(rather_than(out), talk), talk)
+    from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
 
 fn links(t: &Token) -> bool {
@@ -285,6 +285,34 @@ fn not_but(tokens: Vec<Token>) -> Vec<Token> {
     out
 }
 
+/// "five children would be nicer": five.
+fn nicer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let counted = tokens.first().is_some_and(|t| number(t).is_some_and(|n| n > 1) || text(t) == "one");
+    // "three pedestrians fewer would be good"
+    if counted
+        && tokens.iter().any(|t| matches!(text(t), "fewer" | "less" | "more"))
+        && let Some((i, n)) = find(&tokens, &["would be good", "would be nice", "would be better", "would be fine", "would be great", "would be welcome", "would be nicer", "would do"])
+        && i + n == tokens.len()
+    {
+        return tokens[..i].to_vec();
+    }
+    let Some((_, b)) = first_noun(&tokens).filter(|x| counted && x.0 < 4) else {
+        return tokens;
+    };
+    let Some((i, n)) = find(
+        &tokens[b..],
+        &["would be nicer", "would be better", "would be preferable", "would be nice", "would be fine", "would be ideal", "would be right", "would be perfect", "would be more realistic", "would look better", "would be good"],
+    ) else {
+        return tokens;
+    };
+    let place = &tokens[b..b + i];
+    let ends = tokens.get(b + i + n).is_none_or(links);
+    if !ends || !(place.is_empty() || is_place(place)) || talk.fits(&tokens[1..b]) == 0 {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[&tokens[..b + i], &tokens[b + i + n..]])
+}
+
 /// "three cones is not enough, we need at least six": six.
 fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((i, n)) = find(
@@ -302,7 +330,7 @@ fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let rest = trimmed(&tokens[i + n..]);
     // ("there should be eight" may follow in a sentence of its own)
     if rest.is_empty() && !np.iter().any(links) && known && first_noun(np).is_some_and(|x| x.0 < 4) && talk.fits(bare(np)) > 0 {
-        return led("the", &tokens[0], &[bare(np)]);
+        return super::gifts::remark(bare(np));
     }
     let Some(k) = rest.iter().take(6).position(|t| number(t).is_some() && !is(Some(t), &["a", "an"])) else {
         return tokens;

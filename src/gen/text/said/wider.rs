@@ -20,7 +20,7 @@ const EXCEPT: &[&str] = &["apart from", "except for", "besides", "other than", "
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = asked_for(tokens);
-    let out = would_do(out);
+    let out = would_do(rather(out, talk));
     let out = whatever_there(out);
     let out = into_it(out);
     let out = but_for(out);
@@ -48,9 +48,35 @@ fn asked_for(tokens: Vec<Token>) -> Vec<Token> {
     }
 }
 
+/// "rather than a bus, a lorry should be in the right lane": the lorry for the bus.
+fn rather(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["rather than", "instead of", "in place of"]) else {
+        return tokens;
+    };
+    let a = is(tokens.get(n), &["a", "an"]);
+    let Some((c, b)) = first_noun(&tokens[n..]).filter(|x| a && x.0 < 4) else {
+        return tokens;
+    };
+    let comma = n + b + usize::from(tokens.get(n + b).is_some_and(|t| t.kind == TokenKind::Comma));
+    let wish = leads(&tokens[comma..], &["i want", "i would like", "id like", "there should be", "there must be", "we need", "i need", "put", "use", "show", "make it", "let there be", "i would prefer", "id prefer"]).unwrap_or(0);
+    let new = &tokens[comma + wish..];
+    let Some((_, e)) = first_noun(new).filter(|x| is(new.first(), &["a", "an"]) && x.0 < 4) else {
+        return tokens;
+    };
+    let rest: Vec<Token> = new[e..].iter().filter(|t| !HELPERS.contains(&text(t)) && !is(Some(t), &["there", "instead"])).cloned().collect();
+    let old = &tokens[n + 1..n + b];
+    let there = [old, &rest[..]].concat();
+    let whole = if is_place(&rest) && talk.fits(&there) == 1 { &there[..] } else { old };
+    let plain = rest.is_empty() || is_place(&rest) && !has_noun(&rest);
+    if c == 0 || !plain || talk.fits(whole) != 1 {
+        return tokens;
+    }
+    led("replace the", &tokens[0], &[whole, &led("with", &tokens[0], &[&new[..e]])])
+}
+
 /// "I'd drop the motorcycle": drop it.
 fn would_do(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["id", "i would", "we would", "wed", "i will", "ill", "i suggest we", "i propose we"]) else {
+    let Some(n) = leads(&tokens, &["id", "i would", "we would", "wed", "i will", "ill", "i suggest we", "i propose we", "is there a way to", "is there any way to", "is there a chance to", "would you be able to", "are you able to", "would there be a way to", "any chance to"]) else {
         return tokens;
     };
     let orders = is(
@@ -59,6 +85,10 @@ fn would_do(tokens: Vec<Token>) -> Vec<Token> {
     );
     let known = is(tokens.get(n + 1), &["the", "a", "an", "all", "both", "it", "them", "that", "those", "one", "another", "every", "out", "away"])
         || tokens.get(n + 1).is_some_and(|t| number(t).is_some());
+    // "to get a trailer behind the pickup"
+    if is(tokens.get(n), &["get", "have", "see"]) && is(tokens.get(n + 1), &["a", "an", "another"]) && n > 2 {
+        return led("add", &tokens[n], &[&tokens[n + 1..]]);
+    }
     if orders && known { tokens[n..].to_vec() } else { tokens }
 }
 
@@ -269,7 +299,8 @@ fn once_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let close = (n + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"])).unwrap_or(tokens.len());
     let np = &tokens[n + a..close];
-    if talk.fits(np) == 0 {
+    let denied = tokens[n..n + a].iter().any(|t| matches!(text(t), "no" | "not" | "never"));
+    if denied || talk.fits(np) == 0 {
         return tokens;
     }
     let rest = trimmed(&tokens[close..]);
@@ -281,7 +312,7 @@ fn once_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     match rest.first().filter(|t| number(t).is_some() && first_noun(rest).is_none()) {
         Some(many) => led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np]),
-        None if rest.is_empty() => led("the", &tokens[0], &[np]),
+        None if rest.is_empty() => super::gifts::remark(np),
         None => tokens,
     }
 }
