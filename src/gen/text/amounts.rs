@@ -15,7 +15,10 @@ pub fn counted(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
             "the", "number", "of", "count", "amount", "total", "quantity", "how", "many", "there", "are",
             "up", "down",
         ];
-        let from = tokens.iter().position(|t| !skip.contains(&text(t))).unwrap_or(0);
+        let from = tokens
+            .iter()
+            .position(|t| !skip.contains(&text(t)) && number(t).is_none())
+            .unwrap_or(0);
         let end = tokens
             .iter()
             .rposition(|t| !matches!(text(t), "up" | "down" | "back" | "from" | "in" | "number"))

@@ -161,6 +161,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
                 c.verb = Verb::Note;
             }
         }
+        editor.settle(&mut commands);
         for command in commands {
             if done < MOST_COMMANDS {
                 editor.read_command(text, done, &command);
@@ -177,6 +178,46 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
 }
 
 impl Editor<'_> {
+    /// What commands of one sentence mean together: "turn the cones into barriers and the barriers into cones", "keep the
+    /// coach and the bus, lose the rest".
+    fn settle(&self, commands: &mut [Command]) {
+        let found = |c: &Command| -> Option<Vec<BoxId>> {
+            let mut all = Vec::new();
+            for m in &c.targets {
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => all.extend(ids),
+                    _ => return None,
+                }
+            }
+            (!all.is_empty()).then_some(all)
+        };
+        for i in 1..commands.len() {
+            let (a, b) = (&commands[i - 1], &commands[i]);
+            let class = |m: Option<&Mention>| m.map(|m| m.spec.class);
+            let crosswise = a.verb == Verb::Replace
+                && b.verb == Verb::Replace
+                && class(a.by.as_ref()).is_some()
+                && class(a.by.as_ref()) == class(b.targets.first())
+                && class(b.by.as_ref()) == class(a.targets.first());
+            if crosswise {
+                commands[i].found = found(&commands[i]);
+                continue;
+            }
+            let rest = matches!(a.verb, Verb::Keep | Verb::Note)
+                && !a.targets.is_empty()
+                && b.verb == Verb::Remove
+                && b.back == Some(Back::Others);
+            if let Some(kept) = rest.then(|| found(a)).flatten() {
+                let alike = |x: &SceneBox| kept.iter().any(|id| self.boxes[id].class == x.class);
+                let others = self.boxes.values().any(|x| alike(x) && !kept.contains(&x.id));
+                if !others {
+                    let rest = self.boxes.keys().filter(|id| !kept.contains(id));
+                    commands[i].found = Some(rest.copied().collect());
+                }
+            }
+        }
+    }
+
     /// Carries out one command and reports it.
     fn read_command(&mut self, text: &str, i: usize, command: &Command) {
         let before = self.out.edits.len();
@@ -432,6 +473,10 @@ impl Editor<'_> {
 
     /// The boxes that a command is about; asks back or notes where none or several fit.
     pub(super) fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
+        if let Some(found) = &c.found {
+            let ids: Vec<BoxId> = found.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
+            return (!ids.is_empty()).then_some(ids);
+        }
         if let Some(back) = c.back {
             let ids: Vec<BoxId> = match back {
                 Back::Same => self.last.clone(),
@@ -494,6 +539,10 @@ impl Editor<'_> {
                 _ => super::select::fitting(&self.map, &self.boxes, spared, &c.except),
             };
             all.retain(|id| !ids.contains(id));
+        }
+        // "remove everything else": but what was spoken of
+        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else") {
+            all.retain(|id| !self.last.contains(id));
         }
         all.sort_unstable();
         all.dedup();

@@ -35,6 +35,7 @@ impl Editor<'_> {
         others
             .iter()
             .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+        self.last = ids.to_vec();
     }
 
     /// The boxes that a mention fits, children apart from adults where the scene has both.
@@ -110,6 +111,11 @@ impl Editor<'_> {
                     self.note(format!("{:?}: how many was not understood", c.text));
                     continue;
                 }
+                self.keep_only(&fitting);
+                continue;
+            }
+            // "leave only the two cars": nothing else stays
+            if c.only && c.change.is_none() && m.definite && !m.uncounted && fitting.len() == wanted {
                 self.keep_only(&fitting);
                 continue;
             }

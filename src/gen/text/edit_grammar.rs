@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Piece, Talk, chosen, except, said, worded};
+use super::said::{Left, Piece, Talk, chosen, except, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -117,6 +117,8 @@ pub struct Command {
     pub only: bool,
     /// No verb was said.
     pub implied: bool,
+    /// Boxes that were found before an earlier command of the sentence made others of them.
+    pub found: Option<Vec<BoxId>>,
 }
 
 impl Command {
@@ -144,6 +146,7 @@ impl Command {
             in_place: false,
             only: false,
             implied: false,
+            found: None,
         }
     }
 
@@ -206,6 +209,8 @@ pub(super) struct Reader<'t> {
     tokens: Vec<Token>,
     at: usize,
     last_noun: Option<Vec<Token>>,
+    /// What the sentences before left to be pointed at.
+    left: Left,
 }
 
 impl<'t> Reader<'t> {
@@ -215,6 +220,7 @@ impl<'t> Reader<'t> {
             tokens: labelled_apart(super::common::plain(&tokens(text))),
             at: 0,
             last_noun: None,
+            left: Left::default(),
         }
     }
 
@@ -266,7 +272,9 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let whole = &super::said::spared(&chosen(&self.tokens[from..end], &talk))[..];
+        let asked = self.tokens[from..end].last().is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
+        let pointed = self.left.resolved(&self.tokens[from..end], &talk);
+        let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();
@@ -281,6 +289,8 @@ impl<'t> Reader<'t> {
                 }
             }
         }
+        let quiet = out.iter().all(|c| c.verb == Verb::Note);
+        self.left = Left::of(&pointed, asked, quiet, std::mem::take(&mut self.left));
         if let Some((_, np)) = cut {
             let mut spared = Command::new(Verb::Note, self.text, np[0].span);
             target_part(self.text, &tag(&np), &mut spared);

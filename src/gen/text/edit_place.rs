@@ -95,11 +95,46 @@ impl Editor<'_> {
         }
     }
 
+    /// "an excavator there, and a truck behind the excavator": where the scene has none, the new one is meant.
+    fn refer_to_new(&self, d: &mut Description) {
+        let refers = referred(d);
+        let stands_for = (0..d.foreground.len()).find_map(|i| {
+            let o = &d.foreground[i];
+            let named = self.definite.contains(&o.span) && refers.contains(&i) && o.relations.is_empty();
+            if !named || !self.meant(o).is_empty() {
+                return None;
+            }
+            let new = (0..d.foreground.len()).find(|&j| {
+                let n = &d.foreground[j];
+                j != i
+                    && n.class == o.class
+                    && !self.definite.contains(&n.span)
+                    && !n.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+            })?;
+            Some((i, new))
+        });
+        let Some((old, new)) = stands_for else {
+            return;
+        };
+        d.foreground.remove(old);
+        let renumber = |a: &mut Anchor| {
+            if let Anchor::Object(k) = a {
+                let to = if *k == old { new } else { *k };
+                *k = to - usize::from(to > old);
+            }
+        };
+        for r in d.foreground.iter_mut().flat_map(|o| &mut o.relations) {
+            renumber(&mut r.anchor);
+            r.and.iter_mut().for_each(renumber);
+        }
+    }
+
     /// Finds places for what a description names; `from` is the box that is moved there, which does not stand in its own way.
     pub(super) fn arrange(&mut self, d: &Description, from: Option<&SceneBox>) -> Arranged {
         let mut d = d.clone();
         d.density = None;
         self.lanes_that_are_there(&mut d);
+        self.refer_to_new(&mut d);
         let refers = referred(&d);
         let mut held: Vec<(usize, Vec<SceneBox>)> = Vec::new();
         for i in 0..d.foreground.len() {

@@ -56,7 +56,9 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let plain = is(
         tokens.get(all + group.0),
         &["everything", "everyone", "everybody", "objects", "things"],
-    );
+    ) && !tokens[all..all + group.0]
+        .iter()
+        .any(|t| matches!(look_up(text(t)), Some(Sense::State(..))));
     let from = i + n;
     let definite = is(tokens.get(from), &["the", "my", "that", "those", "these"]);
     if plain || !definite || leads(&tokens[from..], &["the one", "the ones", "the following"]).is_some() {

@@ -31,6 +31,10 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
             .collect()
     };
     let parts = parts(pred, true);
+    // "a bulldozer alone can't do it" is a remark
+    if !parts.is_empty() && parts.iter().all(|p| p.not) {
+        return Some(Vec::new());
+    }
     let helped = parts.iter().any(|p| p.helped);
     if parts.iter().any(|p| {
         p.begins(&[

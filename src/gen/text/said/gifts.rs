@@ -24,8 +24,14 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = without(out, talk);
     let out = distance_to(out, talk);
     let out = emptied(out);
-    let out = every_second(out);
+    let out = every_second(by_half(out));
     as_many_as(out, talk)
+}
+
+/// What is only spoken of.
+pub(super) fn remark(np: &[Token]) -> Vec<Token> {
+    let the = if is(np.first(), &["the", "both", "all", "that", "this", "my", "those", "these"]) { "leave" } else { "leave the" };
+    led(the, &np[0], &[np, &led("alone", &np[0], &[])])
 }
 
 fn begins_at(tokens: &[Token], i: usize) -> bool {
@@ -40,7 +46,7 @@ fn is_fresh(t: Option<&Token>) -> bool {
 
 /// "I see four pedestrians, ...", where there are four: a remark.
 fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have"]) else {
+    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have", "there are", "there is"]) else {
         return tokens;
     };
     let Some(many) = tokens.get(n).and_then(number) else {
@@ -50,8 +56,12 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let close = (n + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"]));
+    // (alone it says only what is meant next)
     let Some(close) = close.filter(|c| c + 2 < tokens.len()) else {
-        return tokens;
+        let np = &tokens[n + 1..];
+        let now = np.iter().any(|t| matches!(text(t), "now" | "more" | "only" | "just"));
+        let same = close.is_none() && !now && many > 1 && talk.fits(np) == many.max(0) as usize;
+        return if same { remark(np) } else { tokens };
     };
     let np = &tokens[n + 1..close];
     if talk.fits(np) != many.max(0) as usize {
@@ -62,7 +72,16 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let it = rest.iter().position(|t| matches!(text(t), "them" | "they" | "those"));
     match it {
         Some(k) => [&rest[..k], &led("the", &rest[k], &[np]), &rest[k + 1..]].concat(),
-        None => tokens,
+        None => {
+            // "I count four cars but I need seven"
+            let k = rest.iter().take(5).position(|t| number(t).is_some());
+            let ends = k.is_some_and(|k| rest.get(k + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "instead", "of"])));
+            match k.filter(|_| ends && !has_noun(rest)) {
+                Some(k) => led("keep exactly", &tokens[0], &[&rest[k..=k], np]),
+                None if has_noun(rest) => rest.to_vec(),
+                None => tokens,
+            }
+        }
     }
 }
 
@@ -88,8 +107,17 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if let Some(n) = company {
         let more = trimmed(&rest[n..]);
         let more = if is(more.first(), &[":"]) { trimmed(&more[1..]) } else { more };
-        if has_noun(more) || more.iter().any(|t| number(t).is_some()) {
+        if has_noun(more) {
             return [&tokens[..i], more].concat();
+        }
+        // "add three more": of those
+        if let Some(k) = more.iter().position(|t| number(t).is_some() || is(Some(t), &["another"])) {
+            let k = k + 1 + usize::from(is(more.get(k + 1), &["more", "one"]));
+            let mut noun = super::some_of::bare_np(np);
+            if let Some(last) = noun.last_mut() {
+                last.text = plural(&last.text);
+            }
+            return [&tokens[..i], &more[..k], &noun, &more[k..]].concat();
         }
         return tokens;
     }
@@ -98,7 +126,8 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let new = &rest[..e];
     let tail = &rest[e..];
-    if is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
+    let told = is(trimmed(tail).first(), &["who", "that", "which"]);
+    if told || is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
         return tokens;
     }
     let trailer = is(new.last(), &["trailer", "caravan"]);
@@ -137,9 +166,14 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let before = trimmed(&tokens[..i]);
     let after = trimmed(&tokens[close..]);
     // what follows only says that it is better so
-    let praise = !has_noun(after) || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner"));
+    let praise = after.is_empty()
+        || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner" | "best" | "simpler"));
     if i == 0 {
-        return if praise && after.iter().all(|t| number(t).is_none()) { remove } else { tokens };
+        return match (praise, is(tokens.get(close), &["and"]) || tokens[close..].iter().any(|t| text(t) == "and")) {
+            (true, _) => remove,
+            (false, true) => [&remove[..], &led("and", &tokens[0], &[after])].concat(),
+            _ => tokens,
+        };
     }
     if !after.is_empty() && !is(tokens.get(close), &["and"]) && tokens.get(close).is_some_and(|t| t.kind == TokenKind::Word) {
         return tokens;
@@ -213,8 +247,12 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
     let mut rest = &body[k + 1..];
     let of = leads(rest, &["of all", "of any", "of", "from"]);
     rest = &rest[of.unwrap_or(0)..];
-    let late = find(rest, &["now", "again", "any more", "please", "at last"]).map_or(rest.len(), |x| x.0);
-    let what = trimmed(&rest[..late]);
+    let late = find(rest, &["now", "again", "any more", "please", "at last"]);
+    let what = trimmed(&rest[..late.map_or(rest.len(), |x| x.0)]);
+    // (what is to be done for it is said)
+    if late.is_some_and(|(k, n)| !trimmed(&rest[k + n..]).is_empty()) || what.iter().any(|t| t.kind == TokenKind::Comma) {
+        return tokens;
+    }
     // ("my lane is free" is a remark)
     let wish = body[the + n..k].iter().any(|t| matches!(text(t), "should" | "must" | "to" | "be" | "shall" | "needs" | "now"))
         || is(body.get(k), &["empty", "deserted", "vacant"]);
@@ -228,6 +266,29 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
         Some(_) => led("remove all the", &body[0], &[what, &at]),
         None => led("remove all the objects", &body[0], &[&at]),
     }
+}
+
+/// "reduce the cones by half": halve them.
+fn by_half(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["half"])
+            && is(tokens.get(i - 1), &["by", "to", "in"])
+            && tokens.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please"]))
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let Some(v) = (0..i - 1).rev().find(|k| is(tokens.get(*k), &["reduce", "cut", "decrease", "lower", "bring", "shrink", "trim", "thin"]) && begins_at(&tokens, *k)) else {
+        return tokens;
+    };
+    let end = if is(tokens.get(i - 2), &["down", "back"]) { i - 2 } else { i - 1 };
+    let skip = leads(&tokens[v + 1..end], &["down the number of", "the number of", "down", "the amount of", "out"]).unwrap_or(0);
+    let np = &tokens[v + 1 + skip..end];
+    if first_noun(np).is_none_or(|x| x.0 > 3) {
+        return tokens;
+    }
+    let the = usize::from(is(np.first(), &["the"]));
+    [&tokens[..v], &led("half the number of", &tokens[v], &[&np[the..]]), &tokens[i + 1..]].concat()
 }
 
 /// "every second cone": half of the cones.

@@ -12,6 +12,7 @@ mod frame;
 mod gaps;
 mod gifts;
 mod idioms;
+mod left;
 mod limits;
 pub(super) mod lists;
 mod of_several;
@@ -19,6 +20,7 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod reasons;
 mod recast;
 mod remaining;
 mod skies;
@@ -35,6 +37,7 @@ mod totals;
 mod turns;
 mod untouched;
 mod ways;
+mod wider;
 mod which;
 mod worded;
 pub(super) mod words;
@@ -49,6 +52,7 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, SceneBox};
 pub use exception::except;
+pub use left::Left;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
     takes_place,
@@ -122,7 +126,12 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = gifts::plain(turns::plain(body.to_vec(), talk), talk);
+    let out = wider::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = reasons::plain(out, talk);
+    let out = gifts::plain(turns::plain(out, talk), talk);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
@@ -369,6 +378,12 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(vec![remembered(&inner[i + n..], talk)]);
     }
+    // "and no bus"
+    if is(inner.first(), &["no"])
+        && let Some(gone) = remaining::plain(inner)
+    {
+        return Some(vec![Piece::Plain(gone)]);
+    }
     if let Some(found) = half(inner) {
         return Some(found);
     }
@@ -381,6 +396,14 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             "there is too much",
             "there are far too many",
             "there are way too many",
+            "we have too many",
+            "we have too few",
+            "i see too many",
+            "i see too few",
+            "i have too many",
+            "i have too few",
+            "too many",
+            "too few",
         ],
     ) && has_noun(&inner[n..])
     {

@@ -253,7 +253,7 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
             ],
         ) || tokens
             .first()
-            .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some())
+            .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some() && !is(Some(t), &["somebody", "someone"]))
             && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
             || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"])
             || one_of;

@@ -99,12 +99,21 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
             let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            // "undo the barriers, and instead of the digger put a truck there"
+            let instead = is(body.get(next - 1), &["and", "but", "then"])
+                && leads(rest, &["instead of the", "in place of the", "rather than the"]).is_some()
+                && super::super::rephrase::is_verb(&body[from]);
             // "the van and the truck are to disappear": two subjects of one verb
             let joined = text(t) == "and"
                 && is(body.get(from), &["the", "both", "my", "that", "those", "these"])
                 && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
                 && is(body.get(next), &["the", "my", "that", "those", "these"]);
-            if joined {
+            // "only the cones and barriers are left"
+            let only = text(t) == "and"
+                && is(body.get(from), &["only", "just"])
+                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
+                && first_noun(&body[next.min(body.len())..]).is_some_and(|n| n.0 < 3);
+            if joined || only {
                 i += 1;
                 continue;
             }
@@ -127,14 +136,14 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !named
                 && !therefore
                 && spoken
-                && opens(
+                && (instead || opens(
                     rest,
                     &Talk {
                         carried: text(t) == "and" && carries(&body[from..i]),
                         last: None,
                         ..*talk
                     },
-                )
+                ))
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -229,9 +238,23 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 "i want",
                 "i need",
                 "we need",
+                "away with",
+                "off with",
+                "out with",
+                "down with",
+                "no more",
+                "enough of",
             ],
         )
         .is_some()
+    {
+        return true;
+    }
+    // "and no bus"
+    if is(rest.first(), &["no"])
+        && first_noun(rest).is_some_and(|n| {
+            n.0 < 3 && rest.get(n.1).is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
+        })
     {
         return true;
     }
@@ -294,6 +317,16 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     // "and now only one worker is there"
     if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
+        return true;
+    }
+    // "and double the barriers"
+    if is(inner.first(), &["double", "halve", "triple", "treble", "quadruple"]) && is(inner.get(1), &["the", "all", "my"]) {
+        return true;
+    }
+    // "one car fewer"
+    if number(first).is_some()
+        && first_noun(inner).is_some_and(|n| n.0 < 4 && is(inner.get(n.1), &["fewer", "less"]))
+    {
         return true;
     }
     // "two would do"

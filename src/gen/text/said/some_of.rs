@@ -127,6 +127,12 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
                 .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"]))
                 .map(|k| k - 1)
                 .filter(|k| first_noun(&tokens[n..=*k]).is_some())
+        })
+        // "of the four barriers one can go"
+        .or_else(|| {
+            let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
+            tokens.get(n + b).filter(|t| number(t).is_some())?;
+            Some(n + b - 1)
         })?;
     let end = comma + usize::from(tokens[comma].kind != TokenKind::Comma);
     let np = tokens.get(n..end).filter(|np| first_noun(np).is_some())?;
@@ -280,6 +286,14 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let (a, b) = first_noun(&tokens[n..]).map(|x| (n + x.0, n + x.1))?;
     let counted = tokens[n..a].iter().any(|t| number(t).is_some());
     let rest = trimmed(&tokens[b..]);
+    let suffices = number(rest.first()?).is_some()
+        && (rest.len() == 1
+            || rest[1..]
+                .iter()
+                .all(|t| is(Some(t), &["will", "would", "should", "do", "suffice", "suffices", "be", "enough", "are", "is", "please", "fine"])));
+    if suffices && counted && a < n + 5 {
+        return Some(led("keep exactly", &tokens[0], &[&rest[..1], &tokens[a..b]]));
+    }
     let w = leads(rest, WISHES)?;
     let k = w + usize::from(is(rest.get(w), &["just", "only"]));
     let many = rest.get(k).filter(|t| number(t).is_some())?;

@@ -343,7 +343,11 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
             && is(tokens.get(k + 1), &["the", "these", "those", "my", "our"])
     });
     // "one pedestrian crosses, the other one stays": one of those that are there
-    let one_of = talk.others
+    let leaves = is(
+        tokens.get(end),
+        &["leave", "leaves", "disappear", "disappears", "vanish", "vanishes", "depart", "departs", "goes", "left", "walks", "drives"],
+    ) && (!is(tokens.get(end), &["goes", "walks", "drives"]) || is(tokens.get(end + 1), &["away", "off", "home"]));
+    let one_of = (talk.others || leaves)
         && !part
         && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
         && !described_fresh;

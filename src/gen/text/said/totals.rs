@@ -36,7 +36,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
     let out = not_but(out);
-    rather_than(out)
+    from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
 
 fn links(t: &Token) -> bool {
@@ -179,7 +179,7 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "fill the place up a bit, to eight parked cars in all", "double the cars, so there are four altogether".
 fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, IN_ALL).filter(|x| x.0 > 1) else {
+    let Some((i, n)) = find(&tokens, IN_ALL).filter(|x| x.0 > 0) else {
         return tokens;
     };
     let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
@@ -202,7 +202,11 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         (None, None) => {
             let before = &tokens[..from];
             let Some((a, b)) = first_noun(before) else {
-                return tokens;
+                // "More cars! Six altogether."
+                return match &talk.last {
+                    Some(last) if from == 0 => led("keep exactly", &tokens[0], &[many, &led(last, &tokens[0], &[]), tail]),
+                    _ => tokens,
+                };
             };
             let lead = (0..a).rev().take_while(|j| matches!(look_up(text(&before[*j])), Some(Sense::State(_, false) | Sense::Size(_))) || is(before.get(*j), &["oncoming", "parked"])).last().unwrap_or(a);
             let place = &before[b..];
@@ -236,7 +240,7 @@ fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let plural = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
-    let adds = tokens[from..a].iter().any(|t| super::super::rephrase::is_verb(t) || is(Some(t), &["the", "more"]) || number(t).is_some());
+    let adds = tokens[from..a].iter().any(|t| super::super::rephrase::is_verb(t) && !is(Some(t), &["i", "we"]) || is(Some(t), &["the", "more"]) || number(t).is_some());
     if !plural || adds {
         return tokens;
     }
@@ -279,6 +283,114 @@ fn not_but(tokens: Vec<Token>) -> Vec<Token> {
     let mut out = tokens[..from].to_vec();
     out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[close..]]));
     out
+}
+
+/// "five children would be nicer": five.
+fn nicer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let counted = tokens.first().is_some_and(|t| number(t).is_some_and(|n| n > 1) || text(t) == "one");
+    // "three pedestrians fewer would be good"
+    if counted
+        && tokens.iter().any(|t| matches!(text(t), "fewer" | "less" | "more"))
+        && let Some((i, n)) = find(&tokens, &["would be good", "would be nice", "would be better", "would be fine", "would be great", "would be welcome", "would be nicer", "would do"])
+        && i + n == tokens.len()
+    {
+        return tokens[..i].to_vec();
+    }
+    let Some((_, b)) = first_noun(&tokens).filter(|x| counted && x.0 < 4) else {
+        return tokens;
+    };
+    let Some((i, n)) = find(
+        &tokens[b..],
+        &["would be nicer", "would be better", "would be preferable", "would be nice", "would be fine", "would be ideal", "would be right", "would be perfect", "would be more realistic", "would look better", "would be good"],
+    ) else {
+        return tokens;
+    };
+    let place = &tokens[b..b + i];
+    let ends = tokens.get(b + i + n).is_none_or(links);
+    if !ends || !(place.is_empty() || is_place(place)) || talk.fits(&tokens[1..b]) == 0 {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[&tokens[..b + i], &tokens[b + i + n..]])
+}
+
+/// "three cones is not enough, we need at least six": six.
+fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "is not enough", "are not enough", "isnt enough", "arent enough", "is too few", "are too few", "is insufficient",
+            "are insufficient", "will not do", "wont do", "are too many", "is too many", "is too much", "are too much",
+            "does not suffice", "do not suffice", "is a lot", "are a lot",
+        ],
+    ) else {
+        return tokens;
+    };
+    let np = &tokens[..i];
+    let known = is(np.first(), &["the", "these", "those", "only", "just", "my"]) || np.first().is_some_and(|t| number(t).is_some());
+    let rest = trimmed(&tokens[i + n..]);
+    // ("there should be eight" may follow in a sentence of its own)
+    if rest.is_empty() && !np.iter().any(links) && known && first_noun(np).is_some_and(|x| x.0 < 4) && talk.fits(bare(np)) > 0 {
+        return super::gifts::remark(bare(np));
+    }
+    let Some(k) = rest.iter().take(6).position(|t| number(t).is_some() && !is(Some(t), &["a", "an"])) else {
+        return tokens;
+    };
+    let lead = rest[..k].iter().all(|t| {
+        is(Some(t), &["we", "i", "need", "want", "at", "least", "make", "it", "there", "should", "be", "let", "id", "like", "would", "use", "have", "rather", "give", "me", "please", "exactly", "a", "total", "of", "must", "say", "only", "just", "keep", "leave"])
+    });
+    let own = first_noun(&rest[k..]);
+    let ends = rest.get(k + 1).is_none_or(|t| links(t) || is(Some(t), &["would", "will", "are", "is", "instead", "please", "of", "should"]));
+    if !known || !lead || first_noun(np).is_none_or(|x| x.0 > 4) || own.is_some() || !ends {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np)])
+}
+
+/// "the parked cars go from two to four", "the cones drop to three".
+fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let known = is(tokens.first(), &["the", "our", "my", "these", "those"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 7) else {
+        return tokens;
+    };
+    let grows = (b..tokens.len().min(b + 9)).find(|k| {
+        is(
+            tokens.get(*k),
+            &[
+                "go", "goes", "rise", "rises", "increase", "increases", "grow", "grows", "drop", "drops", "fall", "falls", "shrink",
+                "shrinks", "climb", "climbs", "sink", "sinks", "decrease", "decreases", "reduced", "increased", "raised", "lowered",
+                "cut", "number", "amount", "come", "limited", "rising", "went", "gone",
+            ],
+        )
+    });
+    let Some(v) = grows else {
+        return tokens;
+    };
+    let mut k = v + 1;
+    k += usize::from(is(tokens.get(k), &["up", "down", "back"]));
+    let mut ranged = false;
+    if is(tokens.get(k), &["from"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) {
+        k += 2;
+        ranged = true;
+    }
+    let to = is(tokens.get(k), &["to"]);
+    let num = k + usize::from(to);
+    let num = num + usize::from(is(tokens.get(num), &["just", "only", "exactly"]));
+    let counts = is(tokens.get(v), &["number", "amount"]) && !to;
+    let many = tokens.get(num).filter(|t| number(t).is_some() && (to || counts));
+    let ends = tokens.get(num + 1).is_none_or(links);
+    let strays = is(tokens.get(v), &["go", "goes", "come", "went", "gone", "drop", "drops", "fall", "falls", "cut"]) && !ranged && first_noun(&tokens[..b]).is_some_and(|_| !tokens[..v].iter().any(|t| text(t) == "number"));
+    let Some(many) = many.filter(|_| ends && !strays) else {
+        return tokens;
+    };
+    let mut np = tokens[..v].to_vec();
+    while np.last().is_some_and(plain_verb) {
+        np.pop();
+    }
+    let np = bare(&np).to_vec();
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[std::slice::from_ref(many), &np, &tokens[num + 1..]])
 }
 
 /// "five parked cars would be better than three", "I'd rather have four on the right than two".
