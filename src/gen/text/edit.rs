@@ -382,7 +382,8 @@ impl Editor<'_> {
             }
             Verb::Make => {
                 // "the pickup has stopped for the night": it was spoken of
-                if let [only] = c.targets.as_slice()
+                if let Some(only) = c.targets.first()
+                    && (c.targets.len() == 1 || c.implied)
                     && c.nth.is_none()
                     && let Chosen::These(ids) = choose(&self.map, &self.boxes, only, &c.mentions)
                 {
@@ -454,7 +455,7 @@ impl Editor<'_> {
         }
         let mut all = Vec::new();
         for (k, mention) in c.targets.iter().enumerate() {
-            if k > 0 && !removing {
+            if k > 0 && !removing && !c.each {
                 break;
             }
             let chosen = match c.nth {

@@ -122,6 +122,7 @@ impl Editor<'_> {
                 for (_, id) in by_range.iter().take(fitting.len() - wanted) {
                     self.push(TextEdit::Remove { id: *id });
                 }
+                self.last = fitting.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
                 self.note(format!("the {} farthest were removed", fitting.len() - wanted));
             } else if fitting.len() < wanted {
                 let mut spec = m.spec.clone();

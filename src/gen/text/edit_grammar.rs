@@ -117,6 +117,8 @@ pub struct Command {
     pub only: bool,
     /// No verb was said.
     pub implied: bool,
+    /// Each of those named is meant: "the nurse and the child".
+    pub each: bool,
 }
 
 impl Command {
@@ -144,6 +146,7 @@ impl Command {
             in_place: false,
             only: false,
             implied: false,
+            each: false,
         }
     }
 
@@ -269,6 +272,10 @@ impl<'t> Reader<'t> {
         let whole = &super::said::spared(&chosen(&self.tokens[from..end], &talk))[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
+        let trace = std::env::var("TRACE_K").is_ok(); // TRACE
+        let joined = |t: &[Token]| t.iter().map(|t| t.text.clone()).collect::<Vec<_>>().join(" "); // TRACE
+        if trace { eprintln!("  tokens: {}\n  chosen: {}", joined(&self.tokens[from..end]), joined(whole)); // TRACE
+            eprintln!("  worded: {}", joined(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk))); } // TRACE
         let mut out: Vec<Command> = Vec::new();
         for piece in pieces {
             match piece {
@@ -277,6 +284,7 @@ impl<'t> Reader<'t> {
                     out.push(*command);
                 }
                 Piece::Plain(tokens) => {
+                    if trace { eprintln!("  plain: {} => {}", joined(&tokens), joined(&rephrase(&tokens).tokens)); } // TRACE
                     out.extend(imperatives(self.text, &rephrase(&tokens), &mut self.last_noun));
                 }
             }
@@ -292,6 +300,7 @@ impl<'t> Reader<'t> {
                 c.except.clone_from(&spared.targets);
             }
         }
+        if trace { for c in &out { eprintln!("  cmd {:?} {:?} targets {:?} back {:?} dest {:?} turn {:?} state {:?} in_place {} implied {} only {}", c.verb, c.text, c.targets.iter().map(|t| format!("{}{} {:?} {:?} {:?}", if t.uncounted {0} else {t.spec.count.n}, t.spec.noun, t.spec.state, t.pick, t.spec.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>())).collect::<Vec<_>>(), c.back, c.destination.as_ref().map(|d| match d { Destination::Place(p) => format!("Place {:?}", p.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>()), d => format!("{d:?}")}), c.turn, c.state, c.in_place, c.implied, c.only); } } // TRACE
         Some(out)
     }
 }

@@ -222,8 +222,10 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
         );
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
+    let been = predicate::parts(&inner[end..], true).iter().any(predicate::Part::is_gone);
     let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
     let goes = keeps
+        || i == 0 && been
         || i == 0
             && inner[end..].iter().any(|t| {
                 matches!(

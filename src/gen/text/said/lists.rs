@@ -58,7 +58,7 @@ lists! {
         gotten rid of|got rid of|cut out|dropped|omitted|out|off|driven on|drives on|drove on|run off|ran off|runs off|run away|\
         ran away|runs away|no more|done here|finished here|set off|sped off|speeds off|speed off|cycled off|cycled away|\
         cycles off|hurried off|hurried away|wandered off|wanders off|been removed|been taken away|dispensed with|done away with|\
-        disposed of|struck|cancelled|canceled|too much|too many|one too many";
+        disposed of|collected|picked up|packed up|packed away|packed in|put away|stolen|swept up|swept away|gathered up|dismantled|taken down|taken home|fetched|called away|sent away|sent home|escorted away|led away|carried away|carried off|loaded up|knocked off|called it a day|gone inside|gone indoors|gone to lunch|gone to bed|headed home|headed off|heads home|headed away|scared off|chased away|chased off|broken up|turned off the road|turned off the street|struck|cancelled|canceled|too much|too many|one too many";
     /// What may follow one of those.
     AFTERWARDS = "from|now|already|please|too|as|again|completely|entirely|altogether|for|by|in the meantime|and|so|the scene|the road|\
         the street|the area|the place|the picture|the image|the site|us|me|home|work|instead|then|long|because|since|after|\

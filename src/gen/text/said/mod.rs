@@ -6,6 +6,7 @@
 mod acts;
 mod causing;
 mod colours;
+mod dealt;
 mod exception;
 mod forms;
 mod frame;
@@ -122,7 +123,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = gifts::plain(turns::plain(body.to_vec(), talk), talk);
+    let out = dealt::plain(body.to_vec(), talk);
+    let out = gifts::plain(turns::plain(out, talk), talk);
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);

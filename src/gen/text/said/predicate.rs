@@ -169,6 +169,13 @@ fn goes_on(tokens: &[Token], plural: bool, before: &[Token]) -> bool {
         return false;
     };
     let w = text(t);
+    // "has finished its round and left"
+    let leaves = w == "left"
+        && before.iter().any(|t| matches!(text(t), "has" | "have" | "had"))
+        && (tokens.len() == k + 1 || leads(&tokens[k + 1..], &AFTERWARDS).is_some() || tokens[k + 1].kind != TokenKind::Word);
+    if leaves {
+        return true;
+    }
     if HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, plural) {
         return !has_place_only(tokens, k);
     }
@@ -287,7 +294,10 @@ pub fn parts(tokens: &[Token], plural: bool) -> Vec<Part> {
         }
         i += 1;
     }
-    out.push(part(&tokens[from..]));
+    let mut last = part(&tokens[from..]);
+    // its helper was said before: "has finished and left"
+    last.perfect |= out.last().is_some_and(|p| p.perfect) && !last.helped && last.begins(&["left"]).is_some();
+    out.push(last);
     out
 }
 

@@ -245,7 +245,10 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         } else {
             predicate_at(tokens, n, plural || caused).filter(|p| *p == n || *p == n + 1)
         };
-        let pred = pred.or_else(|| (caused && is_place(&tokens[n..])).then_some(n))?;
+        // "I want her riding 9 m in front of us"
+        let doing = |t: &Token| matches!(super::super::lexicon::look_up(text(t)), Some(super::super::lexicon::Sense::State(..)));
+        let pred = pred
+            .or_else(|| (caused && (is_place(&tokens[n..]) || tokens.get(n).is_some_and(doing))).then_some(n))?;
         return Some(Subject {
             kind: Kind::Back(back),
             np: tokens[..n].to_vec(),
