@@ -293,7 +293,11 @@ impl Editor<'_> {
                     m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
                 };
                 let again = !ordered && !c.in_place && c.targets.iter().all(there);
-                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || c.targets.iter().all(named)) {
+                // "half of the cones have been collected" speaks of those that are there
+                let part = [" of the ", " of these ", " of those ", " of our ", " of my ", " of them "]
+                    .iter()
+                    .any(|of| text.split_once(of).is_some_and(|(before, _)| before.split(' ').count() < 3));
+                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || part || c.targets.iter().all(named)) {
                     self.note(format!("{:?}: what should become of it was not understood", c.text));
                     return (!done.is_empty()).then(|| done.join(", "));
                 }

@@ -203,12 +203,23 @@ fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
     tokens
 }
 
+/// The class that a noun names, if the scene has just one of it.
+fn only_one(t: &Token, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<Class> {
+    let class = match super::lexicon::look_up(&t.text) {
+        Some(super::lexicon::Sense::Noun(n, _)) => *n.classes.first()?,
+        _ => return None,
+    };
+    (boxes.values().filter(|b| b.class == class).count() == 1).then_some(class)
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
     tokens: Vec<Token>,
     at: usize,
     last_noun: Option<Vec<Token>>,
+    /// What the sentences before named, one of a kind.
+    named: Vec<Class>,
 }
 
 impl<'t> Reader<'t> {
@@ -218,6 +229,7 @@ impl<'t> Reader<'t> {
             tokens: labelled_apart(super::common::plain(&tokens(text))),
             at: 0,
             last_noun: None,
+            named: Vec::new(),
         }
     }
 
@@ -257,8 +269,10 @@ impl<'t> Reader<'t> {
         });
         let end = stop.map_or(self.tokens.len(), |s| s + 1);
         self.at = end;
+        let of_last = last.first().and_then(|id| boxes.get(id)).map(|b| b.class);
         let talk = Talk {
             text: self.text,
+            other: self.named.iter().rev().copied().find(|c| Some(*c) != of_last),
             map,
             boxes,
             others: begins(
@@ -267,7 +281,7 @@ impl<'t> Reader<'t> {
             )
             .is_some(),
             carried: false,
-            last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
+            last: of_last.map(|c| c.label()),
         };
         let whole = &super::said::spared(&chosen(&self.tokens[from..end], &talk))[..];
         let cut = except(whole);
@@ -300,6 +314,7 @@ impl<'t> Reader<'t> {
                 c.except.clone_from(&spared.targets);
             }
         }
+        self.named = (from..end).filter_map(|i| only_one(&self.tokens[i], boxes)).collect();
         if trace { for c in &out { eprintln!("  cmd {:?} {:?} targets {:?} back {:?} dest {:?} turn {:?} state {:?} in_place {} implied {} only {}", c.verb, c.text, c.targets.iter().map(|t| format!("{}{} {:?} {:?} {:?}", if t.uncounted {0} else {t.spec.count.n}, t.spec.noun, t.spec.state, t.pick, t.spec.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>())).collect::<Vec<_>>(), c.back, c.destination.as_ref().map(|d| match d { Destination::Place(p) => format!("Place {:?}", p.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>()), d => format!("{d:?}")}), c.turn, c.state, c.in_place, c.implied, c.only); } } // TRACE
         Some(out)
     }

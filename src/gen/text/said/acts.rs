@@ -135,6 +135,10 @@ pub fn acts(
         .filter_map(|p| first_noun(&p.main).map(|n| p.main[n.0..n.1].to_vec()))
         .next()
         .or_else(|| {
+            let other = talk.other.filter(|_| matches!(s.kind, Kind::Back(_)))?;
+            Some(led(&other.label(), &clause[0], &[]))
+        })
+        .or_else(|| {
             talk.last
                 .as_ref()
                 .filter(|l| !s.noun.iter().any(|t| l.contains(text(t))))

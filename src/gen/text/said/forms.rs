@@ -84,7 +84,8 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         ],
     ) && words::noun_at(&main[i + n..]).is_none()
     {
-        let the = led("the", first, &[&s.noun]);
+        let one = if is(main.get(i + n - 1), &["first", "one", "other"]) { super::topics::singular_of(&s.noun) } else { s.noun.clone() };
+        let the = led("the", first, &[&one]);
         main.splice(i..i + n, the);
     }
     // "behind it": what else was named

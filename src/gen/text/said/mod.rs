@@ -7,6 +7,7 @@ mod acts;
 mod causing;
 mod colours;
 mod dealt;
+mod doers;
 mod exception;
 mod forms;
 mod frame;
@@ -48,7 +49,7 @@ use super::select::fitting;
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
-use crate::scene::{BoxId, SceneBox};
+use crate::scene::{BoxId, Class, SceneBox};
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
@@ -73,6 +74,8 @@ pub struct Talk<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// A word for what was spoken of last.
     pub last: Option<String>,
+    /// What else the sentence before named.
+    pub other: Option<Class>,
     /// The clause before moves something: its verb may hold for the next.
     pub carried: bool,
     /// The sentence speaks of "the other" of several, too.
@@ -123,7 +126,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = dealt::plain(body.to_vec(), talk);
+    let out = doers::plain(dealt::plain(body.to_vec(), talk), talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));

@@ -79,6 +79,8 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 || is(body.get(from), &PRONOUNS)
                 || is(body.get(from + 1), &["it", "them", "him", "her"])
                 || body[i..next].iter().any(|t| text(t) == "so") && opens_order(rest)
+                // "make room: the bus goes to the right edge"
+                || text(t) == ":" && !(from..i).any(|k| is_place(&body[k..i]))
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
@@ -269,8 +271,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 HELPERS.contains(&text(&near[s.pred]))
                     || find(near, &["in"]).is_some() && text(&near[s.pred]) == "in"
                     || is(near.first(), &["a", "an", "another"])
-                        && words::is_finite(text(&near[s.pred]), false)
-                        && !text(&near[s.pred]).ends_with("ed")
+                        && near[s.pred..].iter().find(|t| !super::lists::ADVERBS.contains(&text(t))).is_some_and(|t| {
+                            words::is_finite(text(t), false) && !text(t).ends_with("ed")
+                        })
                     || in_place(near).is_some()
             }
             Kind::Known => {

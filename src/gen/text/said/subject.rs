@@ -350,6 +350,8 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         && !part
         && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
         && !described_fresh;
+    // "two cars have driven home": of those that are there
+    let leave = !part && !described_fresh && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) >= n as usize);
     let definite = matches!(
         text(first),
         "the"
@@ -395,6 +397,7 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         None if caused => (from..tokens.len()).find(|i| is_place(&tokens[*i..]))?,
         None => return None,
     };
+    let one_of = one_of || leave && super::predicate::parts(&tokens[pred..], true).iter().any(super::predicate::Part::is_gone);
     let known = definite || bare && talk.fits(&tokens[..end]) > 0;
     let kind = if part || one_of {
         Kind::Part
