@@ -334,7 +334,11 @@ impl Editor<'_> {
                     m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
                 };
                 let again = !ordered && !c.in_place && c.targets.iter().all(there);
-                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || c.targets.iter().all(named)) {
+                // "half of the cones have been collected" speaks of those that are there
+                let part = [" of the ", " of these ", " of those ", " of our ", " of my ", " of them "]
+                    .iter()
+                    .any(|of| text.split_once(of).is_some_and(|(before, _)| before.split(' ').count() < 3));
+                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || part || c.targets.iter().all(named)) {
                     self.note(format!("{:?}: what should become of it was not understood", c.text));
                     return (!done.is_empty()).then(|| done.join(", "));
                 }
@@ -423,7 +427,8 @@ impl Editor<'_> {
             }
             Verb::Make => {
                 // "the pickup has stopped for the night": it was spoken of
-                if let [only] = c.targets.as_slice()
+                if let Some(only) = c.targets.first()
+                    && (c.targets.len() == 1 || c.implied)
                     && c.nth.is_none()
                     && let Chosen::These(ids) = choose(&self.map, &self.boxes, only, &c.mentions)
                 {
@@ -499,7 +504,7 @@ impl Editor<'_> {
         }
         let mut all = Vec::new();
         for (k, mention) in c.targets.iter().enumerate() {
-            if k > 0 && !removing {
+            if k > 0 && !removing && !c.each {
                 break;
             }
             let chosen = match c.nth {

@@ -128,6 +128,7 @@ impl Editor<'_> {
                 for (_, id) in by_range.iter().take(fitting.len() - wanted) {
                     self.push(TextEdit::Remove { id: *id });
                 }
+                self.last = fitting.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
                 self.note(format!("the {} farthest were removed", fitting.len() - wanted));
             } else if fitting.len() < wanted {
                 let mut spec = m.spec.clone();
@@ -189,7 +190,10 @@ impl Editor<'_> {
     /// One for one; where both sides are counted, those too many go and those too few are added.
     pub(super) fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
+        // "replace each barrier by two cones"
+        let per_each = c.targets.first().is_some_and(|m| m.pick == Some(super::words::edits::Pick::All) && !m.plural && m.uncounted);
         let wanted = match &c.by {
+            Some(by) if per_each && !by.uncounted => by.spec.count.n as usize * ids.len(),
             Some(by) if !by.uncounted && (!all || by.spec.count.n > 1 || said_one(&c.text)) => {
                 by.spec.count.n as usize
             }
@@ -206,6 +210,15 @@ impl Editor<'_> {
             spec.count = Count::exactly((wanted - ids.len()) as u32);
             spec.relations
                 .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            // the others stand where those stood
+            self.like_the_others(&mut spec, ids);
+            let parked = spec.relations.iter().any(|r| {
+                use crate::scene::graph::LaneRole as L;
+                matches!(r.anchor, Anchor::Lane(L::LeftRoadside | L::RightRoadside | L::Carpark))
+            });
+            if parked && spec.state.is_none() && spec.class.is_vehicle() {
+                spec.state = Some(crate::scene::graph::ObjectState::Parked);
+            }
             self.add(&Description {
                 foreground: vec![spec],
                 ..Description::default()

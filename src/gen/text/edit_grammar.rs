@@ -119,6 +119,8 @@ pub struct Command {
     pub implied: bool,
     /// Boxes that were found before an earlier command of the sentence made others of them.
     pub found: Option<Vec<BoxId>>,
+    /// Each of those named is meant: "the nurse and the child".
+    pub each: bool,
 }
 
 impl Command {
@@ -147,6 +149,7 @@ impl Command {
             only: false,
             implied: false,
             found: None,
+            each: false,
         }
     }
 
@@ -203,6 +206,15 @@ fn labelled_apart(mut tokens: Vec<Token>) -> Vec<Token> {
     tokens
 }
 
+/// The class that a noun names, if the scene has just one of it.
+fn only_one(t: &Token, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<Class> {
+    let class = match super::lexicon::look_up(&t.text) {
+        Some(super::lexicon::Sense::Noun(n, _)) => *n.classes.first()?,
+        _ => return None,
+    };
+    (boxes.values().filter(|b| b.class == class).count() == 1).then_some(class)
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
@@ -211,6 +223,8 @@ pub(super) struct Reader<'t> {
     last_noun: Option<Vec<Token>>,
     /// What the sentences before left to be pointed at.
     left: Left,
+    /// What the sentences before named, one of a kind.
+    named: Vec<Class>,
 }
 
 impl<'t> Reader<'t> {
@@ -221,6 +235,7 @@ impl<'t> Reader<'t> {
             at: 0,
             last_noun: None,
             left: Left::default(),
+            named: Vec::new(),
         }
     }
 
@@ -260,8 +275,10 @@ impl<'t> Reader<'t> {
         });
         let end = stop.map_or(self.tokens.len(), |s| s + 1);
         self.at = end;
+        let of_last = last.first().and_then(|id| boxes.get(id)).map(|b| b.class);
         let talk = Talk {
             text: self.text,
+            other: self.named.iter().rev().copied().find(|c| Some(*c) != of_last),
             map,
             boxes,
             others: begins(
@@ -270,7 +287,7 @@ impl<'t> Reader<'t> {
             )
             .is_some(),
             carried: false,
-            last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
+            last: of_last.map(|c| c.label()),
         };
         let asked = self.tokens[from..end].last().is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
         let pointed = self.left.resolved(&self.tokens[from..end], &talk);
@@ -302,6 +319,7 @@ impl<'t> Reader<'t> {
                 c.except.clone_from(&spared.targets);
             }
         }
+        self.named = (from..end).filter_map(|i| only_one(&self.tokens[i], boxes)).collect();
         Some(out)
     }
 }

@@ -230,7 +230,7 @@ impl Editor<'_> {
         let mut follows = d.clone();
         let mut any = false;
         for o in &mut follows.foreground {
-            let drives = (o.class.is_vehicle() || o.class == crate::scene::Class::Motorcycle)
+            let drives = (o.class.is_vehicle() || matches!(o.class, crate::scene::Class::Motorcycle | crate::scene::Class::Bicycle))
                 && o.state != Some(crate::scene::graph::ObjectState::Parked);
             let lane = o.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
             for r in o.relations.iter_mut().filter(|_| drives && !lane) {

@@ -31,9 +31,16 @@ fn about(verb: Verb, s: &Subject, clause: &[Token], talk: &Talk<'_>) -> Command 
             let (np, nth) = without_ordinal(&s.np);
             c.nth = nth;
             target_part(talk.text, &tag(&np), &mut c);
+            c.each = joins(&np);
         }
     }
     c
+}
+
+/// "the nurse and the child": two that are known.
+fn joins(np: &[Token]) -> bool {
+    let the = |t: Option<&Token>| is(t, &["the", "my", "that", "both", "this", "all", "our", "those", "these"]);
+    (1..np.len()).any(|i| is(np.get(i), &["and"]) && the(np.first()) && has_noun(&np[..i]) && has_noun(&np[i + 1..]))
 }
 
 /// "the second truck": the ordinal is taken out.
@@ -127,6 +134,10 @@ pub fn acts(
         .iter()
         .filter_map(|p| first_noun(&p.main).map(|n| p.main[n.0..n.1].to_vec()))
         .next()
+        .or_else(|| {
+            let other = talk.other.filter(|_| matches!(s.kind, Kind::Back(_)))?;
+            Some(led(&other.label(), &clause[0], &[]))
+        })
         .or_else(|| {
             talk.last
                 .as_ref()

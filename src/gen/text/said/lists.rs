@@ -58,7 +58,11 @@ lists! {
         gotten rid of|got rid of|cut out|dropped|omitted|out|off|driven on|drives on|drove on|run off|ran off|runs off|run away|\
         ran away|runs away|no more|done here|finished here|set off|sped off|speeds off|speed off|cycled off|cycled away|\
         cycles off|hurried off|hurried away|wandered off|wanders off|been removed|been taken away|dispensed with|done away with|\
-        disposed of|struck|cancelled|canceled|too much|too many|one too many";
+        disposed of|collected|picked up|packed up|packed away|packed in|put away|stolen|swept up|swept away|gathered up|dismantled|taken down|taken home|fetched|called away|sent away|sent home|escorted away|led away|carried away|carried off|loaded up|knocked off|called it a day|gone inside|gone indoors|gone to lunch|gone to bed|headed home|headed off|heads home|headed away|scared off|chased away|chased off|broken up|turned off the road|turned off the street|takes the next exit|took the next exit|taken the next exit|takes the exit|took the exit|taken the exit|leaves at the next exit|left at the next exit|turns off at the next exit|turned off at the next exit|takes the next turning|taken the next turning|gone round the corner|gone around the corner|goes round the corner|disappears round the corner|disappeared round the corner|disappears around the corner|disappeared around the corner|stayed at home|stayed home|stay at home|stays at home|stay home|stays home|remained at home|remain at home|not come|not turned up|called in sick|not shown up|given up|sold|bought|stolen|struck|cancelled|canceled|too much|too many|one too many";
+    /// Places that are no part of a scene.
+    OFF_SITE = "station|depot|home|hotel|hospital|house|office|school|garage|base|barracks|headquarters|yard|firehouse|stable|farm|harbour|\
+        workshop|kitchen|shop|factory|camp|bed|town|city|village|hangar|warehouse|lunch|dinner|breakfast|work|quarters|canteen|club|\
+        nursery|kindergarten|church|theatre|cinema|airport|port|plant|mainland|market|bakery|restaurant|cafe|pub|supermarket";
     /// What may follow one of those.
     AFTERWARDS = "from|now|already|please|too|as|again|completely|entirely|altogether|for|by|in the meantime|and|so|the scene|the road|\
         the street|the area|the place|the picture|the image|the site|us|me|home|work|instead|then|long|because|since|after|\
@@ -102,7 +106,7 @@ lists! {
     ELSEWHERE_READ = "likewise|as do|so do|so should|as should|as are|so are|as well as|and so|except|apart from|other than|nothing but|\
         everything but|all but|everyone but|everybody but";
     /// That something is there, before where.
-    PRESENT = "needed|wanted|required|added|be added|there|missing|in|present|put in|inserted|necessary|here|also|too|to be|joining|\
+    PRESENT = "turned up and|shown up and|arrived and|appeared and|come along and|come over and|come and|come up and|joined us and|turned up|shown up|arrived|appeared|come along|needed|wanted|required|added|be added|there|missing|in|present|put in|inserted|necessary|here|also|too|to be|joining|\
         placed|put|positioned";
     /// Imperatives that bring something elsewhere.
     MOVES = "move|shift|put|place|bring|pull|push|set|send|drive|slide|take|get|relocate|reposition|position|drag|nudge|roll|transfer|\
@@ -116,7 +120,7 @@ lists! {
         appear|part of|to be seen|visible|useful|welcome|of use|in use|interesting|relevant|want|need|on the scene|at the scene|\
         in this scene|in our scene|to be there|be there|needed anymore|show|shown|seen";
     /// Beginnings of what only says why.
-    REASONS = "because|since|so that we|so we|so that i|so i|as it|as he|as she|as they|for safety|in order to|which is|which means|\
+    REASONS = "so nothing|so nobody|so that nothing|so that nobody|so no one|so that no one|because|since|so that we|so we|so that i|so i|as it|as he|as she|as they|for safety|in order to|which is|which means|\
         so as to|to make it|or else|otherwise|to let|to avoid|for whatever|like before|as before|as usual";
     /// In the place of another.
     IN_PLACE = "there instead|on its place|on their place|on his place|on her place|on the same place|in its place|in their place|in his place|in her place|in the same place|in same place|in that place|\

@@ -6,6 +6,8 @@
 mod acts;
 mod causing;
 mod colours;
+mod dealt;
+mod doers;
 mod exception;
 mod forms;
 mod frame;
@@ -50,7 +52,7 @@ use super::select::fitting;
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
-use crate::scene::{BoxId, SceneBox};
+use crate::scene::{BoxId, Class, SceneBox};
 pub use exception::except;
 pub use left::Left;
 use forms::{
@@ -76,6 +78,8 @@ pub struct Talk<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// A word for what was spoken of last.
     pub last: Option<String>,
+    /// What else the sentence before named.
+    pub other: Option<Class>,
     /// The clause before moves something: its verb may hold for the next.
     pub carried: bool,
     /// The sentence speaks of "the other" of several, too.
@@ -128,6 +132,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     };
     let out = wider::plain(spoken::sides_named(body.to_vec()), talk);
     let out = reasons::plain(out, talk);
+    let out = doers::plain(dealt::plain(out, talk), talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
     if out.is_empty() {
         return stop.to_vec();

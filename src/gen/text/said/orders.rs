@@ -264,10 +264,19 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         let clean = tokens[..noun.0]
             .iter()
             .all(|t| t.kind != TokenKind::Comma && !matches!(text(t), "and" | "rid"));
-        if !clean || is(tokens.get(noun.1), &["and"]) {
+        let two = is(tokens.get(noun.1), &["and"]);
+        // "move the bus and the van to the right lane"
+        let second = noun.1 + 1;
+        let both = two
+            && is(tokens.get(second), &["the", "my", "that", "both", "our", "those", "these"])
+            && tokens.get(second..).and_then(first_noun).is_some_and(|n| n.0 < 5 && !is(tokens.get(second + n.1), &["and"]));
+        if !clean || two && !both {
             return None;
         }
-        let split = split(tokens, talk)?;
+        let split = match both {
+            true => second + split(&tokens[second..], talk)?,
+            false => split(tokens, talk)?,
+        };
         let part = is(tokens.get(1), &["of"]) && number(&tokens[0]).is_some();
         let np = if part {
             // "one of the two pedestrians"

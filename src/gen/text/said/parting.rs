@@ -77,6 +77,10 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             let spoken = styled
                 || has_noun(&body[from..i])
                 || is(body.get(from), &PRONOUNS)
+                || is(body.get(from + 1), &["it", "them", "him", "her"])
+                || body[i..next].iter().any(|t| text(t) == "so") && opens_order(rest)
+                // "make room: the bus goes to the right edge"
+                || text(t) == ":" && !(from..i).any(|k| is_place(&body[k..i]))
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
@@ -216,6 +220,12 @@ pub(super) fn carries(clause: &[Token]) -> bool {
     ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
 }
 
+/// "so let the bus stand there": what stands before only says why.
+fn opens_order(rest: &[Token]) -> bool {
+    (is(rest.first(), &MOVES) || rest.first().is_some_and(super::super::rephrase::is_verb))
+        && is(rest.get(1), &["the", "both", "all", "every", "my", "our", "that", "those", "these", "a", "an", "another", "it", "them", "him", "her"])
+}
+
 /// True if a clause of its own begins here.
 pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     let (inner, mood) = unwrapped(rest);
@@ -268,7 +278,7 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     if orders
         && is(
             inner.get(1),
-            &["the", "it", "them", "him", "her", "both", "all", "my"],
+            &["the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these"],
         )
     {
         return true;
@@ -283,6 +293,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
             Kind::Fresh => {
                 HELPERS.contains(&text(&near[s.pred]))
                     || find(near, &["in"]).is_some() && text(&near[s.pred]) == "in"
+                    || is(near.first(), &["a", "an", "another"])
+                        && near[s.pred..].iter().find(|t| !super::lists::ADVERBS.contains(&text(t))).is_some_and(|t| {
+                            words::is_finite(text(t), false) && !text(t).ends_with("ed")
+                        })
                     || in_place(near).is_some()
             }
             Kind::Known => {
@@ -303,7 +317,7 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     // "and a tram in its place"
     if is(near.first(), &["a", "an", "another"])
-        && first_noun(near).is_some_and(|n| in_place(&near[n.1..]).is_some_and(|p| p.0 == 0))
+        && first_noun(near).is_some_and(|n| in_place(&near[n.1..]).is_some_and(|p| p.0 < 2))
     {
         return true;
     }

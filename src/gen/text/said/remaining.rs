@@ -87,6 +87,8 @@ fn stays(t: &Token) -> bool {
             | "stays"
             | "staying"
             | "standing"
+            | "us"
+            | "me"
             | "there"
             | "here"
             | "around"

@@ -245,7 +245,10 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         } else {
             predicate_at(tokens, n, plural || caused).filter(|p| *p == n || *p == n + 1)
         };
-        let pred = pred.or_else(|| (caused && is_place(&tokens[n..])).then_some(n))?;
+        // "I want her riding 9 m in front of us"
+        let doing = |t: &Token| matches!(super::super::lexicon::look_up(text(t)), Some(super::super::lexicon::Sense::State(..)));
+        let pred = pred
+            .or_else(|| (caused && (is_place(&tokens[n..]) || tokens.get(n).is_some_and(doing))).then_some(n))?;
         return Some(Subject {
             kind: Kind::Back(back),
             np: tokens[..n].to_vec(),
@@ -351,6 +354,8 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         && !part
         && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
         && !described_fresh;
+    // "two cars have driven home": of those that are there
+    let leave = !part && !described_fresh && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) >= n as usize);
     let definite = matches!(
         text(first),
         "the"
@@ -396,6 +401,7 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         None if caused => (from..tokens.len()).find(|i| is_place(&tokens[*i..]))?,
         None => return None,
     };
+    let one_of = one_of || leave && super::predicate::parts(&tokens[pred..], true).iter().any(super::predicate::Part::is_gone);
     let known = definite || bare && talk.fits(&tokens[..end]) > 0;
     let kind = if part || one_of {
         Kind::Part

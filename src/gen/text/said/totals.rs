@@ -31,7 +31,7 @@ const SAME_PLACE: &[&str] = &[
 
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(tokens);
+    let out = same_place(doubled(tokens));
     let out = times_as_many(out);
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
@@ -55,6 +55,22 @@ fn same_place(tokens: Vec<Token>) -> Vec<Token> {
     }
     let comma = usize::from(tokens[i - 1].kind == TokenKind::Comma);
     [&tokens[..i - comma], &tokens[i + n..]].concat()
+}
+
+/// "we need twice the firefighters": double them.
+fn doubled(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(i) = (0..tokens.len()).find(|i| is(tokens.get(*i), &["twice", "double", "triple", "thrice"]) && is(tokens.get(i + 1), &["the"])) else {
+        return tokens;
+    };
+    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
+    let wish = &tokens[from..i];
+    let wished = !wish.is_empty() && (leads(wish, WISHES) == Some(wish.len()) || unwrapped(wish).0.is_empty() || unwrapped(&tokens[from..]).0.len() + wish.len() == tokens.len() - from);
+    let many = first_noun(&tokens[i + 2..]).is_some_and(|x| x.0 < 3 && matches!(look_up(text(&tokens[i + 1 + x.1])), Some(Sense::Noun(_, true))));
+    if !wished || !many {
+        return tokens;
+    }
+    let times = if is(tokens.get(i), &["triple", "thrice"]) { "triple" } else { "double" };
+    [&tokens[..from], &led(times, &tokens[i], &[&tokens[i + 1..]])].concat()
 }
 
 /// "I need twice as many cones as there are now": twice as many cones.

@@ -345,6 +345,9 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let end = but + 1 + e;
     let more = trimmed(&old[end..]);
+    // "not a motorcycle but a van should be following us"
+    let helped = more.iter().take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["to", "now"])).count();
+    let more = &more[helped..];
     let lead = trimmed(&tokens[..i]);
     let place = if is_place(lead) && first_noun(lead).is_none() {
         lead
