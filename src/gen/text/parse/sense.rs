@@ -312,6 +312,7 @@ impl<'a> Parser<'a> {
                             )
                         });
                     self.anchor(host.or(by_other).map_or(Anchor::Ego, Anchor::Object), span);
+                    self.farther_on(item, span);
                 }
             }
             Sense::Reversed(kind) => {
