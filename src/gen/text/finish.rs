@@ -53,9 +53,10 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
     };
     for i in 0..mentions.len() {
         let m = &mentions[i];
-        if m.gone || !m.plural || m.uncounted || !m.spec.count.is_exact() || !is_sort(&m.spec.noun) {
+        if m.gone || !m.plural || m.uncounted || !m.spec.count.is_exact() || m.is_anchor {
             continue;
         }
+        let sort = is_sort(&m.spec.noun);
         let apposed = prompt
             .get(m.spec.span.end..)
             .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
@@ -82,6 +83,11 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
                 .get(a.spec.span.end..b.spec.span.start)
                 .is_some_and(|gap| !gap.contains(['.', ';', '!', '?']))
         };
+        // "four cars on the road: two black ones, a red one and a white one"
+        let told_apart = |part: &Mention| part.spec.color.is_some() || part.spec.noun != m.spec.noun;
+        if !sort && !listed {
+            continue;
+        }
         let apposed = apposed || listed;
         let mut sum = 0;
         let mut last = i;
@@ -90,7 +96,7 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
             && (joined(&mentions[last], &mentions[last + 1])
                 || listed && one_sentence(&mentions[last], &mentions[last + 1]))
             && mentions[i].classes.contains(&mentions[last + 1].spec.class)
-            && !is_sort(&mentions[last + 1].spec.noun)
+            && (if sort { !is_sort(&mentions[last + 1].spec.noun) } else { told_apart(&mentions[last + 1]) })
         {
             last += 1;
             sum += mentions[last].spec.count.n;
@@ -160,6 +166,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
         other.spec.count = part(right);
         for (spec, is_left) in [(&mut mentions[i].spec, true), (&mut other.spec, false)] {
             add_side(spec, is_left, class, state, span);
+        }
+        // "two men, one on each pavement, look at each other"
+        if other.spec.attributes.iter().any(|a| a == "facetoface") {
+            let twin = mentions.len();
+            for (spec, whom) in [(&mut mentions[i].spec, twin), (&mut other.spec, i)] {
+                spec.attributes.retain(|a| a != "facetoface");
+                spec.state = Some(ObjectState::Waiting);
+                spec.relations.retain(|r| r.relation != RelationKind::Crossing);
+                spec.relations.push(Stated {
+                    relation: RelationKind::Facing,
+                    anchor: Anchor::Object(whom),
+                    and: None,
+                    distance_m: None,
+                    span,
+                });
+            }
         }
         mentions.push(other);
         // "two buses on both sides, and behind them two cars": one behind each

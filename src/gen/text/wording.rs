@@ -137,12 +137,15 @@ const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene 
 /// A prompt in plain words.
 pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
-    let tokens = &super::common::plain(tokens)[..];
+    let tokens = super::answers::in_full(&super::common::plain(tokens));
+    let tokens = super::choices::made(&super::reports::plain(&tokens));
+    let tokens = &super::turned::round(&super::people::seen(&tokens))[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         out.extend(without_aim(&without_purpose(&super::titles::without(sentence))));
     }
     let out = super::inverted::ordered(&super::ellipsis::filled(&super::shares::counted(&out)));
     let out = replaced(&out, FRAMES, "");
+    let out = replaced(&out, ", left and right ,|, on the left and on the right ,|, on the left and the right ,|, to the left and to the right ,", ",");
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");
     let out = replaced(&out, super::order::FAR_FIRST, "farfirst");

@@ -308,7 +308,12 @@ impl Parser<'_> {
         self.last = self.head.clone();
         if let (Some(each), false) = (self.fronted_both, old) {
             let m = &mut self.mentions[index];
-            m.both = Some(each || m.spec.count.n == 1);
+            // "on both sides a row of three cones": a row on each
+            let row = (1..=2).any(|k| {
+                let word = self.at.checked_sub(k).and_then(|i| self.items.get(i));
+                word.is_some_and(|w| w.words.starts_with("a ") && w.words.ends_with(" of"))
+            });
+            m.both = Some(each || row || m.spec.count.n == 1);
         }
         if let Some(state) = self.fronted_state
             && self.mentions[index].spec.state.is_none()
@@ -426,7 +431,14 @@ impl Parser<'_> {
             let counts = new.uncounted || m.spec.count.n == new.spec.count.n;
             !m.gone && nouns && colors && states && counts
         };
-        (0..self.mentions.len()).rev().find(|&i| fits(&self.mentions[i]))
+        // "the excavator and the bulldozer": those of one list are as many as are named; so are those of two kinds
+        let listed = |i: usize| {
+            self.pending.is_none() && self.linked && self.list.contains(&i) && self.mentions[i].spec.noun != new.spec.noun
+        };
+        let other = |i: usize| super::super::names::are_of_two_kinds(&self.mentions[i].spec.noun, &new.spec.noun);
+        (0..self.mentions.len())
+            .rev()
+            .find(|&i| fits(&self.mentions[i]) && !listed(i) && !other(i))
     }
 
     pub(super) fn works(&mut self, span: Span) {

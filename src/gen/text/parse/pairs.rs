@@ -118,7 +118,9 @@ impl Parser<'_> {
         let of = self
             .item(self.at + 1)
             .is_some_and(|n| n.words.starts_with("of them") || n.words == "of");
-        if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() || of {
+        // "between the two a child stands"
+        let another = matches!(self.sense(self.at + 1), Some(Sense::Article(false)));
+        if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() && !another || of {
             return false;
         }
         self.between_them("two", span)

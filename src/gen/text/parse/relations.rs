@@ -325,7 +325,7 @@ impl Parser<'_> {
     }
 
     /// Who a relation or a participle right here speaks of.
-    pub(super) fn targets(&self) -> Vec<usize> {
+    pub(in super::super) fn targets(&self) -> Vec<usize> {
         if self.fresh && !self.relative {
             return self.head.clone();
         }

@@ -323,6 +323,7 @@ impl<'a> Parser<'a> {
                             )
                         });
                     self.anchor(host.or(by_other).map_or(Anchor::Ego, Anchor::Object), span);
+                    self.farther_on(item, span);
                 }
             }
             Sense::Reversed(kind) => {

@@ -99,6 +99,7 @@ impl Parser<'_> {
             "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is" | "which are"
             | "thats" | "whos" => {
                 self.relative = true;
+                self.relates_to_front();
                 // "between a van and a lorry that are parked"
                 let several = item.words.ends_with("are");
                 if several && self.pair.len() == 2 && self.last.last() == self.pair.last() {

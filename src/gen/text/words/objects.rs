@@ -75,7 +75,7 @@ pub const NOUNS: &[Noun] = &[
     noun(
         &[Car],
         "van|minivan|mini mpv|transporter van|tradesmans van|plumbers van|electricians van|bakery van|laundry van|florists van|parcel delivery van|courier vehicle|delivery vehicle|parcel carrier|dormobile|combi van|combi|kombi|vw camper|camping van|camper bus|rescue van|paramedic van|patrol van|prison van|police transporter|minivan taxi|van taxi|shuttle van|window van|panelled van|light commercial vehicle|lcv|commercial van|ice van|catering van|rental van|hire van|cash in transit van|news van|tv van|broadcast van|sprinter van|ford transit|transit connect|caddy|kangoo|vivaro|ducato|ambulence|ambulance car|emergency ambulance|medical van|rescue vehicle|ambulance van|police van|transit|box van|bread van|milk float|minibus taxi|vw bus|security van|luton|courier van|parcel van|high roof van|people mover|ice cream truck van|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
-         delivery van|postal van|mail van|work van|builders van|transporter|sprinter|ambulance",
+         delivery van|postal van|mail van|work van|builders van|transporter|sprinter",
     )
     .sized(5.4, 2.1, 2.4),
     noun(
@@ -89,6 +89,7 @@ pub const NOUNS: &[Noun] = &[
          haulage truck|logging truck|mail truck|ups truck|dhl truck|fedex truck|parcel truck|snow plough|snowplow|snow plow|gritter|\
          street sweeper|road sweeper|transport truck|luton van|wheeler|tonner|milk lorry|coal lorry|removal truck|trucl|lorrie/lorries",
     ),
+    noun(&[Truck], "ambulance").sized(6.0, 2.2, 2.6),
     noun(&[Truck], "pickup|pick up|pickup truck|pick up truck|ute|bakkie").sized(5.6, 2.1, 1.9),
     noun(
         &[Bus],

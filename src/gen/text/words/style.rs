@@ -305,6 +305,38 @@ pub const COUNTS: &[(Count, &str)] = &[
     ),
     (
         Count {
+            min: 60,
+            n: 60,
+            max: 60,
+        },
+        "sixty",
+    ),
+    (
+        Count {
+            min: 70,
+            n: 70,
+            max: 70,
+        },
+        "seventy",
+    ),
+    (
+        Count {
+            min: 80,
+            n: 80,
+            max: 80,
+        },
+        "eighty",
+    ),
+    (
+        Count {
+            min: 90,
+            n: 90,
+            max: 90,
+        },
+        "ninety",
+    ),
+    (
+        Count {
             min: 100,
             n: 100,
             max: 100,
