@@ -293,6 +293,14 @@ impl Editor<'_> {
                     m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
                 };
                 let again = !ordered && !c.in_place && c.targets.iter().all(there);
+                // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
+                let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
+                let remark = c.implied
+                    && !ordered
+                    && !c.in_place
+                    && !c.reading.not_understood.is_empty()
+                    && c.targets.iter().all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
+                let again = again || remark;
                 if (c.implied || again) && !c.targets.is_empty() && (theirs || again || c.targets.iter().all(named)) {
                     self.note(format!("{:?}: what should become of it was not understood", c.text));
                     return (!done.is_empty()).then(|| done.join(", "));

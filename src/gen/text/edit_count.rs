@@ -189,6 +189,7 @@ impl Editor<'_> {
             }
             _ => ids.len(),
         };
+        let old = ids.first().and_then(|id| self.boxes.get(id)).copied();
         for id in ids.iter().skip(wanted.max(1)) {
             self.push(TextEdit::Remove { id: *id });
         }
@@ -200,6 +201,20 @@ impl Editor<'_> {
             spec.count = Count::exactly((wanted - ids.len()) as u32);
             spec.relations
                 .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
+            // more than were there stand by the first: in its strip, on its side of the ego vehicle
+            if let Some(old) = old.filter(|_| spec.relations.is_empty()) {
+                spec.relations.extend(self.where_it_is(&old, spec.span));
+                let side = if old.center_m.x > 0.0 { RelationKind::InFrontOf } else { RelationKind::Behind };
+                if old.center_m.x.abs() > 6.0 {
+                    spec.relations.push(Stated {
+                        relation: side,
+                        anchor: Anchor::Ego,
+                        and: None,
+                        distance_m: None,
+                        span: spec.span,
+                    });
+                }
+            }
             self.add(&Description {
                 foreground: vec![spec],
                 ..Description::default()

@@ -212,7 +212,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: labelled_apart(super::common::plain(&tokens(text))),
+            tokens: labelled_apart(super::said::told_once(super::common::plain(&tokens(text)))),
             at: 0,
             last_noun: None,
         }

@@ -67,6 +67,7 @@ pub fn acts(
             !p.not
                 && !p.main.is_empty()
                 && !only_points(&p.main)
+                && !only_faces(&p.main)
                 && (super::predicate::places(&p.main) || p.is_gone())
         })
     };
@@ -219,6 +220,11 @@ pub fn acts(
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "faces us", "looks at me": how someone is turned says not where he is.
+fn only_faces(main: &[Token]) -> bool {
+    super::words::leads(main, &super::lists::TURNS).is_some() && main.len() < 4 && is(main.last(), &["us", "me"])
 }
 
 /// "blocks it": a verb of something that was named before.

@@ -58,7 +58,10 @@ lists! {
         gotten rid of|got rid of|cut out|dropped|omitted|out|off|driven on|drives on|drove on|run off|ran off|runs off|run away|\
         ran away|runs away|no more|done here|finished here|set off|sped off|speeds off|speed off|cycled off|cycled away|\
         cycles off|hurried off|hurried away|wandered off|wanders off|been removed|been taken away|dispensed with|done away with|\
-        disposed of|struck|cancelled|canceled|too much|too many|one too many";
+        disposed of|struck|cancelled|canceled|too much|too many|one too many|given up|gave up|run home|ran home|runs home|walked home|\
+        walks home|ridden home|rides home|cycled home|drives home|drove home|headed home|back home|back at home|home|at home|\
+        back at its station|back at the station|back at its depot|back at the depot|back in its garage|back in the garage|\
+        back at its base|back at base|back at work|in the garage|in its garage|at the depot|back at their station|called it a day|packed up";
     /// What may follow one of those.
     AFTERWARDS = "from|now|already|please|too|as|again|completely|entirely|altogether|for|by|in the meantime|and|so|the scene|the road|\
         the street|the area|the place|the picture|the image|the site|us|me|home|work|instead|then|long|because|since|after|\

@@ -7,6 +7,7 @@ mod acts;
 mod causing;
 mod colours;
 mod exception;
+mod exchanges;
 mod forms;
 mod frame;
 mod gaps;
@@ -19,8 +20,10 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod presence;
 mod recast;
 mod remaining;
+mod remarks;
 mod skies;
 mod some_of;
 mod spoken;
@@ -61,6 +64,7 @@ use predicate::{in_place, parts};
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use remarks::told_once;
 pub use which::spared;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
@@ -122,7 +126,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = gifts::plain(turns::plain(body.to_vec(), talk), talk);
+    let out = exchanges::plain(presence::plain(remarks::plain(body.to_vec(), talk), talk), talk);
+    let out = gifts::plain(turns::plain(out, talk), talk);
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
@@ -228,7 +233,11 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     }
     // who is gone and then is elsewhere has only left where he was
     for i in 0..out.len() {
-        let elsewhere = out[i + 1..].iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
+        // ("it" is he as long as nobody else is named)
+        let still = out[i + 1..]
+            .iter()
+            .take_while(|p| matches!(p, Piece::Meant(c, _) if c.targets.is_empty()));
+        let elsewhere = still.into_iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
         if let (true, Piece::Meant(c, _)) = (elsewhere, &mut out[i])
             && c.verb == Verb::Remove
         {
@@ -342,7 +351,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     // "the cones, please set them up ..."
-    if is(inner.first(), &["the", "those", "these", "both", "that", "my"])
+    if !mood.denied && is(inner.first(), &["the", "those", "these", "both", "that", "my"])
         && first_noun(inner).is_some_and(|n| n.1 == inner.len() && n.0 < 4)
         && talk.fits(inner) > 0
     {

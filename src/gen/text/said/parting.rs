@@ -77,6 +77,7 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             let spoken = styled
                 || has_noun(&body[from..i])
                 || is(body.get(from), &PRONOUNS)
+                || super::some_of::removes_it(&body[from..i])
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])

@@ -18,7 +18,7 @@ const WHEELS: &str = "everything on wheels|everything with wheels|anything on wh
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, ENGINE, "all motor vehicles");
     let out = replaced(&out, TWO_WHEELS, "all bicycles and all motorcycles");
-    let out = replaced(&out, WHEELS, "all vehicles");
+    let out = replaced(&out, WHEELS, "all vehicles and all bicycles");
     let out = replaced(&out, "for the night|for tonight|for the day|for today|for the time being|for good", "");
     let out = on_each(out);
     let out = next_lane(out, talk);
