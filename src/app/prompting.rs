@@ -354,8 +354,8 @@ fn road_under(
 mod tests {
     use super::*;
     use crate::generation::text::description::TimeOfDay;
-    use crate::scene::Class;
     use crate::generation::text::read;
+    use crate::scene::Class;
 
     #[test]
     fn a_kept_road_stays_and_objects_are_placed_on_it() {

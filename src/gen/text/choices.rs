@@ -37,7 +37,11 @@ fn not_only(tokens: &[Token]) -> Vec<Token> {
     while i < tokens.len() {
         open &= tokens[i].kind != TokenKind::Stop;
         if let Some(n) = begins(&tokens[i..], "not only|not just|not merely").filter(|n| {
-            tokens[i + n..].iter().take(16).take_while(|t| t.kind != TokenKind::Stop).any(|t| t.text == "but")
+            tokens[i + n..]
+                .iter()
+                .take(16)
+                .take_while(|t| t.kind != TokenKind::Stop)
+                .any(|t| t.text == "but")
         }) {
             open = true;
             i += n;
@@ -95,9 +99,10 @@ fn not_but(tokens: &[Token]) -> Vec<Token> {
         i = but + 1;
         // "not one cyclist but two": two cyclists
         let many = tokens.get(i).and_then(number);
-        let bare = tokens
-            .get(i + 1)
-            .is_none_or(|t| ends(Some(t)) || !is_noun(t) && !matches!(look_up(&t.text), Some(Sense::State(_, false) | Sense::Color(_))));
+        let bare = tokens.get(i + 1).is_none_or(|t| {
+            ends(Some(t))
+                || !is_noun(t) && !matches!(look_up(&t.text), Some(Sense::State(_, false) | Sense::Color(_)))
+        });
         let noun = denied.iter().rev().find(|t| is_noun(t)).filter(|_| bare);
         if let (Some(n), Some(noun)) = (many, noun) {
             out.push(tokens[i].clone());
@@ -114,19 +119,29 @@ fn none_of(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let clause = begins(&tokens[i..], "none of the|none of these|none of those|not one of the|not a single one of the")
-            .and_then(|n| {
-                let end = (i + n..tokens.len()).find(|k| ends(tokens.get(*k)) || tokens[*k].text == "but")?;
-                let verb = (i + n..end).find(|k| {
-                    begins(&tokens[*k..], "is|are|was|were|stands|stand|has|have|drives|drive|waits|wait|walks|walk").is_some()
-                })?;
-                // who they are is told, and where they are comes next
-                let next = &tokens[end..tokens.len().min(end + 3)];
-                let goes_on = next.iter().any(|t| {
-                    matches!(t.text.as_str(), "all" | "they" | "each" | "every" | "instead" | "rather" | "both" | "but")
-                });
-                (tokens[i + n..verb].iter().any(is_noun) && goes_on).then_some((i + n, verb, end))
+        let clause = begins(
+            &tokens[i..],
+            "none of the|none of these|none of those|not one of the|not a single one of the",
+        )
+        .and_then(|n| {
+            let end = (i + n..tokens.len()).find(|k| ends(tokens.get(*k)) || tokens[*k].text == "but")?;
+            let verb = (i + n..end).find(|k| {
+                begins(
+                    &tokens[*k..],
+                    "is|are|was|were|stands|stand|has|have|drives|drive|waits|wait|walks|walk",
+                )
+                .is_some()
+            })?;
+            // who they are is told, and where they are comes next
+            let next = &tokens[end..tokens.len().min(end + 3)];
+            let goes_on = next.iter().any(|t| {
+                matches!(
+                    t.text.as_str(),
+                    "all" | "they" | "each" | "every" | "instead" | "rather" | "both" | "but"
+                )
             });
+            (tokens[i + n..verb].iter().any(is_noun) && goes_on).then_some((i + n, verb, end))
+        });
         match clause {
             Some((from, verb, end)) => {
                 out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
@@ -157,9 +172,15 @@ mod tests {
             said("The lorry is parked not on the right but on the left."),
             "the lorry is parked on the left ."
         );
-        assert_eq!(said("There is not one cyclist but two."), "there is two cyclists .");
+        assert_eq!(
+            said("There is not one cyclist but two."),
+            "there is two cyclists ."
+        );
         assert_eq!(said("It is not a van, but a bus."), "it is a bus .");
-        assert_eq!(said("It is not parked on the left but on the right."), "it is parked on the right .");
+        assert_eq!(
+            said("It is not parked on the left but on the right."),
+            "it is parked on the right ."
+        );
         assert_eq!(said("not only a van but also a bus"), "a van and a bus");
         assert_eq!(said("not far away but a bus"), "not far away but a bus");
         assert_eq!(

@@ -15,7 +15,7 @@ use super::select::{Candidate, Chosen, choose};
 use super::tokens::{LONGEST, Span};
 use super::words::edits::{Pick, Verb};
 use crate::scene::graph::{LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind};
-use crate::scene::{BevLayout, BoxLabel, BoxId, Class, SceneBox};
+use crate::scene::{BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
 /// Most commands of one text that are carried out.
 pub const MOST_COMMANDS: usize = 100;
@@ -154,7 +154,8 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     let mut done = 0;
     while let Some(mut commands) = reader.next(&editor.map, &editor.boxes, &editor.last) {
         // "keep the bus and remove the cars": among other commands that only says what stays
-        let others = commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
+        let others =
+            commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
         for c in commands.iter_mut().filter(|c| c.verb == Verb::Keep && others) {
             let counted = c.change.is_some() || c.targets.iter().any(|t| !t.uncounted);
             if !c.only && !counted && !c.targets.is_empty() {
@@ -321,25 +322,76 @@ impl Editor<'_> {
             }
             Verb::Add => {
                 // what is there and was only named is not added
-                let named = |m: &Mention| m.definite && m.pick != Some(Pick::More) && !m.is_anchor
-                    || m.uncounted && super::mention::means_all(m);
-                let theirs = ["their ", "his ", "her ", "its "].iter().any(|w| c.text.to_lowercase().starts_with(w));
+                let named = |m: &Mention| {
+                    m.definite && m.pick != Some(Pick::More) && !m.is_anchor
+                        || m.uncounted && super::mention::means_all(m)
+                };
+                let theirs = ["their ", "his ", "her ", "its "]
+                    .iter()
+                    .any(|w| c.text.to_lowercase().starts_with(w));
                 let text = c.text.to_lowercase();
                 let orders = [
-                    "add", "insert", "include", "create", "generate", "spawn", "append", "duplicate", "introduce", "bring", "put",
-                    "place", "set", "park", "give", "draw", "show", "another", "more", "second", "extra",
+                    "add",
+                    "insert",
+                    "include",
+                    "create",
+                    "generate",
+                    "spawn",
+                    "append",
+                    "duplicate",
+                    "introduce",
+                    "bring",
+                    "put",
+                    "place",
+                    "set",
+                    "park",
+                    "give",
+                    "draw",
+                    "show",
+                    "another",
+                    "more",
+                    "second",
+                    "extra",
                 ];
-                let ordered = text.split(|ch: char| !ch.is_alphanumeric()).any(|w| orders.contains(&w));
+                let ordered = text
+                    .split(|ch: char| !ch.is_alphanumeric())
+                    .any(|w| orders.contains(&w));
                 let there = |m: &Mention| {
                     m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
                 };
                 let again = !ordered && !c.in_place && c.targets.iter().all(there);
                 // "half of the cones have been collected" speaks of those that are there
-                let part = [" of the ", " of these ", " of those ", " of our ", " of my ", " of them "]
-                    .iter()
-                    .any(|of| text.split_once(of).is_some_and(|(before, _)| before.split(' ').count() < 3));
-                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || part || c.targets.iter().all(named)) {
-                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                let part = [
+                    " of the ",
+                    " of these ",
+                    " of those ",
+                    " of our ",
+                    " of my ",
+                    " of them ",
+                ]
+                .iter()
+                .any(|of| {
+                    text.split_once(of)
+                        .is_some_and(|(before, _)| before.split(' ').count() < 3)
+                });
+                // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
+                let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
+                let remark = c.implied
+                    && !ordered
+                    && !c.in_place
+                    && !c.reading.not_understood.is_empty()
+                    && c.targets
+                        .iter()
+                        .all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
+                let again = again || remark;
+                if (c.implied || again)
+                    && !c.targets.is_empty()
+                    && (theirs || again || part || c.targets.iter().all(named))
+                {
+                    self.note(format!(
+                        "{:?}: what should become of it was not understood",
+                        c.text
+                    ));
                     return (!done.is_empty()).then(|| done.join(", "));
                 }
                 let d = &c.reading.description;
@@ -479,7 +531,11 @@ impl Editor<'_> {
     /// The boxes that a command is about; asks back or notes where none or several fit.
     pub(super) fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
         if let Some(found) = &c.found {
-            let ids: Vec<BoxId> = found.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
+            let ids: Vec<BoxId> = found
+                .iter()
+                .filter(|id| self.boxes.contains_key(id))
+                .copied()
+                .collect();
             return (!ids.is_empty()).then_some(ids);
         }
         if let Some(back) = c.back {

@@ -231,7 +231,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: labelled_apart(super::common::plain(&tokens(text))),
+            tokens: labelled_apart(super::said::told_once(super::common::plain(&tokens(text)))),
             at: 0,
             last_noun: None,
             left: Left::default(),
@@ -289,7 +289,9 @@ impl<'t> Reader<'t> {
             carried: false,
             last: of_last.map(|c| c.label()),
         };
-        let asked = self.tokens[from..end].last().is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
+        let asked = self.tokens[from..end]
+            .last()
+            .is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
         let pointed = self.left.resolved(&self.tokens[from..end], &talk);
         let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
         let cut = except(whole);
@@ -319,7 +321,9 @@ impl<'t> Reader<'t> {
                 c.except.clone_from(&spared.targets);
             }
         }
-        self.named = (from..end).filter_map(|i| only_one(&self.tokens[i], boxes)).collect();
+        self.named = (from..end)
+            .filter_map(|i| only_one(&self.tokens[i], boxes))
+            .collect();
         Some(out)
     }
 }

@@ -230,7 +230,11 @@ impl Editor<'_> {
         let mut follows = d.clone();
         let mut any = false;
         for o in &mut follows.foreground {
-            let drives = (o.class.is_vehicle() || matches!(o.class, crate::scene::Class::Motorcycle | crate::scene::Class::Bicycle))
+            let drives = (o.class.is_vehicle()
+                || matches!(
+                    o.class,
+                    crate::scene::Class::Motorcycle | crate::scene::Class::Bicycle
+                ))
                 && o.state != Some(crate::scene::graph::ObjectState::Parked);
             let lane = o.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
             for r in o.relations.iter_mut().filter(|_| drives && !lane) {

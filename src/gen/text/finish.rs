@@ -96,7 +96,11 @@ fn drop_named(mentions: &mut [Mention], prompt: &str) {
             && (joined(&mentions[last], &mentions[last + 1])
                 || listed && one_sentence(&mentions[last], &mentions[last + 1]))
             && mentions[i].classes.contains(&mentions[last + 1].spec.class)
-            && (if sort { !is_sort(&mentions[last + 1].spec.noun) } else { told_apart(&mentions[last + 1]) })
+            && (if sort {
+                !is_sort(&mentions[last + 1].spec.noun)
+            } else {
+                told_apart(&mentions[last + 1])
+            })
         {
             last += 1;
             sum += mentions[last].spec.count.n;
@@ -645,7 +649,11 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         {
             reading.notes.push(format!("{} are placed as cars", spec.noun));
         }
-        if let Some(color) = spec.color.as_ref().filter(|c| super::names::paint_of(c).is_none()) {
+        if let Some(color) = spec
+            .color
+            .as_ref()
+            .filter(|c| super::names::paint_of(c).is_none())
+        {
             reading
                 .notes
                 .push(format!("{color} is no paint of boxes: it is kept in words only"));

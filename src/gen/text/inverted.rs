@@ -341,7 +341,10 @@ fn crossed_over(tokens: &[Token]) -> Vec<Token> {
             );
         // "an old woman is halfway across"
         let halfway = i > 1
-            && matches!(tokens[i - 1].text.as_str(), "halfway" | "midway" | "partway" | "way" | "already" | "nearly" | "almost");
+            && matches!(
+                tokens[i - 1].text.as_str(),
+                "halfway" | "midway" | "partway" | "way" | "already" | "nearly" | "almost"
+            );
         if over && (walks || halfway) && tokens[..i].iter().any(zebra) {
             out.pop();
             out.extend(["across", "the", "zebra"].map(|w| word(w, t)));

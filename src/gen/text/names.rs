@@ -161,7 +161,8 @@ pub fn are_of_two_kinds(one: &str, other: &str) -> bool {
         let noun = singular(noun);
         SAME.iter().position(|g| g.split('|').any(|w| w.trim() == noun))
     };
-    matches!((kind(one), kind(other)), (Some(a), Some(b)) if a != b) && !is_called(singular(one), singular(other))
+    matches!((kind(one), kind(other)), (Some(a), Some(b)) if a != b)
+        && !is_called(singular(one), singular(other))
 }
 
 /// True if a box of this name may be called by that noun.

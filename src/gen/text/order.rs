@@ -21,11 +21,23 @@ impl Parser<'_> {
         if self.edits || !FARTHER.split('|').any(|w| w == item.words) {
             return;
         }
-        let ahead = |m: &Mention| m.spec.relations.iter().any(|r| r.anchor == Anchor::Ego && r.relation == R::InFrontOf);
-        let own = if self.fronted.is_empty() { self.targets() } else { Vec::new() };
-        let before = (0..self.mentions.len())
-            .rev()
-            .find(|i| !own.contains(i) && !self.mentions[*i].gone && !self.mentions[*i].is_anchor && ahead(&self.mentions[*i]));
+        let ahead = |m: &Mention| {
+            m.spec
+                .relations
+                .iter()
+                .any(|r| r.anchor == Anchor::Ego && r.relation == R::InFrontOf)
+        };
+        let own = if self.fronted.is_empty() {
+            self.targets()
+        } else {
+            Vec::new()
+        };
+        let before = (0..self.mentions.len()).rev().find(|i| {
+            !own.contains(i)
+                && !self.mentions[*i].gone
+                && !self.mentions[*i].is_anchor
+                && ahead(&self.mentions[*i])
+        });
         let Some(before) = before else {
             return;
         };

@@ -20,7 +20,10 @@ fn is_vehicle(t: &Token) -> bool {
 /// Where "in her red car" stands: first token, the noun phrase, one past it.
 fn in_vehicle(tokens: &[Token]) -> Option<(usize, Vec<Token>, usize)> {
     (0..tokens.len()).find_map(|i| {
-        let n = begins(&tokens[i..], "in his|in her|in their|with his|with her|in a|in an|driving his|driving her|driving a")?;
+        let n = begins(
+            &tokens[i..],
+            "in his|in her|in their|with his|with her|in a|in an|driving his|driving her|driving a",
+        )?;
         let end = (i + n..tokens.len().min(i + n + 4)).find(|k| is_vehicle(&tokens[*k]))?;
         let plain = tokens[i + n..end]
             .iter()
@@ -85,9 +88,13 @@ pub fn seen(tokens: &[Token]) -> Vec<Token> {
                 out.push(word("the", &tokens[i]));
                 out.extend_from_slice(was);
             } else {
-                let end = (i..tokens.len()).find(|k| tokens[*k].kind == TokenKind::Stop).unwrap_or(tokens.len());
+                let end = (i..tokens.len())
+                    .find(|k| tokens[*k].kind == TokenKind::Stop)
+                    .unwrap_or(tokens.len());
                 let driven = in_vehicle(&tokens[i + 2..end]);
-                let what = driven.as_ref().map_or_else(|| vec![word(person, &tokens[i])], |d| d.1.clone());
+                let what = driven
+                    .as_ref()
+                    .map_or_else(|| vec![word(person, &tokens[i])], |d| d.1.clone());
                 skip = driven.as_ref().map(|d| (i + 2 + d.0, i + 2 + d.2));
                 driver = driven.and_then(|d| d.1.last().cloned());
                 out.push(word("a", &tokens[i]));
@@ -100,12 +107,29 @@ pub fn seen(tokens: &[Token]) -> Vec<Token> {
         // "she waits there", "behind her a bus": the car
         let subject = matches!(tokens[i].text.as_str(), "she" | "he");
         let her = matches!(tokens[i].text.as_str(), "her" | "him")
-            && out.last().is_some_and(|t| matches!(t.text.as_str(), "behind" | "of" | "to" | "beside" | "after" | "before" | "for" | "towards" | "past" | "follows"))
+            && out.last().is_some_and(|t| {
+                matches!(
+                    t.text.as_str(),
+                    "behind"
+                        | "of"
+                        | "to"
+                        | "beside"
+                        | "after"
+                        | "before"
+                        | "for"
+                        | "towards"
+                        | "past"
+                        | "follows"
+                )
+            })
             && !tokens.get(i + 1).is_some_and(is_noun);
         match driver.as_ref().filter(|_| subject || her) {
             Some(car) => {
                 out.push(word("the", &tokens[i]));
-                out.push(Token { span: tokens[i].span, ..car.clone() });
+                out.push(Token {
+                    span: tokens[i].span,
+                    ..car.clone()
+                });
             }
             None => out.push(tokens[i].clone()),
         }

@@ -24,7 +24,12 @@ fn said_before(tokens: &[Token]) -> Vec<Token> {
             .or_else(|| begins(&tokens[i..], "said"))
             .filter(|n| tokens.get(i + n).is_some_and(is_noun))
             // ("the driver said cars were there": a verb after its subject)
-            .filter(|n| *n > 1 || out.last().is_none_or(|t| !is_noun(t) && !matches!(t.text.as_str(), "i" | "he" | "she" | "they" | "it" | "who")));
+            .filter(|n| {
+                *n > 1
+                    || out.last().is_none_or(|t| {
+                        !is_noun(t) && !matches!(t.text.as_str(), "i" | "he" | "she" | "they" | "it" | "who")
+                    })
+            });
         match n {
             Some(n) => {
                 out.push(word("the", &tokens[i]));
@@ -47,9 +52,17 @@ fn without_speaker(tokens: &[Token]) -> Vec<Token> {
         let n = begins(sentence, WHO).filter(|n| sentence.get(*n).is_some_and(|t| t.text == ":"));
         // ("Driver: none" is a field)
         let speaks = n.filter(|n| {
-            let quote = sentence.get(n + 1).is_some_and(|t| matches!(t.text.as_str(), "\"" | "“" | "”" | "*"));
-            let first = begins(&sentence[n + 1..], "i|we|my|our|there|the|in|on|behind|ahead|a|an").is_some();
-            let us = sentence.iter().any(|t| matches!(t.text.as_str(), "i" | "we" | "me" | "us" | "my" | "our"));
+            let quote = sentence
+                .get(n + 1)
+                .is_some_and(|t| matches!(t.text.as_str(), "\"" | "“" | "”" | "*"));
+            let first = begins(
+                &sentence[n + 1..],
+                "i|we|my|our|there|the|in|on|behind|ahead|a|an",
+            )
+            .is_some();
+            let us = sentence
+                .iter()
+                .any(|t| matches!(t.text.as_str(), "i" | "we" | "me" | "us" | "my" | "our"));
             quote || first && us
         });
         out.extend_from_slice(&sentence[speaks.map_or(0, |n| n + 1)..]);
@@ -63,10 +76,12 @@ fn fields(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let field = (out.last().is_some_and(|t| matches!(t.kind, TokenKind::Stop | TokenKind::Comma)))
-            .then(|| begins(&tokens[i..], FIELD))
-            .flatten()
-            .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == ":"));
+        let field = (out
+            .last()
+            .is_some_and(|t| matches!(t.kind, TokenKind::Stop | TokenKind::Comma)))
+        .then(|| begins(&tokens[i..], FIELD))
+        .flatten()
+        .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == ":"));
         let before = out[..out.len().saturating_sub(1)]
             .rsplit(|t| t.kind == TokenKind::Stop)
             .next()
@@ -102,19 +117,36 @@ fn sides_of_road(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let opens = out
-            .last()
-            .is_none_or(|t| t.kind != TokenKind::Word || matches!(t.text.as_str(), "and" | "on" | "at" | "the" | "is" | "are" | "parked"));
+        let opens = out.last().is_none_or(|t| {
+            t.kind != TokenKind::Word
+                || matches!(
+                    t.text.as_str(),
+                    "and" | "on" | "at" | "the" | "is" | "are" | "parked"
+                )
+        });
         let found = begins(&tokens[i..], "road|street")
             .filter(|_| opens)
-            .zip(tokens.get(i + 1).filter(|t| matches!(t.text.as_str(), "left" | "right")))
-            .zip(tokens.get(i + 2).filter(|t| matches!(t.text.as_str(), "side" | "edge" | "kerb" | "curb" | "shoulder" | "verge")));
+            .zip(
+                tokens
+                    .get(i + 1)
+                    .filter(|t| matches!(t.text.as_str(), "left" | "right")),
+            )
+            .zip(tokens.get(i + 2).filter(|t| {
+                matches!(
+                    t.text.as_str(),
+                    "side" | "edge" | "kerb" | "curb" | "shoulder" | "verge"
+                )
+            }));
         let Some(((_, side), what)) = found else {
             out.push(tokens[i].clone());
             i += 1;
             continue;
         };
-        let led = out.iter().rev().take(2).any(|t| matches!(t.text.as_str(), "on" | "at"));
+        let led = out
+            .iter()
+            .rev()
+            .take(2)
+            .any(|t| matches!(t.text.as_str(), "on" | "at"));
         if !led {
             out.push(word("on", &tokens[i]));
         }
@@ -167,10 +199,25 @@ mod tests {
             let list: Vec<String> = plain(&tokens(t)).into_iter().map(|t| t.text).collect();
             list.join(" ")
         };
-        assert_eq!(said("A pickup; said vehicle was parked"), "a pickup . the vehicle was parked");
-        assert_eq!(said("1 van. Position: behind us, 9 m."), "1 van , behind us , 9 m .");
-        assert_eq!(said("Witness: \"I was behind a bus.\""), "\" i was behind a bus . \"");
-        assert_eq!(said("Road right side parked one van"), "on the right side of the road parked one van");
-        assert_eq!(said("its passengers, six in number, wait"), "its six passengers wait");
+        assert_eq!(
+            said("A pickup; said vehicle was parked"),
+            "a pickup . the vehicle was parked"
+        );
+        assert_eq!(
+            said("1 van. Position: behind us, 9 m."),
+            "1 van , behind us , 9 m ."
+        );
+        assert_eq!(
+            said("Witness: \"I was behind a bus.\""),
+            "\" i was behind a bus . \""
+        );
+        assert_eq!(
+            said("Road right side parked one van"),
+            "on the right side of the road parked one van"
+        );
+        assert_eq!(
+            said("its passengers, six in number, wait"),
+            "its six passengers wait"
+        );
     }
 }

@@ -145,7 +145,11 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     }
     let out = super::inverted::ordered(&super::ellipsis::filled(&super::shares::counted(&out)));
     let out = replaced(&out, FRAMES, "");
-    let out = replaced(&out, ", left and right ,|, on the left and on the right ,|, on the left and the right ,|, to the left and to the right ,", ",");
+    let out = replaced(
+        &out,
+        ", left and right ,|, on the left and on the right ,|, on the left and the right ,|, to the left and to the right ,",
+        ",",
+    );
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");
     let out = replaced(&out, super::order::FAR_FIRST, "farfirst");

@@ -95,6 +95,14 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_words_l.jsonl"),
     ),
     (
+        "strangers_15.jsonl",
+        include_str!("../../../../tests/data/strangers_15.jsonl"),
+    ),
+    (
+        "causes_words_m.jsonl",
+        include_str!("../../../../tests/data/causes_words_m.jsonl"),
+    ),
+    (
         "exam_5.jsonl",
         include_str!("../../../../tests/data/exam_5.jsonl"),
     ),

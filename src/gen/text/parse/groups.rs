@@ -110,8 +110,13 @@ impl Parser<'_> {
         // "three barriers ... A worker stands on the left, another one on the right": another worker
         let lone = self.head.first().or(self.before.first()).copied().filter(|s| {
             let m = &self.mentions[*s];
-            said.starts_with("another") && self.whole.is_none() && m.spec.count.n == 1 && !m.gone && !m.is_anchor
-                && !m.definite && !m.spec.relations.is_empty()
+            said.starts_with("another")
+                && self.whole.is_none()
+                && m.spec.count.n == 1
+                && !m.gone
+                && !m.is_anchor
+                && !m.definite
+                && !m.spec.relations.is_empty()
         });
         let parent = parent.filter(|p| !self.edits && lone.is_none_or(|s| s < *p) || self.edits);
         let Some(parent) = parent else {
@@ -171,7 +176,8 @@ impl Parser<'_> {
         if !all
             && !of_them
             && !self.edits
-            && (self.mentions[parent].uncounted && self.mentions[parent].bare || !left.is_exact() && count.n > 1)
+            && (self.mentions[parent].uncounted && self.mentions[parent].bare
+                || !left.is_exact() && count.n > 1)
             && (self.mentions[parent].spec.relations.is_empty() || self.after_mark())
         {
             // "People: two on the left, ...", "cars flank me: one on my left, ..." counts them one after another

@@ -433,9 +433,13 @@ impl Parser<'_> {
         };
         // "the excavator and the bulldozer": those of one list are as many as are named; so are those of two kinds
         let listed = |i: usize| {
-            self.pending.is_none() && self.linked && self.list.contains(&i) && self.mentions[i].spec.noun != new.spec.noun
+            self.pending.is_none()
+                && self.linked
+                && self.list.contains(&i)
+                && self.mentions[i].spec.noun != new.spec.noun
         };
-        let other = |i: usize| super::super::names::are_of_two_kinds(&self.mentions[i].spec.noun, &new.spec.noun);
+        let other =
+            |i: usize| super::super::names::are_of_two_kinds(&self.mentions[i].spec.noun, &new.spec.noun);
         (0..self.mentions.len())
             .rev()
             .find(|&i| fits(&self.mentions[i]) && !listed(i) && !other(i))

@@ -178,7 +178,9 @@ impl Parser<'_> {
             Some(f) if f.and.is_none() => f.anchor,
             _ => return,
         };
-        if let (Anchor::Object(i), true, false) = (front, self.last.is_empty() && self.head.is_empty(), self.edits) {
+        if let (Anchor::Object(i), true, false) =
+            (front, self.last.is_empty() && self.head.is_empty(), self.edits)
+        {
             self.last = vec![i];
         }
     }

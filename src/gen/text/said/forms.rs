@@ -88,7 +88,11 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         ],
     ) && words::noun_at(&main[i + n..]).is_none()
     {
-        let one = if is(main.get(i + n - 1), &["first", "one", "other"]) { super::topics::singular_of(&s.noun) } else { s.noun.clone() };
+        let one = if is(main.get(i + n - 1), &["first", "one", "other"]) {
+            super::topics::singular_of(&s.noun)
+        } else {
+            s.noun.clone()
+        };
         let the = led("the", first, &[&one]);
         main.splice(i..i + n, the);
     }
@@ -227,7 +231,9 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
         );
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
-    let been = predicate::parts(&inner[end..], true).iter().any(predicate::Part::is_gone);
+    let been = predicate::parts(&inner[end..], true)
+        .iter()
+        .any(predicate::Part::is_gone);
     let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
     let goes = keeps
         || i == 0 && been

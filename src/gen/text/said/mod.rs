@@ -9,6 +9,7 @@ mod colours;
 mod dealt;
 mod doers;
 mod exception;
+mod exchanges;
 mod forms;
 mod frame;
 mod gaps;
@@ -22,9 +23,11 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod presence;
 mod reasons;
 mod recast;
 mod remaining;
+mod remarks;
 mod skies;
 mod some_of;
 mod spoken;
@@ -39,8 +42,8 @@ mod totals;
 mod turns;
 mod untouched;
 mod ways;
-mod wider;
 mod which;
+mod wider;
 mod worded;
 pub(super) mod words;
 
@@ -54,16 +57,17 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, Class, SceneBox};
 pub use exception::except;
-pub use left::Left;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
     takes_place,
 };
 use frame::unwrapped;
+pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 use predicate::{in_place, parts};
+pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
@@ -130,7 +134,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = wider::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = remarks::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = exchanges::plain(presence::plain(wider::plain(out, talk), talk), talk);
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
@@ -242,7 +247,11 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     }
     // who is gone and then is elsewhere has only left where he was
     for i in 0..out.len() {
-        let elsewhere = out[i + 1..].iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
+        // ("it" is he as long as nobody else is named)
+        let still = out[i + 1..]
+            .iter()
+            .take_while(|p| matches!(p, Piece::Meant(c, _) if c.targets.is_empty()));
+        let elsewhere = still.into_iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
         if let (true, Piece::Meant(c, _)) = (elsewhere, &mut out[i])
             && c.verb == Verb::Remove
         {
@@ -250,7 +259,10 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
     }
     // ("whatever is behind us, make it a coach" is one)
-    let topic = is(body.first(), &["whatever", "whoever", "whichever", "what", "anything"]);
+    let topic = is(
+        body.first(),
+        &["whatever", "whoever", "whichever", "what", "anything"],
+    );
     if understood || out.len() > 1 && !topic {
         out
     } else {
@@ -289,8 +301,13 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     );
     // "how would the street look at midday?": so it shall
     let looks = (text(first) == "how" || text(first) == "what")
-        && body.iter().any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
-    if looks && let Some(at) = (1..body.len()).find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_)))) {
+        && body
+            .iter()
+            .any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
+    if looks
+        && let Some(at) = (1..body.len())
+            .find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_))))
+    {
         let from = (0..at)
             .rev()
             .find(|i| is(body.get(*i), &["at", "in", "by", "with", "during", "on", "under"]))
@@ -356,14 +373,18 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     // "the cones, please set them up ..."
-    if is(inner.first(), &["the", "those", "these", "both", "that", "my"])
+    if !mood.denied
+        && is(inner.first(), &["the", "those", "these", "both", "that", "my"])
         && first_noun(inner).is_some_and(|n| n.1 == inner.len() && n.0 < 4)
         && talk.fits(inner) > 0
     {
         return Some(vec![remembered(inner, talk)]);
     }
     // "leave the car behind me as it is"
-    if let Some(np) = untouched::stays(inner).or_else(|| untouched::stays(trimmed(clause))).filter(|np| talk.fits(np) > 0) {
+    if let Some(np) = untouched::stays(inner)
+        .or_else(|| untouched::stays(trimmed(clause)))
+        .filter(|np| talk.fits(np) > 0)
+    {
         return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"

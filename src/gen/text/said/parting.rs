@@ -81,6 +81,7 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 || body[i..next].iter().any(|t| text(t) == "so") && opens_order(rest)
                 // "make room: the bus goes to the right edge"
                 || text(t) == ":" && !(from..i).any(|k| is_place(&body[k..i]))
+                || super::some_of::removes_it(&body[from..i])
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
@@ -140,14 +141,15 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !named
                 && !therefore
                 && spoken
-                && (instead || opens(
-                    rest,
-                    &Talk {
-                        carried: text(t) == "and" && carries(&body[from..i]),
-                        last: None,
-                        ..*talk
-                    },
-                ))
+                && (instead
+                    || opens(
+                        rest,
+                        &Talk {
+                            carried: text(t) == "and" && carries(&body[from..i]),
+                            last: None,
+                            ..*talk
+                        },
+                    ))
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -223,7 +225,13 @@ pub(super) fn carries(clause: &[Token]) -> bool {
 /// "so let the bus stand there": what stands before only says why.
 fn opens_order(rest: &[Token]) -> bool {
     (is(rest.first(), &MOVES) || rest.first().is_some_and(super::super::rephrase::is_verb))
-        && is(rest.get(1), &["the", "both", "all", "every", "my", "our", "that", "those", "these", "a", "an", "another", "it", "them", "him", "her"])
+        && is(
+            rest.get(1),
+            &[
+                "the", "both", "all", "every", "my", "our", "that", "those", "these", "a", "an", "another",
+                "it", "them", "him", "her",
+            ],
+        )
 }
 
 /// True if a clause of its own begins here.
@@ -263,7 +271,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     // "and no bus"
     if is(rest.first(), &["no"])
         && first_noun(rest).is_some_and(|n| {
-            n.0 < 3 && rest.get(n.1).is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
+            n.0 < 3
+                && rest
+                    .get(n.1)
+                    .is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
         })
     {
         return true;
@@ -278,7 +289,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     if orders
         && is(
             inner.get(1),
-            &["the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these"],
+            &[
+                "the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these",
+            ],
         )
     {
         return true;
@@ -294,9 +307,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 HELPERS.contains(&text(&near[s.pred]))
                     || find(near, &["in"]).is_some() && text(&near[s.pred]) == "in"
                     || is(near.first(), &["a", "an", "another"])
-                        && near[s.pred..].iter().find(|t| !super::lists::ADVERBS.contains(&text(t))).is_some_and(|t| {
-                            words::is_finite(text(t), false) && !text(t).ends_with("ed")
-                        })
+                        && near[s.pred..]
+                            .iter()
+                            .find(|t| !super::lists::ADVERBS.contains(&text(t)))
+                            .is_some_and(|t| words::is_finite(text(t), false) && !text(t).ends_with("ed"))
                     || in_place(near).is_some()
             }
             Kind::Known => {
@@ -334,7 +348,11 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         return true;
     }
     // "and double the barriers"
-    if is(inner.first(), &["double", "halve", "triple", "treble", "quadruple"]) && is(inner.get(1), &["the", "all", "my"]) {
+    if is(
+        inner.first(),
+        &["double", "halve", "triple", "treble", "quadruple"],
+    ) && is(inner.get(1), &["the", "all", "my"])
+    {
         return true;
     }
     // "one car fewer"

@@ -2,7 +2,9 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
-use super::lists::{ADVERBS, AFTERWARDS, GONE, HELPERS, IN_PLACE, NEGATED, OFF_SITE, PRONOUNS, REASONS, THERE};
+use super::lists::{
+    ADVERBS, AFTERWARDS, GONE, HELPERS, IN_PLACE, NEGATED, OFF_SITE, PRONOUNS, REASONS, THERE,
+};
 use super::words::{find, has_noun, is, is_finite, is_place, leads, longest, number, text};
 
 /// One verb phrase without its helpers.
@@ -39,12 +41,42 @@ impl Part {
         };
         let rest = &self.main[n..];
         // "has dropped off its passenger"
-        let object = |t: Option<&Token>| is(t, &["the", "a", "an", "its", "his", "her", "their", "all", "both", "my", "our"]);
+        let object = |t: Option<&Token>| {
+            is(
+                t,
+                &[
+                    "the", "a", "an", "its", "his", "her", "their", "all", "both", "my", "our",
+                ],
+            )
+        };
         if is(rest.first(), &["off", "out", "away", "up", "down"]) && object(rest.get(1)) {
             return false;
         }
         // "was driven off on a trailer"
-        if n > 1 && is(self.main.get(n - 1), &["off", "away", "home"]) && is(rest.first(), &["on", "in", "together", "along", "under", "into", "without", "before", "this", "last", "yesterday", "today", "tonight"]) && !super::words::is_goal(rest) && !super::super::lexicon::look_up(rest.get(2).map_or("", text)).is_some_and(|s| matches!(s, Sense::Place(..))) {
+        if n > 1
+            && is(self.main.get(n - 1), &["off", "away", "home"])
+            && is(
+                rest.first(),
+                &[
+                    "on",
+                    "in",
+                    "together",
+                    "along",
+                    "under",
+                    "into",
+                    "without",
+                    "before",
+                    "this",
+                    "last",
+                    "yesterday",
+                    "today",
+                    "tonight",
+                ],
+            )
+            && !super::words::is_goal(rest)
+            && !super::super::lexicon::look_up(rest.get(2).map_or("", text))
+                .is_some_and(|s| matches!(s, Sense::Place(..)))
+        {
             return true;
         }
         // "has left the sidewalk", "go to the left", "goes over to", "left of me"
@@ -74,14 +106,40 @@ impl Part {
 
 /// "has gone back to the station", "is back in the depot": where it is no part of the scene.
 fn gone_off(main: &[Token]) -> bool {
-    let went = is(main.first(), &["gone", "driven", "walked", "returned", "headed", "ridden", "cycled", "moved", "went", "goes", "drives", "returns", "heads", "go", "return", "head", "drive", "taken", "sent", "brought", "called", "towed", "back", "at", "in", "inside"]);
+    let went = is(
+        main.first(),
+        &[
+            "gone", "driven", "walked", "returned", "headed", "ridden", "cycled", "moved", "went", "goes",
+            "drives", "returns", "heads", "go", "return", "head", "drive", "taken", "sent", "brought",
+            "called", "towed", "back", "at", "in", "inside",
+        ],
+    );
     let at = (1..main.len().min(4)).find(|i| is(main.get(*i), &OFF_SITE));
     let between = |i: usize| {
-        main[1..i].iter().all(|t| is(Some(t), &["back", "to", "at", "in", "into", "inside", "the", "a", "his", "her", "their", "its", "off", "home", "for", "our", "away", "now"]))
+        main[1..i].iter().all(|t| {
+            is(
+                Some(t),
+                &[
+                    "back", "to", "at", "in", "into", "inside", "the", "a", "his", "her", "their", "its",
+                    "off", "home", "for", "our", "away", "now",
+                ],
+            )
+        })
     };
     // ("in", "at" and "back" say it only with such a place)
     let found = at.or_else(|| (4..main.len().min(6)).find(|i| is(main.get(*i), &OFF_SITE)));
-    went && found.is_some_and(|i| between(i) && main.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "already", "now", "again", "for", "by", "long", "with", "because", "where"])))
+    went && found.is_some_and(|i| {
+        between(i)
+            && main.get(i + 1).is_none_or(|t| {
+                t.kind != TokenKind::Word
+                    || is(
+                        Some(t),
+                        &[
+                            "and", "already", "now", "again", "for", "by", "long", "with", "because", "where",
+                        ],
+                    )
+            })
+    })
 }
 
 /// Takes the helpers off one verb phrase.
@@ -196,7 +254,9 @@ fn goes_on(tokens: &[Token], plural: bool, before: &[Token]) -> bool {
     // "has finished its round and left"
     let leaves = w == "left"
         && before.iter().any(|t| matches!(text(t), "has" | "have" | "had"))
-        && (tokens.len() == k + 1 || leads(&tokens[k + 1..], &AFTERWARDS).is_some() || tokens[k + 1].kind != TokenKind::Word);
+        && (tokens.len() == k + 1
+            || leads(&tokens[k + 1..], &AFTERWARDS).is_some()
+            || tokens[k + 1].kind != TokenKind::Word);
     if leaves {
         return true;
     }
