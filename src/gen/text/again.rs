@@ -77,7 +77,7 @@ impl Parser<'_> {
         };
         let many = m.plural || m.spec.count.n > 1;
         // ("a line of taxis, eight of them": how many was not said)
-        if !(m.uncounted || !m.spec.count.is_exact()) || !many {
+        if !many || !m.uncounted && m.spec.count.is_exact() {
             return false;
         }
         m.spec.count = count;

@@ -1,6 +1,6 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay};
+use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay, Weather};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -530,6 +530,14 @@ fn sun_shines(reading: &mut Reading) {
         let words = p.text.to_lowercase();
         p.became == Became::Weather && words.contains("sun") && !p.meaning.contains("not")
     });
+    // "in the afternoon sun"
+    let shines = reading.phrases.iter().any(|p| {
+        let words = p.text.to_lowercase();
+        p.became == Became::Time && (words.ends_with(" sun") || words.contains("sunshine")) && !words.contains("before")
+    });
+    if shines && reading.description.weather.is_none() {
+        reading.description.weather = Some(Weather::Clear);
+    }
     if sunny && reading.description.time_of_day.is_none() {
         reading.description.time_of_day = Some(TimeOfDay::Day);
     }

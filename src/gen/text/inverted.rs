@@ -42,7 +42,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     );
     replaced(
         &out,
-        "besides ours|besides mine|besides my own|besides our own|apart from ours|apart from mine|apart from my own|aside from ours|in addition to ours|not counting mine|not counting ours|not counting my own",
+        "besides us|besides me|apart from us|apart from me|aside from us|aside from me|besides ours|besides mine|besides my own|besides our own|apart from ours|apart from mine|apart from my own|aside from ours|in addition to ours|not counting mine|not counting ours|not counting my own",
         "",
     )
 }
@@ -259,9 +259,9 @@ fn led_by_others(tokens: &[Token]) -> Vec<Token> {
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         let moved = begins(sentence, BY).and_then(|_| {
             // ("flanked by two motorbikes, one on each side, a car": the last comma before the subject)
-            let commas = (1..sentence.len().min(20)).filter(|k| sentence[*k].kind == TokenKind::Comma);
+            let mut commas = (1..sentence.len().min(20)).filter(|k| sentence[*k].kind == TokenKind::Comma);
             let comma = commas
-                .filter(|k| {
+                .rfind(|k| {
                     let next = sentence.get(k + 1);
                     next.is_some_and(is_fresh)
                         && sentence[k + 1..].iter().take(5).any(is_noun)
@@ -269,8 +269,7 @@ fn led_by_others(tokens: &[Token]) -> Vec<Token> {
                             .iter()
                             .take_while(|t| t.kind != TokenKind::Comma)
                             .any(|t| t.text == "each")
-                })
-                .last()?;
+                })?;
             let end = sentence.len() - usize::from(sentence.last()?.kind == TokenKind::Stop);
             let apart = Token {
                 kind: TokenKind::Comma,

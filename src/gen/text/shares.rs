@@ -319,7 +319,10 @@ fn whole(before: &[Token]) -> Option<u32> {
         let dozen = (before[k].text == "dozen").then_some(12);
         let half = k > 0 && (before[k - 1].text == "half" || k > 1 && before[k - 2].text == "half");
         let many = dozen.map(|d| if half { d / 2 } else { d }).or(number(&before[k]));
-        many.filter(|n| group && !unit && *n > 1)
+        // "cars, six altogether"
+        let total = begins(&before[k + 1..], "altogether|in total|in all|all told|of them").is_some()
+            && before[..k].iter().rev().take(3).any(is_noun);
+        many.filter(|n| (group || total) && !unit && *n > 1)
     })
 }
 
