@@ -415,16 +415,7 @@ impl<'a> Parser<'a> {
                 // "one in front of the other"
                 let targets = self.targets();
                 let noun = targets.first().map(|t| self.mentions[*t].spec.noun.clone());
-                // "we are following a third one"
-                let ego = self.pending.as_ref().is_some_and(|p| p.ego);
-                let last = (0..self.mentions.len()).rev().find(|i| !self.mentions[*i].gone);
-                if let Some(last) = last.filter(|_| ego && !self.edits && (item.words.starts_with("a ") || item.words.starts_with("another"))) {
-                    let mut twin = self.mentions[last].clone();
-                    twin.spec.relations.clear();
-                    twin.spec.count = Count::exactly(1);
-                    twin.spec.span = span;
-                    self.mentions.push(twin);
-                    self.anchor(Anchor::Object(self.mentions.len() - 1), span);
+                if self.ego_has_another(item) {
                     return false;
                 }
                 let other = (0..self.mentions.len())
