@@ -6,7 +6,6 @@ use super::ellipsis::{digits, ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 use super::wording::{begins, replaced, word};
-use crate::scene::Class;
 use crate::scene::graph::LaneRole;
 
 /// A text with its shares in numbers.
