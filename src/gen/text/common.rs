@@ -39,7 +39,11 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, FREE, "");
     let out = without_asides(&without_closing(&out));
     let out = replaced(&own_thing(&out), "in number|in numbers", "in total");
-    let out = of_so_many(&out);
+    let out = replaced(
+        &of_so_many(&out),
+        "ourselves|myself|itself|himself|herself|themselves",
+        "",
+    );
     let out = replaced(&out, CROSSES_OURS, "cross street");
     let out = both_the(&out);
     let out = super::coloured_ones::named(&out);

@@ -1,6 +1,8 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay};
+use super::description::{
+    Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay, Weather,
+};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -25,105 +27,6 @@ fn drop_totals(mentions: &mut [Mention]) {
             mentions[i].gone = true;
         }
         mentions[i].spec.attributes.retain(|a| a != "in total");
-    }
-}
-
-/// Nouns that only say of what sort the ones are that a list then names.
-const SORTS: &str = "vehicle|machine|construction machine|construction vehicle|work machine|site machine|building machine|heavy machine|person|people|pedestrian|road user|two wheeler|thing|object|obstacle|piece of construction equipment|piece of heavy machinery|motor vehicle|large vehicle|heavy vehicle|traffic participant|participant|vru|someone|folk|bike|passerby|passer by|human|individual|figure|adult";
-
-fn is_sort(noun: &str) -> bool {
-    use super::lexicon::{Sense, look_up};
-    let of = |w: &str| match look_up(w) {
-        Some(Sense::Noun(n, _)) => Some(n),
-        _ => None,
-    };
-    let singular = |w: &str| SORTS.split('|').any(|s| s == w || super::lexicon::plural(s) == w);
-    singular(noun) || matches!(noun, "people" | "persons") && of(noun).is_some()
-}
-
-/// "two machines, a crane and an excavator": the list says which two they are.
-fn drop_named(mentions: &mut [Mention], prompt: &str) {
-    let joined = |a: &Mention, b: &Mention| {
-        let gap = prompt.get(a.spec.span.end..b.spec.span.start).unwrap_or("?");
-        let gap = gap
-            .trim()
-            .trim_start_matches([',', ':', '(', '-', '–', '—'])
-            .trim();
-        matches!(gap, "" | "and" | "plus" | "namely" | "and also" | "i.e." | "viz.")
-    };
-    for i in 0..mentions.len() {
-        let m = &mentions[i];
-        if m.gone || !m.plural || m.uncounted || !m.spec.count.is_exact() || m.is_anchor {
-            continue;
-        }
-        let sort = is_sort(&m.spec.noun);
-        let apposed = prompt
-            .get(m.spec.span.end..)
-            .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
-        // "three vehicles ahead: a car in our lane and two vans behind it"
-        let listed = mentions.get(i + 1).is_some_and(|next| {
-            let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
-            !gap.contains(['.', ';', '!', '?'])
-                && [
-                    ":",
-                    "namely",
-                    " - ",
-                    "–",
-                    "—",
-                    "(",
-                    "i.e",
-                    "to be exact",
-                    "specifically",
-                ]
-                .iter()
-                .any(|w| gap.contains(w))
-        });
-        let one_sentence = |a: &Mention, b: &Mention| {
-            prompt
-                .get(a.spec.span.end..b.spec.span.start)
-                .is_some_and(|gap| !gap.contains(['.', ';', '!', '?']))
-        };
-        // "four cars on the road: two black ones, a red one and a white one"
-        let told_apart = |part: &Mention| part.spec.color.is_some() || part.spec.noun != m.spec.noun;
-        if !sort && !listed {
-            continue;
-        }
-        let apposed = apposed || listed;
-        let mut sum = 0;
-        let mut last = i;
-        while last + 1 < mentions.len()
-            && sum < mentions[i].spec.count.n
-            && (joined(&mentions[last], &mentions[last + 1])
-                || listed && one_sentence(&mentions[last], &mentions[last + 1]))
-            && mentions[i].classes.contains(&mentions[last + 1].spec.class)
-            && (if sort {
-                !is_sort(&mentions[last + 1].spec.noun)
-            } else {
-                told_apart(&mentions[last + 1])
-            })
-        {
-            last += 1;
-            sum += mentions[last].spec.count.n;
-        }
-        if !apposed || last < i + 2 || sum != mentions[i].spec.count.n {
-            continue;
-        }
-        let theirs = mentions[i].spec.relations.clone();
-        let state = mentions[i].spec.state;
-        for m in &mut mentions[i + 1..=last] {
-            m.spec.state = m.spec.state.or(state);
-            if m.spec.relations.is_empty() {
-                m.spec.relations.clone_from(&theirs);
-            }
-        }
-        mentions[i].gone = true;
-        for m in mentions.iter_mut() {
-            for r in &mut m.spec.relations {
-                if r.anchor == Anchor::Object(i) {
-                    r.anchor = Anchor::Object(i + 1);
-                }
-            }
-        }
     }
 }
 
@@ -304,139 +207,6 @@ fn add_side(spec: &mut ObjectSpec, left: bool, class: Class, state: Option<Objec
     }
 }
 
-/// "workmen have closed the left lane with eight cones and a trailer": these stand in it.
-fn closed_with(mentions: &mut [Mention], prompt: &str) {
-    for i in 1..mentions.len() {
-        let Some(h) = mentions[i]
-            .host
-            .filter(|h| *h < i && mentions[*h].spec.class == Class::Pedestrian)
-        else {
-            continue;
-        };
-        let thing = |m: &Mention| m.spec.class != Class::Pedestrian && m.spec.relations.is_empty() && !m.gone;
-        let blocks = mentions[h]
-            .spec
-            .relations
-            .iter()
-            .position(|r| r.relation == RelationKind::Blocking && matches!(r.anchor, Anchor::Lane(_)));
-        let Some(k) = blocks.filter(|_| thing(&mentions[i])) else {
-            continue;
-        };
-        let theirs: Vec<Stated> = mentions[h].spec.relations.clone();
-        mentions[h].spec.relations.remove(k);
-        let mut j = i;
-        loop {
-            mentions[j].spec.state = Some(ObjectState::Waiting);
-            mentions[j].spec.relations.clone_from(&theirs);
-            let next = mentions
-                .get(j + 1)
-                .filter(|n| thing(n))
-                .and_then(|n| prompt.get(mentions[j].spec.span.end..n.spec.span.start));
-            if !next.is_some_and(|gap| matches!(gap.trim(), "and" | "," | ", and" | "plus")) {
-                break;
-            }
-            j += 1;
-        }
-    }
-}
-
-/// "the cross street is busy: from the left come two cars": on it.
-fn from_cross_street(mentions: &mut [Mention], prompt: &str) {
-    let prompt = prompt.to_lowercase();
-    let named = ["cross street", "side street", "crossing road", "crossing street"]
-        .iter()
-        .any(|w| prompt.contains(w));
-    for m in mentions.iter_mut().filter(|m| named && m.spec.class.is_vehicle()) {
-        let from = m.spec.relations.iter().find(|r| {
-            matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf)
-                && r.anchor == Anchor::Ego
-                && r.span.of(&prompt).starts_with("from the ")
-        });
-        let Some(span) = from.map(|r| r.span) else {
-            continue;
-        };
-        if !m
-            .spec
-            .relations
-            .iter()
-            .any(|r| matches!(r.anchor, Anchor::Lane(_) | Anchor::Junction))
-        {
-            m.spec.relations.push(Stated {
-                relation: RelationKind::On,
-                anchor: Anchor::Lane(LaneRole::Cross),
-                and: None,
-                distance_m: None,
-                span,
-            });
-        }
-    }
-}
-
-/// "two buses at the kerb, and a taxi between them": the two apart, with room for it.
-fn apart_for(mentions: &mut Vec<Mention>) {
-    for i in 0..mentions.len() {
-        let between = mentions[i].spec.relations.iter().position(|r| {
-            r.relation == RelationKind::Between
-                && r.and == Some(r.anchor)
-                && matches!(r.anchor, Anchor::Object(_))
-        });
-        let Some((at, a)) = between.and_then(|k| match mentions[i].spec.relations[k].anchor {
-            Anchor::Object(a) => Some((k, a)),
-            _ => None,
-        }) else {
-            continue;
-        };
-        let two = mentions
-            .get(a)
-            .is_some_and(|m| m.spec.count == Count::exactly(2) && !m.gone && !m.definite && m.both.is_none());
-        if !two || a == i || mentions[a].spec.class == Class::Pedestrian {
-            continue;
-        }
-        let length = |m: &Mention| {
-            m.spec
-                .size_m
-                .or(m.spec.class.typical_size_m())
-                .map_or(4.5, |s| s[0])
-        };
-        let gap = length(&mentions[a]) + length(&mentions[i]) * f64::from(mentions[i].spec.count.n) + 4.0;
-        let span = mentions[i].spec.span;
-        mentions[a].spec.count = Count::exactly(1);
-        let mut twin = mentions[a].clone();
-        twin.spec.relations.retain(|r| r.distance_m.is_none());
-        twin.spec.relations.push(Stated {
-            relation: RelationKind::InFrontOf,
-            anchor: Anchor::Object(a),
-            and: None,
-            distance_m: Some(gap),
-            span,
-        });
-        let strip = mentions[a]
-            .spec
-            .relations
-            .iter()
-            .find(|r| {
-                matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
-                    && matches!(r.anchor, Anchor::Lane(_))
-            })
-            .copied();
-        mentions.push(twin);
-        let second = Anchor::Object(mentions.len() - 1);
-        let m = &mut mentions[i].spec;
-        m.relations[at].and = Some(second);
-        let placed = m.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
-        if let (Some(strip), false, true) = (strip, placed, m.class.is_vehicle()) {
-            m.state = m
-                .state
-                .filter(|s| *s != ObjectState::Moving)
-                .or(Some(ObjectState::Waiting));
-            m.relations.push(Stated {
-                distance_m: None,
-                ..strip
-            });
-        }
-    }
-}
-
 /// What was said of road works holds for what they are made of; what stands beside something in a car park stands there, too.
 fn share_places(mentions: &mut [Mention]) {
     use LaneRole as L;
@@ -556,6 +326,16 @@ fn sun_shines(reading: &mut Reading) {
         let words = p.text.to_lowercase();
         p.became == Became::Weather && words.contains("sun") && !p.meaning.contains("not")
     });
+    // "in the afternoon sun"
+    let shines = reading.phrases.iter().any(|p| {
+        let words = p.text.to_lowercase();
+        p.became == Became::Time
+            && (words.ends_with(" sun") || words.contains("sunshine"))
+            && !words.contains("before")
+    });
+    if shines && reading.description.weather.is_none() {
+        reading.description.weather = Some(Weather::Clear);
+    }
     if sunny && reading.description.time_of_day.is_none() {
         reading.description.time_of_day = Some(TimeOfDay::Day);
     }
@@ -564,12 +344,12 @@ fn sun_shines(reading: &mut Reading) {
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
-    drop_named(mentions, prompt);
+    super::finish_groups::drop_named(mentions, prompt);
     super::reciprocal::face(mentions);
     super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
-    apart_for(mentions);
+    super::finish_groups::apart_for(mentions);
     // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions
         .windows(3)
@@ -592,8 +372,8 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     sun_shines(reading);
     in_car_park(mentions, reading);
     share_places(mentions);
-    from_cross_street(mentions, prompt);
-    closed_with(mentions, prompt);
+    super::finish_groups::from_cross_street(mentions, prompt);
+    super::finish_groups::closed_with(mentions, prompt);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;

@@ -90,7 +90,7 @@ fn blocked_at(m: &mut Mention) {
         .iter()
         .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
     let far = m.spec.relations.iter_mut().find(|r| {
-        matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some()
+        matches!(r.relation, R::Blocking | R::Crossing | R::On) && is_lane(r.anchor) && r.distance_m.is_some()
     });
     if let Some(r) = far {
         let stated = Stated {

@@ -221,6 +221,23 @@ impl Parser<'_> {
         true
     }
 
+    /// "we are following a third one": one more of what was named last. True if it was that.
+    pub(super) fn ego_has_another(&mut self, item: &super::super::tag::Item) -> bool {
+        let ego = self.pending.as_ref().is_some_and(|p| p.ego);
+        let more = item.words.starts_with("a ") || item.words.starts_with("another");
+        let last = (0..self.mentions.len()).rev().find(|i| !self.mentions[*i].gone);
+        let Some(last) = last.filter(|_| ego && more && !self.edits) else {
+            return false;
+        };
+        let mut twin = self.mentions[last].clone();
+        twin.spec.relations.clear();
+        twin.spec.count = super::super::description::Count::exactly(1);
+        twin.spec.span = item.span;
+        self.mentions.push(twin);
+        self.anchor(Anchor::Object(self.mentions.len() - 1), item.span);
+        true
+    }
+
     fn finite_next(&self) -> bool {
         matches!(self.sense(self.at + 1), Some(Sense::State(_, true)))
             || self

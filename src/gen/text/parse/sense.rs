@@ -416,6 +416,9 @@ impl<'a> Parser<'a> {
                 // "one in front of the other"
                 let targets = self.targets();
                 let noun = targets.first().map(|t| self.mentions[*t].spec.noun.clone());
+                if self.ego_has_another(item) {
+                    return false;
+                }
                 let other = (0..self.mentions.len())
                     .rev()
                     .find(|i| !targets.contains(i) && Some(&self.mentions[*i].spec.noun) == noun.as_ref());

@@ -261,7 +261,7 @@ pub const FIXED: &[(R, Anchor, &str)] = &[
     (
         R::WaitingAt,
         Anchor::Crossing,
-        "waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street",
+        "want to cross|would like to cross|wish to cross|wishing to cross|want to cross the road|want to cross the street|want to get across|waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street",
     ),
     (
         R::On,
