@@ -196,6 +196,15 @@ impl Editor<'_> {
                 commands[i].found = found(&commands[i]);
                 continue;
             }
+            // "the cars have left, only the truck is still there": what stays of those
+            let told = b.verb == Verb::Keep
+                && a.verb == Verb::Remove
+                && !a.targets.iter().any(super::mention::means_all)
+                && ["only ", "just "].iter().any(|w| b.text.to_lowercase().starts_with(w));
+            if told {
+                commands[i].verb = Verb::Note;
+                continue;
+            }
             let rest = matches!(a.verb, Verb::Keep | Verb::Note)
                 && !a.targets.is_empty()
                 && b.verb == Verb::Remove

@@ -3,6 +3,7 @@
 mod again;
 mod amounts;
 mod back;
+mod carried;
 mod common;
 mod compounds;
 pub mod description;

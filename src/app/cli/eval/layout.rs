@@ -19,7 +19,7 @@ use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: [(&str, &str); 18] = [
+const SETS: [(&str, &str); 20] = [
     (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
@@ -82,8 +82,16 @@ const SETS: [(&str, &str); 18] = [
         include_str!("../../../../tests/data/strangers_12.jsonl"),
     ),
     (
+        "strangers_14.jsonl",
+        include_str!("../../../../tests/data/strangers_14.jsonl"),
+    ),
+    (
         "causes.jsonl",
         include_str!("../../../../tests/data/causes.jsonl"),
+    ),
+    (
+        "causes_2.jsonl",
+        include_str!("../../../../tests/data/causes_2.jsonl"),
     ),
     (
         "variants.jsonl",

@@ -19,7 +19,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&out, IN_TRUTH, "");
     let out = replaced(&out, NONE, "remove them");
     let out = replaced(&out, MOVING, "all moving objects");
-    let out = seen(out, talk);
+    let out = seen(so_many(out, talk), talk);
     let out = given(out, talk);
     let out = without(out, talk);
     let out = distance_to(out, talk);
@@ -42,6 +42,18 @@ fn begins_at(tokens: &[Token], i: usize) -> bool {
 
 fn is_fresh(t: Option<&Token>) -> bool {
     is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some())
+}
+
+/// "we don't need so many people": which are too many.
+fn so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["we dont need so many", "i dont need so many", "we do not need so many", "i do not need so many", "we dont need that many", "i dont need that many", "i dont want so many", "we dont want so many", "i dont want that many", "not so many", "we dont need this many", "there are so many", "why are there so many", "why so many"]) else {
+        return tokens;
+    };
+    let np = &tokens[n..];
+    match first_noun(np).filter(|x| x.0 < 3 && (x.1 == np.len() || is_place(&np[x.1..]))) {
+        Some(_) if talk.fits(np) > 0 && !np.iter().any(|t| t.kind != TokenKind::Word) => remark(np),
+        _ => tokens,
+    }
 }
 
 /// "I see four pedestrians, ...", where there are four: a remark.
@@ -79,6 +91,7 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             match k.filter(|_| ends && !has_noun(rest)) {
                 Some(k) => led("keep exactly", &tokens[0], &[&rest[k..=k], np]),
                 None if has_noun(rest) => rest.to_vec(),
+                None if rest.iter().all(|t| number(t).is_none()) => remark(np),
                 None => tokens,
             }
         }

@@ -132,6 +132,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return stop.to_vec();
     }
     let out = exception::the_one_spared(out);
+    let out = exception::all_stays_but(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
     let mut out = totals::plain(out, talk);

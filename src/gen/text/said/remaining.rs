@@ -168,7 +168,7 @@ fn nothing_there(tokens: &[Token]) -> Option<Vec<Token>> {
                 Some(t),
                 &[
                     "should", "must", "shall", "may", "is", "be", "to", "left", "standing", "parked", "driving", "can", "will",
-                    "there", "stand", "stands", "stay", "stays", "remain", "remains", "stopped", "blocks", "moving",
+                    "there", "seen", "visible", "found", "stand", "stands", "stay", "stays", "remain", "remains", "stopped", "blocks", "moving",
                 ],
             )
         })

@@ -32,6 +32,7 @@ const SAME_PLACE: &[&str] = &[
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = same_place(tokens);
+    let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
@@ -283,6 +284,44 @@ fn not_but(tokens: Vec<Token>) -> Vec<Token> {
     let mut out = tokens[..from].to_vec();
     out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[close..]]));
     out
+}
+
+/// "behind us there should be one car only": one there.
+fn place_then_only(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["there should be", "there must be", "there shall be", "should be", "there ought to be", "i want", "i need", "there are to be", "there may be"]).filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let place = &tokens[..i];
+    let k = i + n + usize::from(is(tokens.get(i + n), &["only", "just", "exactly"]));
+    let many = tokens.get(k).filter(|t| number(t).is_some());
+    let Some((_, b)) = tokens.get(k..).and_then(first_noun).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let only = k > i + n || is(tokens.get(k + b), &["only"]);
+    let end = k + b + usize::from(is(tokens.get(k + b), &["only"]));
+    let placed = is_place(place) && first_noun(place).is_none() && !place.iter().any(links);
+    let np = tokens.get(k + 1..k + b).unwrap_or(&[]);
+    match many {
+        Some(many) if only && placed && tokens.get(end).is_none_or(links) && talk.fits(&[np, place].concat()) > 0 => {
+            led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, place, &tokens[end..]])
+        }
+        _ => tokens,
+    }
+}
+
+/// "the number of cars must not exceed three": three, if there are more.
+fn exceeds(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["must not exceed", "should not exceed", "may not exceed", "shall not exceed", "mustnt exceed", "shouldnt exceed", "must not be more than", "should not be more than", "is limited to", "should be limited to", "must be limited to"]).filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let np = bare(&tokens[..i]);
+    let many = tokens.get(i + n).filter(|t| number(t).is_some());
+    match many {
+        Some(many) if first_noun(np).is_some_and(|x| x.0 < 4) && talk.fits(np) > number(many).unwrap_or(0).max(0) as usize => {
+            led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, &tokens[i + n + 1..]])
+        }
+        _ => tokens,
+    }
 }
 
 /// "five children would be nicer": five.

@@ -31,7 +31,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = appears(out);
     let out = where_another(out);
     let out = dropped(out);
-    let out = taken_out(out);
+    let out = make_each(taken_out(out));
     same_verb(out)
 }
 
@@ -468,6 +468,33 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     tokens
+}
+
+/// "make the bus a lorry, the motorcycle a car": make each.
+fn make_each(tokens: Vec<Token>) -> Vec<Token> {
+    if !is(tokens.first(), &["make"]) || !is(tokens.get(1), &["the", "both", "all", "that"]) {
+        return tokens;
+    }
+    let mut out: Vec<Token> = Vec::new();
+    let mut made = false;
+    for i in 0..tokens.len() {
+        out.push(tokens[i].clone());
+        let link = tokens[i].kind == TokenKind::Comma || is(tokens.get(i), &["and"]);
+        let next = tokens.get(i + 1..).unwrap_or(&[]);
+        let it = is(next.first(), &["it"]) && next.get(1).is_some_and(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
+        let another = is(next.first(), &["the", "that"])
+            && first_noun(next).is_some_and(|x| {
+                x.0 < 4 && is(next.get(x.1), &["a", "an"]) && first_noun(&next[x.1..]).is_some_and(|y| y.0 < 3)
+            });
+        if link && (another || it && made) {
+            made |= another;
+            if tokens[i].kind == TokenKind::Comma {
+                out.extend(led("and", &tokens[i], &[]));
+            }
+            out.extend(led("make", &tokens[i], &[]));
+        }
+    }
+    out
 }
 
 /// "the second car should be a van, and the third one a bus": the verb again.
