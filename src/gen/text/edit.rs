@@ -147,7 +147,8 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     let mut done = 0;
     while let Some(mut commands) = reader.next(&editor.map, &editor.boxes, &editor.last) {
         // "keep the bus and remove the cars": among other commands that only says what stays
-        let others = commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
+        let others =
+            commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
         for c in commands.iter_mut().filter(|c| c.verb == Verb::Keep && others) {
             let counted = c.change.is_some() || c.targets.iter().any(|t| !t.uncounted);
             if !c.only && !counted && !c.targets.is_empty() {
@@ -171,55 +172,6 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
 }
 
 impl Editor<'_> {
-    /// What commands of one sentence mean together: "turn the cones into barriers and the barriers into cones", "keep the
-    /// coach and the bus, lose the rest".
-    fn settle(&self, commands: &mut [Command]) {
-        let found = |c: &Command| -> Option<Vec<BoxId>> {
-            let mut all = Vec::new();
-            for m in &c.targets {
-                match choose(&self.map, &self.boxes, m, &c.mentions) {
-                    Chosen::These(ids) => all.extend(ids),
-                    _ => return None,
-                }
-            }
-            (!all.is_empty()).then_some(all)
-        };
-        for i in 1..commands.len() {
-            let (a, b) = (&commands[i - 1], &commands[i]);
-            let class = |m: Option<&Mention>| m.map(|m| m.spec.class);
-            let crosswise = a.verb == Verb::Replace
-                && b.verb == Verb::Replace
-                && class(a.by.as_ref()).is_some()
-                && class(a.by.as_ref()) == class(b.targets.first())
-                && class(b.by.as_ref()) == class(a.targets.first());
-            if crosswise {
-                commands[i].found = found(&commands[i]);
-                continue;
-            }
-            // "the cars have left, only the truck is still there": what stays of those
-            let told = b.verb == Verb::Keep
-                && a.verb == Verb::Remove
-                && !a.targets.iter().any(super::mention::means_all)
-                && ["only ", "just "].iter().any(|w| b.text.to_lowercase().starts_with(w));
-            if told {
-                commands[i].verb = Verb::Note;
-                continue;
-            }
-            let rest = matches!(a.verb, Verb::Keep | Verb::Note)
-                && !a.targets.is_empty()
-                && b.verb == Verb::Remove
-                && b.back == Some(Back::Others);
-            if let Some(kept) = rest.then(|| found(a)).flatten() {
-                let alike = |x: &SceneBox| kept.iter().any(|id| self.boxes[id].class == x.class);
-                let others = self.boxes.values().any(|x| alike(x) && !kept.contains(&x.id));
-                if !others {
-                    let rest = self.boxes.keys().filter(|id| !kept.contains(id));
-                    commands[i].found = Some(rest.copied().collect());
-                }
-            }
-        }
-    }
-
     /// Carries out one command and reports it.
     fn read_command(&mut self, text: &str, i: usize, command: &Command) {
         let before = self.out.edits.len();
@@ -317,22 +269,11 @@ impl Editor<'_> {
                 }
             }
             Verb::Add => {
-                // what is there and was only named is not added
-                let named = |m: &Mention| m.definite && m.pick != Some(Pick::More) && !m.is_anchor
-                    || m.uncounted && super::mention::means_all(m);
-                let theirs = ["their ", "his ", "her ", "its "].iter().any(|w| c.text.to_lowercase().starts_with(w));
-                let text = c.text.to_lowercase();
-                let orders = [
-                    "add", "insert", "include", "create", "generate", "spawn", "append", "duplicate", "introduce", "bring", "put",
-                    "place", "set", "park", "give", "draw", "show", "another", "more", "second", "extra",
-                ];
-                let ordered = text.split(|ch: char| !ch.is_alphanumeric()).any(|w| orders.contains(&w));
-                let there = |m: &Mention| {
-                    m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
-                };
-                let again = !ordered && !c.in_place && c.targets.iter().all(there);
-                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || c.targets.iter().all(named)) {
-                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                if self.only_named(c) {
+                    self.note(format!(
+                        "{:?}: what should become of it was not understood",
+                        c.text
+                    ));
                     return (!done.is_empty()).then(|| done.join(", "));
                 }
                 let d = &c.reading.description;
@@ -475,7 +416,11 @@ impl Editor<'_> {
     /// The boxes that a command is about; asks back or notes where none or several fit.
     fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
         if let Some(found) = &c.found {
-            let ids: Vec<BoxId> = found.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
+            let ids: Vec<BoxId> = found
+                .iter()
+                .filter(|id| self.boxes.contains_key(id))
+                .copied()
+                .collect();
             return (!ids.is_empty()).then_some(ids);
         }
         if let Some(back) = c.back {

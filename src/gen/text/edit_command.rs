@@ -251,7 +251,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let implied = given.is_none();
     let mut c = Command::new(verb, text, span);
     c.implied = implied;
-    c.only = tokens.iter().take(4).any(|t| matches!(t.text.as_str(), "only" | "just" | "nothing" | "alone"));
+    c.only = tokens
+        .iter()
+        .take(4)
+        .any(|t| matches!(t.text.as_str(), "only" | "just" | "nothing" | "alone"));
     c.state = match first {
         "stop" | "halt" => Some(ObjectState::Waiting),
         "park" => Some(ObjectState::Parked),
@@ -357,7 +360,19 @@ fn says_something(tokens: &[Token]) -> bool {
     tokens[noun..].iter().any(|t| {
         matches!(
             t.text.as_str(),
-            "has" | "have" | "had" | "is" | "are" | "was" | "were" | "does" | "do" | "did" | "disturbs" | "seems" | "looks"
+            "has"
+                | "have"
+                | "had"
+                | "is"
+                | "are"
+                | "was"
+                | "were"
+                | "does"
+                | "do"
+                | "did"
+                | "disturbs"
+                | "seems"
+                | "looks"
         )
     })
 }

@@ -83,9 +83,11 @@ impl Editor<'_> {
         let said = c.text.to_lowercase();
         let said = said.trim_start_matches(|ch: char| !ch.is_alphabetic());
         let keeps = c.only
-            || ["keep", "leave", "retain", "preserve", "save", "spare", "only", "just", "let", "stick"]
-                .iter()
-                .any(|w| said.starts_with(w) || said.contains(&format!(" {w} ")));
+            || [
+                "keep", "leave", "retain", "preserve", "save", "spare", "only", "just", "let", "stick",
+            ]
+            .iter()
+            .any(|w| said.starts_with(w) || said.contains(&format!(" {w} ")));
         for m in &c.targets {
             let fitting = self.those_meant(m, c);
             let wanted = match c.change {
@@ -96,7 +98,10 @@ impl Editor<'_> {
             if c.change.is_none() && m.definite && !m.plural {
                 // "keep only the bus"
                 if !keeps {
-                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                    self.note(format!(
+                        "{:?}: what should become of it was not understood",
+                        c.text
+                    ));
                     continue;
                 }
                 match choose(&self.map, &self.boxes, m, &c.mentions) {

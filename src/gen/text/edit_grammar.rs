@@ -272,7 +272,9 @@ impl<'t> Reader<'t> {
             carried: false,
             last: last.first().and_then(|id| boxes.get(id)).map(|b| b.class.label()),
         };
-        let asked = self.tokens[from..end].last().is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
+        let asked = self.tokens[from..end]
+            .last()
+            .is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
         let pointed = self.left.resolved(&self.tokens[from..end], &talk);
         let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
         let cut = except(whole);

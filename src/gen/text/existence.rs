@@ -139,7 +139,11 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         _ => "remove all people",
     };
     if who != "remove all people" {
-        return Some(command(who, first, &[clause.get(n + 1..clause_end).unwrap_or(&[])]));
+        return Some(command(
+            who,
+            first,
+            &[clause.get(n + 1..clause_end).unwrap_or(&[])],
+        ));
     }
     let rest: Vec<Token> = clause[n..clause_end.max(n)]
         .iter()

@@ -14,6 +14,7 @@ mod edit_grammar;
 mod edit_move;
 mod edit_moving;
 mod edit_place;
+mod edit_settle;
 mod ellipsis;
 mod exchange;
 mod existence;

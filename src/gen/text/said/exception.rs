@@ -9,7 +9,21 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 /// "every vehicle apart from the one that follows us": the vehicle that does.
 pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["but", "except for", "except", "apart from", "save for", "other than", "save", "besides", "aside from", "bar"])?;
+        let n = leads(
+            &tokens[i..],
+            &[
+                "but",
+                "except for",
+                "except",
+                "apart from",
+                "save for",
+                "other than",
+                "save",
+                "besides",
+                "aside from",
+                "bar",
+            ],
+        )?;
         let m = leads(&tokens[i + n..], &["the one", "the ones", "those"])?;
         let next = &tokens[i + n + m..];
         (is(next.first(), &["that", "which", "who"]) || is_place(next)).then_some((i, i + n, m))
@@ -17,12 +31,18 @@ pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, from, m)) = found else {
         return tokens;
     };
-    let all = tokens[..i].iter().rposition(|t| matches!(text(t), "all" | "every" | "each" | "any" | "both"));
+    let all = tokens[..i]
+        .iter()
+        .rposition(|t| matches!(text(t), "all" | "every" | "each" | "any" | "both"));
     let Some((a, b)) = all.and_then(|all| first_noun(&tokens[all..i]).map(|x| (all + x.0, all + x.1))) else {
         return tokens;
     };
     let many = is(tokens.get(from + m - 1), &["ones", "those"]);
-    let noun = if many { tokens[a..b].to_vec() } else { super::topics::singular_of(&tokens[a..b]) };
+    let noun = if many {
+        tokens[a..b].to_vec()
+    } else {
+        super::topics::singular_of(&tokens[a..b])
+    };
     let the = led("the", &tokens[from], &[&noun]);
     [&tokens[..from], &the, &tokens[from + m..]].concat()
 }
@@ -115,25 +135,52 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
     let Some(whole) = before
         .iter()
         .position(|t| matches!(text(t), "everything" | "everyone" | "everybody"))
-        .or_else(|| find(before, &["all objects", "all the objects", "all things", "all else"]).map(|x| x.0))
+        .or_else(|| {
+            find(
+                before,
+                &["all objects", "all the objects", "all things", "all else"],
+            )
+            .map(|x| x.0)
+        })
     else {
         return tokens;
     };
-    let many = is(tokens.get(from), &["the", "my", "that", "those", "these", "both", "our"])
-        || tokens.get(from).is_some_and(|t| number(t).is_some());
-    if is(tokens.get(from), &["that"]) && is(tokens.get(from + 1), &["the", "a", "an", "it", "my", "all", "both"]) {
+    let many = is(
+        tokens.get(from),
+        &["the", "my", "that", "those", "these", "both", "our"],
+    ) || tokens.get(from).is_some_and(|t| number(t).is_some());
+    if is(tokens.get(from), &["that"])
+        && is(
+            tokens.get(from + 1),
+            &["the", "a", "an", "it", "my", "all", "both"],
+        )
+    {
         return tokens;
     }
     let others = first_noun(&before[..whole]).is_some()
-        || before[whole + 1..]
-            .iter()
-            .any(|t| matches!(look_up(text(t)), Some(Sense::Noun(..))) && !is(Some(t), &["objects", "things"]));
+        || before[whole + 1..].iter().any(|t| {
+            matches!(look_up(text(t)), Some(Sense::Noun(..))) && !is(Some(t), &["objects", "things"])
+        });
     let goes = |t: &Token| {
         is(
             Some(t),
             &[
-                "go", "goes", "gone", "disappear", "disappears", "vanish", "vanishes", "leave", "leaves", "removed",
-                "deleted", "erased", "away", "out", "off", "cleared",
+                "go",
+                "goes",
+                "gone",
+                "disappear",
+                "disappears",
+                "vanish",
+                "vanishes",
+                "leave",
+                "leaves",
+                "removed",
+                "deleted",
+                "erased",
+                "away",
+                "out",
+                "off",
+                "cleared",
             ],
         )
     };
@@ -147,11 +194,15 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
         })
         .unwrap_or(tokens.len());
     let np = super::words::trimmed(&tokens[from..close]);
-    let gone = (close..tokens.len().min(close + 5)).rev().find(|k| goes(&tokens[*k]));
+    let gone = (close..tokens.len().min(close + 5))
+        .rev()
+        .find(|k| goes(&tokens[*k]));
     let removing = before[..whole].iter().any(super::super::rephrase::is_verb)
         && (before.iter().any(goes)
             || super::some_of::removes(before.first())
-            || before[..whole].iter().any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
+            || before[..whole]
+                .iter()
+                .any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
     // everybody but the child speaks of people alone
     let people = is(tokens.get(whole), &["everyone", "everybody"]) && only_people(np);
     if !many || others || people || first_noun(np).is_none() || !(gone.is_some() || removing) {
@@ -166,25 +217,71 @@ pub(super) fn all_stays_but(tokens: Vec<Token>) -> Vec<Token> {
     let whole = is(tokens.first(), &["everything", "everyone", "everybody", "all"]);
     let Some((i, n)) = find(
         &tokens,
-        &["except for", "except", "apart from", "save for", "but for", "but not", "but", "save", "with the exception of", "other than", "aside from"],
+        &[
+            "except for",
+            "except",
+            "apart from",
+            "save for",
+            "but for",
+            "but not",
+            "but",
+            "save",
+            "with the exception of",
+            "other than",
+            "aside from",
+        ],
     )
     .filter(|x| whole && x.0 > 1 && x.0 < 8) else {
         return tokens;
     };
     let stays = tokens[1..i].iter().any(|t| {
-        matches!(text(t), "stay" | "stays" | "remain" | "remains" | "kept" | "left" | "same")
+        matches!(
+            text(t),
+            "stay" | "stays" | "remain" | "remains" | "kept" | "left" | "same"
+        )
     });
     let plain = tokens[1..i].iter().all(|t| {
         HELPERS.contains(&text(t))
-            || is(Some(t), &["stay", "stays", "remain", "remains", "kept", "left", "the", "same", "as", "it", "else", "there", "of", "them", "untouched", "just"])
+            || is(
+                Some(t),
+                &[
+                    "stay",
+                    "stays",
+                    "remain",
+                    "remains",
+                    "kept",
+                    "left",
+                    "the",
+                    "same",
+                    "as",
+                    "it",
+                    "else",
+                    "there",
+                    "of",
+                    "them",
+                    "untouched",
+                    "just",
+                ],
+            )
     });
     let np = &tokens[i + n..];
-    let known = is(np.first(), &["the", "my", "that", "both", "those", "these", "all"]);
-    let verb = np.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
+    let known = is(
+        np.first(),
+        &["the", "my", "that", "both", "those", "these", "all"],
+    );
+    let verb = np
+        .iter()
+        .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
     let Some((_, b)) = first_noun(np).filter(|x| known && x.0 < 4) else {
         return tokens;
     };
-    if !stays || !plain || verb || np[b..].iter().any(|t| t.kind != super::super::tokens::TokenKind::Word) {
+    if !stays
+        || !plain
+        || verb
+        || np[b..]
+            .iter()
+            .any(|t| t.kind != super::super::tokens::TokenKind::Word)
+    {
         return tokens;
     }
     led("remove", &tokens[0], &[np])

@@ -8,8 +8,19 @@ use super::words::{first_noun, is, is_place, leads, led, longest, number};
 
 /// Words for strips that "one" may stand for.
 const STRIPS: &[&str] = &[
-    "lane", "sidewalk", "pavement", "roadside", "kerb", "curb", "shoulder", "footpath", "verge", "lanes", "sidewalks",
-    "pavements", "roadsides",
+    "lane",
+    "sidewalk",
+    "pavement",
+    "roadside",
+    "kerb",
+    "curb",
+    "shoulder",
+    "footpath",
+    "verge",
+    "lanes",
+    "sidewalks",
+    "pavements",
+    "roadsides",
 ];
 
 /// What is left of the sentence before.
@@ -30,12 +41,15 @@ pub struct Left {
 /// The number of a sentence that names nothing else: "I need four", "eight is right".
 fn only_number(body: &[Token]) -> Option<&Token> {
     let small = [
-        "i", "we", "need", "want", "would", "like", "should", "be", "there", "id", "make", "it", "is", "are", "right", "enough",
-        "better", "fine", "correct", "ideal", "perfect", "needed", "ok", "good", "do", "suffice", "suffices", "please", "at",
-        "least", "rather", "let", "us", "have", "will", "must", "nicer", "them", "of", "exactly", "only", "just", "in", "all",
-        "total", "say", "the", "number", "but", "however", "actually", "instead", "to", "prefer", "more", "like", "see",
+        "i", "we", "need", "want", "would", "like", "should", "be", "there", "id", "make", "it", "is", "are",
+        "right", "enough", "better", "fine", "correct", "ideal", "perfect", "needed", "ok", "good", "do",
+        "suffice", "suffices", "please", "at", "least", "rather", "let", "us", "have", "will", "must",
+        "nicer", "them", "of", "exactly", "only", "just", "in", "all", "total", "say", "the", "number",
+        "but", "however", "actually", "instead", "to", "prefer", "more", "like", "see",
     ];
-    let mut many = body.iter().filter(|t| number(t).is_some() && !is(Some(t), &["a", "an"]));
+    let mut many = body
+        .iter()
+        .filter(|t| number(t).is_some() && !is(Some(t), &["a", "an"]));
     let first = many.next()?;
     let plain = body
         .iter()
@@ -85,7 +99,10 @@ impl Left {
             && !out.iter().any(|t| is(Some(t), STRIPS))
             && let Some(i) = (3..out.len()).find(|i| {
                 is(out.get(*i), &["one"])
-                    && is(out.get(i - 1), &["left", "right", "other", "oncoming", "opposite"])
+                    && is(
+                        out.get(i - 1),
+                        &["left", "right", "other", "oncoming", "opposite"],
+                    )
                     && is(out.get(i - 2), &["the"])
                     && is(out.get(i - 3), &["on", "in", "to", "onto", "into"])
             })
@@ -93,9 +110,12 @@ impl Left {
             out[i].text.clone_from(strip);
         }
         let body = out.len() - usize::from(out.last().is_some_and(|t| t.kind == TokenKind::Stop));
-        let fresh = out[..body]
-            .iter()
-            .any(|t| is(Some(t), &["a", "an", "another", "some", "somebody", "someone", "two"]) || number(t).is_some());
+        let fresh = out[..body].iter().any(|t| {
+            is(
+                Some(t),
+                &["a", "an", "another", "some", "somebody", "someone", "two"],
+            ) || number(t).is_some()
+        });
         if let Some(place) = &self.place
             && fresh
             && body > 1
@@ -109,12 +129,29 @@ impl Left {
             && let Some(many) = only_number(&out[..body])
             && talk.fits(np) > 0
         {
-            return led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, &tokens[body..]]);
+            return led(
+                "keep exactly",
+                &tokens[0],
+                &[std::slice::from_ref(many), np, &tokens[body..]],
+            );
         }
         // "is the bus necessary? I'd prefer a truck": in its place
         if self.quiet
             && talk.last.is_some()
-            && let Some(n) = leads(&out, &["id prefer", "i would prefer", "i prefer", "id rather have", "i would rather have", "better", "rather", "id rather see", "we would prefer"])
+            && let Some(n) = leads(
+                &out,
+                &[
+                    "id prefer",
+                    "i would prefer",
+                    "i prefer",
+                    "id rather have",
+                    "i would rather have",
+                    "better",
+                    "rather",
+                    "id rather see",
+                    "we would prefer",
+                ],
+            )
             && is(out.get(n), &["a", "an"])
             && first_noun(&out[n..body]).is_some_and(|x| x.0 < 4 && n + x.1 == body)
         {

@@ -208,23 +208,50 @@ fn each_gets(tokens: Vec<Token>) -> Vec<Token> {
     let end = n + b;
     let Some(v) = leads(
         &tokens[end..],
-        &["gets", "should get", "receives", "should have", "must have", "needs", "has", "is given", "should be given", "must get", "shall have", "shall get", "ought to have"],
+        &[
+            "gets",
+            "should get",
+            "receives",
+            "should have",
+            "must have",
+            "needs",
+            "has",
+            "is given",
+            "should be given",
+            "must get",
+            "shall have",
+            "shall get",
+            "ought to have",
+        ],
     ) else {
         return tokens;
     };
     let new = &tokens[end + v..];
-    let Some((_, e)) = first_noun(new).filter(|x| x.0 < 4 && is(new.first(), &["a", "an", "one", "another", "its", "his"])) else {
+    let Some((_, e)) =
+        first_noun(new).filter(|x| x.0 < 4 && is(new.first(), &["a", "an", "one", "another", "its", "his"]))
+    else {
         return tokens;
     };
     let place = &new[e..];
-    let it = place.iter().position(|t| matches!(text(t), "it" | "him" | "her" | "them"));
+    let it = place
+        .iter()
+        .position(|t| matches!(text(t), "it" | "him" | "her" | "them"));
     let at = match it {
         Some(k) if is_place(place) && k < 5 => place[..k].to_vec(),
         None if trimmed(place).is_empty() => led("next to", &tokens[0], &[]),
         _ => return tokens,
     };
     let after = it.map_or(&[][..], |k| &place[k + 1..]);
-    led("put a", &tokens[0], &[&new[1..e], &at, &led("each of the", &tokens[0], &[&tokens[n..end]]), after])
+    led(
+        "put a",
+        &tokens[0],
+        &[
+            &new[1..e],
+            &at,
+            &led("each of the", &tokens[0], &[&tokens[n..end]]),
+            after,
+        ],
+    )
 }
 
 /// "1 worker to the ego lane": so many of those that are there go.

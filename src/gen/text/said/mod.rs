@@ -8,6 +8,7 @@ mod causing;
 mod exception;
 mod forms;
 mod frame;
+mod gapped;
 mod gaps;
 mod gifts;
 mod idioms;
@@ -19,15 +20,19 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod question;
 mod reasons;
 mod recast;
 mod remaining;
+mod shorthand;
 mod skies;
 mod some_of;
+mod spaces;
 mod spoken;
 mod steps;
 mod strips;
 mod subject;
+mod sums;
 mod swap;
 #[cfg(test)]
 mod tests;
@@ -35,9 +40,10 @@ mod topics;
 mod totals;
 mod turns;
 mod untouched;
+mod wanted;
 mod ways;
-mod wider;
 mod which;
+mod wider;
 mod worded;
 pub(super) mod words;
 
@@ -51,16 +57,17 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, SceneBox};
 pub use exception::except;
-pub use left::Left;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
     takes_place,
 };
 use frame::unwrapped;
+pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 use predicate::{in_place, parts};
+use question::question;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
@@ -239,83 +246,15 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
     }
     // ("whatever is behind us, make it a coach" is one)
-    let topic = is(body.first(), &["whatever", "whoever", "whichever", "what", "anything"]);
+    let topic = is(
+        body.first(),
+        &["whatever", "whoever", "whichever", "what", "anything"],
+    );
     if understood || out.len() > 1 && !topic {
         out
     } else {
         plain()
     }
-}
-
-/// "why is the cyclist in front of me?" changes nothing; who it speaks of is remembered.
-fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
-    let (inner, _) = unwrapped(body);
-    let first = inner.first()?;
-    let asks = matches!(
-        text(first),
-        "why"
-            | "where"
-            | "wheres"
-            | "who"
-            | "whos"
-            | "whose"
-            | "when"
-            | "is"
-            | "are"
-            | "does"
-            | "do"
-            | "did"
-            | "was"
-            | "were"
-            | "has"
-            | "have"
-            | "which"
-    ) || text(first) == "how" && !is(inner.get(1), &["about"])
-        || text(first) == "what" && !is(inner.get(1), &["if", "about"]);
-    let begun = matches!(
-        text(&body[0]),
-        "why" | "where" | "wheres" | "who" | "whos" | "does" | "is" | "are" | "did"
-    );
-    // "how would the street look at midday?": so it shall
-    let looks = (text(first) == "how" || text(first) == "what")
-        && body.iter().any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
-    if looks && let Some(at) = (1..body.len()).find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_)))) {
-        let from = (0..at)
-            .rev()
-            .find(|i| is(body.get(*i), &["at", "in", "by", "with", "during", "on", "under"]))
-            .map_or(at, |i| i + 1);
-        return Some(vec![Piece::Plain(led("make it", &body[0], &[&body[from..]]))]);
-    }
-    if !(asks || begun)
-        || is(body.get(1), &["not", "dont"])
-        || leads(
-            body,
-            &[
-                "is it possible",
-                "is there any way",
-                "is there a way",
-                "have the",
-                "have a",
-                "do you mind",
-                "do you think you could",
-            ],
-        )
-        .is_some()
-    {
-        return None;
-    }
-    let mut out = Vec::new();
-    if let Some((a, b)) = first_noun(body) {
-        let lead = (0..a)
-            .rev()
-            .take_while(|i| matches!(text(&body[*i]), "the" | "my" | "that" | "this"))
-            .last()
-            .or((talk.fits(&body[a..b]) > 0).then_some(a));
-        if let Some(lead) = lead {
-            out.push(remembered(&body[lead..b], talk));
-        }
-    }
-    Some(out)
 }
 
 /// A command that does nothing but say what "it" will mean.
@@ -345,7 +284,10 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(vec![remembered(inner, talk)]);
     }
     // "leave the car behind me as it is"
-    if let Some(np) = untouched::stays(inner).or_else(|| untouched::stays(trimmed(clause))).filter(|np| talk.fits(np) > 0) {
+    if let Some(np) = untouched::stays(inner)
+        .or_else(|| untouched::stays(trimmed(clause)))
+        .filter(|np| talk.fits(np) > 0)
+    {
         return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"

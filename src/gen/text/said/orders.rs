@@ -129,9 +129,11 @@ pub(super) fn some_replaced(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piec
         // "turn one car into a bus", of several
         let n = number(&inner[1])?.max(0) as usize;
         let (_, b) = first_noun(&inner[2..]).filter(|x| x.0 < 3)?;
-        let k = (2 + b..inner.len()).find(|k| is(inner.get(*k), &["with", "by", "for", "into", "to", "against"]))?;
+        let k = (2 + b..inner.len())
+            .find(|k| is(inner.get(*k), &["with", "by", "for", "into", "to", "against"]))?;
         let old = &inner[2..k];
-        let swaps = is(inner.first(), &["swap", "exchange", "substitute"]) && is(inner.get(k + 1), &["the", "all", "both"]);
+        let swaps = is(inner.first(), &["swap", "exchange", "substitute"])
+            && is(inner.get(k + 1), &["the", "all", "both"]);
         if swaps || n == 0 || talk.fits(old) <= n || !has_noun(&inner[k + 1..]) {
             return None;
         }
@@ -275,10 +277,9 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
                 "our",
                 "every",
             ],
-        ) || tokens
-            .first()
-            .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some() && !is(Some(t), &["somebody", "someone"]))
-            && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
+        ) || tokens.first().is_some_and(|t| {
+            words::noun_at(std::slice::from_ref(t)).is_some() && !is(Some(t), &["somebody", "someone"])
+        }) && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
             || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"])
             || one_of;
         if !known {

@@ -130,14 +130,15 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !named
                 && !therefore
                 && spoken
-                && (instead || opens(
-                    rest,
-                    &Talk {
-                        carried: text(t) == "and" && carries(&body[from..i]),
-                        last: None,
-                        ..*talk
-                    },
-                ))
+                && (instead
+                    || opens(
+                        rest,
+                        &Talk {
+                            carried: text(t) == "and" && carries(&body[from..i]),
+                            last: None,
+                            ..*talk
+                        },
+                    ))
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -247,7 +248,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     // "and no bus"
     if is(rest.first(), &["no"])
         && first_noun(rest).is_some_and(|n| {
-            n.0 < 3 && rest.get(n.1).is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
+            n.0 < 3
+                && rest
+                    .get(n.1)
+                    .is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
         })
     {
         return true;
@@ -318,7 +322,11 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         return true;
     }
     // "and double the barriers"
-    if is(inner.first(), &["double", "halve", "triple", "treble", "quadruple"]) && is(inner.get(1), &["the", "all", "my"]) {
+    if is(
+        inner.first(),
+        &["double", "halve", "triple", "treble", "quadruple"],
+    ) && is(inner.get(1), &["the", "all", "my"])
+    {
         return true;
     }
     // "one car fewer"

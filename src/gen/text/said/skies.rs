@@ -49,8 +49,21 @@ const SET: &str = "set the time of day to|set the time to|change the time of day
 /// "fog replaces the rain": fog.
 fn taken_over(tokens: Vec<Token>) -> Vec<Token> {
     const OVER: &[&str] = &[
-        "replaces", "replace", "takes over from", "takes the place of", "has replaced", "should replace", "is to replace",
-        "supersedes", "drives out", "drives away", "displaces", "must replace", "shall replace", "instead of", "follows",
+        "replaces",
+        "replace",
+        "takes over from",
+        "takes the place of",
+        "has replaced",
+        "should replace",
+        "is to replace",
+        "supersedes",
+        "drives out",
+        "drives away",
+        "displaces",
+        "must replace",
+        "shall replace",
+        "instead of",
+        "follows",
     ];
     let found = (0..tokens.len()).find_map(|i| {
         is_style(&tokens[i]).then_some(())?;

@@ -80,12 +80,23 @@ pub fn removes(t: Option<&Token>) -> bool {
 pub fn removes_it(clause: &[Token]) -> bool {
     let verb = leads(
         clause,
-        &["remove", "delete", "erase", "leave out", "take out", "take away", "get rid of", "do away with"],
+        &[
+            "remove",
+            "delete",
+            "erase",
+            "leave out",
+            "take out",
+            "take away",
+            "get rid of",
+            "do away with",
+        ],
     )
     .or_else(|| removes(clause.first()).then_some(1));
     verb.is_some_and(|n| {
         is(clause.get(n), &["it", "them", "him", "her"])
-            && clause[n + 1..].iter().all(|t| is(Some(t), &["out", "away", "too", "please", "off", "now"]))
+            && clause[n + 1..]
+                .iter()
+                .all(|t| is(Some(t), &["out", "away", "too", "please", "off", "now"]))
     })
 }
 
@@ -288,9 +299,15 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let rest = trimmed(&tokens[b..]);
     let suffices = number(rest.first()?).is_some()
         && (rest.len() == 1
-            || rest[1..]
-                .iter()
-                .all(|t| is(Some(t), &["will", "would", "should", "do", "suffice", "suffices", "be", "enough", "are", "is", "please", "fine"])));
+            || rest[1..].iter().all(|t| {
+                is(
+                    Some(t),
+                    &[
+                        "will", "would", "should", "do", "suffice", "suffices", "be", "enough", "are", "is",
+                        "please", "fine",
+                    ],
+                )
+            }));
     if suffices && counted && a < n + 5 {
         return Some(led("keep exactly", &tokens[0], &[&rest[..1], &tokens[a..b]]));
     }
@@ -301,10 +318,24 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
         rest.len() == k + 1 || leads(&rest[k + 1..], &["of them", "please", "instead", "of those"]).is_some();
     // "three, all of them ahead of us"
     let tail = trimmed(&rest[k + 1..]);
-    let all = leads(tail, &["all of them", "all", "each of them", "every one of them", "all three", "of them", "both", "both of them"])
-        .unwrap_or(0);
+    let all = leads(
+        tail,
+        &[
+            "all of them",
+            "all",
+            "each of them",
+            "every one of them",
+            "all three",
+            "of them",
+            "both",
+            "both of them",
+        ],
+    )
+    .unwrap_or(0);
     let place = trimmed(&tail[all..]);
-    let placed = super::words::is_place(place) && first_noun(place).is_none() && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let placed = super::words::is_place(place)
+        && first_noun(place).is_none()
+        && !place.iter().any(|t| t.kind == TokenKind::Comma);
     let place = if placed { place } else { &[] };
     (counted && (ends || placed) && a < n + 5).then(|| {
         led(

@@ -345,8 +345,22 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     // "one pedestrian crosses, the other one stays": one of those that are there
     let leaves = is(
         tokens.get(end),
-        &["leave", "leaves", "disappear", "disappears", "vanish", "vanishes", "depart", "departs", "goes", "left", "walks", "drives"],
-    ) && (!is(tokens.get(end), &["goes", "walks", "drives"]) || is(tokens.get(end + 1), &["away", "off", "home"]));
+        &[
+            "leave",
+            "leaves",
+            "disappear",
+            "disappears",
+            "vanish",
+            "vanishes",
+            "depart",
+            "departs",
+            "goes",
+            "left",
+            "walks",
+            "drives",
+        ],
+    ) && (!is(tokens.get(end), &["goes", "walks", "drives"])
+        || is(tokens.get(end + 1), &["away", "off", "home"]));
     let one_of = (talk.others || leaves)
         && !part
         && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
@@ -386,7 +400,12 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         Some(p) => p,
         // "I'd like to see the bus waiting at the crossing"
         None if caused
-            && is(tokens.get(from), &["waiting", "standing", "driving", "walking", "riding", "crossing", "facing"])
+            && is(
+                tokens.get(from),
+                &[
+                    "waiting", "standing", "driving", "walking", "riding", "crossing", "facing",
+                ],
+            )
             && definite
             && talk.fits(&tokens[..end]) == 1 =>
         {

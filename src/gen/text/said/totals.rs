@@ -7,26 +7,80 @@ use super::Talk;
 use super::frame::unwrapped;
 use super::lists::HELPERS;
 use super::some_of::WISHES;
+use super::wanted::{exceeds, from_to, nicer, not_but, not_enough, place_then_only, rather_than};
 use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
 
 const TIMES: &[&str] = &["twice", "double", "thrice", "triple", "half"];
-const IN_ALL: &[&str] = &["in all", "in total", "altogether", "all told", "overall", "all in all", "in sum", "all together"];
+const IN_ALL: &[&str] = &[
+    "in all",
+    "in total",
+    "altogether",
+    "all told",
+    "overall",
+    "all in all",
+    "in sum",
+    "all together",
+];
 const UNTIL: &[&str] = &[
-    "until there are", "until there is", "till there are", "till there is", "until we have", "till we have",
-    "until", "till", "leaving", "so that there are", "so that there is", "so that", "so there are", "so there is",
-    "such that there are", "so we have", "so that we have", "making it", "to make it", "to make", "for a total of",
-    "to a total of", "which makes", "which leaves", "making",
+    "until there are",
+    "until there is",
+    "till there are",
+    "till there is",
+    "until we have",
+    "till we have",
+    "until",
+    "till",
+    "leaving",
+    "so that there are",
+    "so that there is",
+    "so that",
+    "so there are",
+    "so there is",
+    "such that there are",
+    "so we have",
+    "so that we have",
+    "making it",
+    "to make it",
+    "to make",
+    "for a total of",
+    "to a total of",
+    "which makes",
+    "which leaves",
+    "making",
 ];
 const LEFT: &[&str] = &[
-    "remain", "remains", "are left", "is left", "left", "stay", "stays", "are left over", "is left over", "remaining",
-    "are there", "is there", "are still there", "is still there",
+    "remain",
+    "remains",
+    "are left",
+    "is left",
+    "left",
+    "stay",
+    "stays",
+    "are left over",
+    "is left over",
+    "remaining",
+    "are there",
+    "is there",
+    "are still there",
+    "is still there",
 ];
 const SAME_PLACE: &[&str] = &[
-    "all on the same sidewalk as before", "on the same sidewalk as before", "on the same sidewalk as now",
-    "all in the same place as before", "in the same place as before", "in the same lane as before",
-    "all in the same lane as before", "all on the same sidewalk", "all in the same lane", "where the others are",
-    "on the same side as before", "all on the same side as before", "on the same side as the others",
-    "in the same lane as the others", "on the same sidewalk as the others", "in the same place as the others",
+    "all on the same sidewalk as before",
+    "on the same sidewalk as before",
+    "on the same sidewalk as now",
+    "all in the same place as before",
+    "in the same place as before",
+    "in the same lane as before",
+    "all in the same lane as before",
+    "all on the same sidewalk",
+    "all in the same lane",
+    "where the others are",
+    "on the same side as before",
+    "all on the same side as before",
+    "on the same side as the others",
+    "in the same lane as the others",
+    "on the same sidewalk as the others",
+    "in the same place as the others",
 ];
 
 /// The sentence with such a number as a command.
@@ -40,7 +94,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
 
-fn links(t: &Token) -> bool {
+pub(super) fn links(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
 }
 
@@ -61,10 +115,13 @@ fn same_place(tokens: Vec<Token>) -> Vec<Token> {
 /// "I need twice as many cones as there are now": twice as many cones.
 fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
-        let times = is(tokens.get(i), TIMES).then_some(1).or_else(|| {
-            (number(&tokens[i]).is_some() && is(tokens.get(i + 1), &["times"])).then_some(2)
-        })?;
-        let n = leads(&tokens[i + times..], &["as many", "the number of", "the amount of", "as much"])?;
+        let times = is(tokens.get(i), TIMES)
+            .then_some(1)
+            .or_else(|| (number(&tokens[i]).is_some() && is(tokens.get(i + 1), &["times"])).then_some(2))?;
+        let n = leads(
+            &tokens[i + times..],
+            &["as many", "the number of", "the amount of", "as much"],
+        )?;
         let (_, b) = first_noun(&tokens[i + times + n..]).filter(|x| x.0 < 4)?;
         Some((i, i + times + n + b))
     });
@@ -79,7 +136,11 @@ fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
         || wish.iter().all(|t| {
             is(
                 Some(t),
-                &["i", "we", "need", "want", "would", "like", "to", "see", "have", "there", "should", "be", "must", "id", "please", "could", "id", "make", "it", "add", "put", "us", "me", "give", "now", "shall", "lets", "show", "exactly"],
+                &[
+                    "i", "we", "need", "want", "would", "like", "to", "see", "have", "there", "should", "be",
+                    "must", "id", "please", "could", "id", "make", "it", "add", "put", "us", "me", "give",
+                    "now", "shall", "lets", "show", "exactly",
+                ],
             )
         });
     if !wished {
@@ -89,14 +150,29 @@ fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
     if let Some((k, n)) = find(
         rest,
         &[
-            "as there are", "as we have", "as are there", "as now", "as before", "as you have", "as at present",
-            "as currently", "as today", "that there are", "as there were", "as i have", "as are", "as it has",
-            "as the scene has", "as they are",
+            "as there are",
+            "as we have",
+            "as are there",
+            "as now",
+            "as before",
+            "as you have",
+            "as at present",
+            "as currently",
+            "as today",
+            "that there are",
+            "as there were",
+            "as i have",
+            "as are",
+            "as it has",
+            "as the scene has",
+            "as they are",
         ],
     ) && k < 6
     {
         let place = &rest[..k];
-        let close = (k + n..rest.len()).find(|j| links(&rest[*j])).unwrap_or(rest.len());
+        let close = (k + n..rest.len())
+            .find(|j| links(&rest[*j]))
+            .unwrap_or(rest.len());
         let mut out = tokens[..from].to_vec();
         out.extend_from_slice(&tokens[i..end]);
         out.extend_from_slice(place);
@@ -120,11 +196,14 @@ fn same_kind(a: &[Token], b: &[Token]) -> bool {
 }
 
 /// A noun phrase without the article, quantity and "all".
-fn bare(np: &[Token]) -> &[Token] {
+pub(super) fn bare(np: &[Token]) -> &[Token] {
     let skip = |t: &Token| {
         is(
             Some(t),
-            &["the", "my", "these", "those", "all", "our", "of", "both", "some", "more", "a", "an", "few", "any", "enough", "other", "further", "up", "out", "down", "in", "away", "number", "another"],
+            &[
+                "the", "my", "these", "those", "all", "our", "of", "both", "some", "more", "a", "an", "few",
+                "any", "enough", "other", "further", "up", "out", "down", "in", "away", "number", "another",
+            ],
         ) || number(t).is_some()
     };
     &np[np.iter().position(|t| !skip(t)).unwrap_or(0)..]
@@ -136,7 +215,12 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let mut k = i + n;
-    while is(tokens.get(k), &["only", "just", "exactly", "there", "are", "is", "no", "more", "than", "them"]) {
+    while is(
+        tokens.get(k),
+        &[
+            "only", "just", "exactly", "there", "are", "is", "no", "more", "than", "them",
+        ],
+    ) {
         k += 1;
     }
     let Some(many) = tokens.get(k).filter(|t| number(t).is_some()).cloned() else {
@@ -145,7 +229,9 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if super::words::is_unit(tokens.get(k + 1)) {
         return tokens;
     }
-    let close = (k + 1..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
+    let close = (k + 1..tokens.len())
+        .find(|j| links(&tokens[*j]))
+        .unwrap_or(tokens.len());
     let after = &tokens[k + 1..close];
     let left = find(after, LEFT).or_else(|| find(after, IN_ALL));
     let sure = left.is_some()
@@ -154,7 +240,10 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         || n > 2 && text(&tokens[i]) == "so";
     let of = left.map_or(after, |x| &after[..x.0]);
     let own = first_noun(of).map(|x| &of[..x.1]);
-    let start = tokens[..i].iter().rposition(|t| text(t) == "and" || t.kind == TokenKind::Mark).map_or(0, |s| s + 1);
+    let start = tokens[..i]
+        .iter()
+        .rposition(|t| text(t) == "and" || t.kind == TokenKind::Mark)
+        .map_or(0, |s| s + 1);
     let before = trimmed(&tokens[start..i]);
     let Some((a, b)) = first_noun(before).filter(|x| x.0 < 8) else {
         return tokens;
@@ -166,7 +255,10 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let from = before[..a]
         .iter()
-        .rposition(|t| super::super::rephrase::is_verb(t) && look_up(text(t)).is_none_or(|s| !matches!(s, Sense::State(..))))
+        .rposition(|t| {
+            super::super::rephrase::is_verb(t)
+                && look_up(text(t)).is_none_or(|s| !matches!(s, Sense::State(..)))
+        })
         .map_or(0, |v| v + 1);
     let np = bare(&before[from..]);
     let np = match talk.fits(np) {
@@ -174,7 +266,11 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         _ => np,
     };
     let mut out = tokens[..start].to_vec();
-    out.extend(led("keep exactly", &tokens[start], &[&[many], np, &tokens[close..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[start],
+        &[&[many], np, &tokens[close..]],
+    ));
     out
 }
 
@@ -198,18 +294,35 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let tail = &tokens[i + n..];
     // whose number it is: named here, or in what is said before
     let np = match (own, lead_noun) {
-        (Some(_), _) => clause[k + 1..].iter().filter(|t| !plain_verb(t)).cloned().collect(),
+        (Some(_), _) => clause[k + 1..]
+            .iter()
+            .filter(|t| !plain_verb(t))
+            .cloned()
+            .collect(),
         (None, Some(_)) => return tokens,
         (None, None) => {
             let before = &tokens[..from];
             let Some((a, b)) = first_noun(before) else {
                 // "More cars! Six altogether."
                 return match &talk.last {
-                    Some(last) if from == 0 => led("keep exactly", &tokens[0], &[many, &led(last, &tokens[0], &[]), tail]),
+                    Some(last) if from == 0 => led(
+                        "keep exactly",
+                        &tokens[0],
+                        &[many, &led(last, &tokens[0], &[]), tail],
+                    ),
                     _ => tokens,
                 };
             };
-            let lead = (0..a).rev().take_while(|j| matches!(look_up(text(&before[*j])), Some(Sense::State(_, false) | Sense::Size(_))) || is(before.get(*j), &["oncoming", "parked"])).last().unwrap_or(a);
+            let lead = (0..a)
+                .rev()
+                .take_while(|j| {
+                    matches!(
+                        look_up(text(&before[*j])),
+                        Some(Sense::State(_, false) | Sense::Size(_))
+                    ) || is(before.get(*j), &["oncoming", "parked"])
+                })
+                .last()
+                .unwrap_or(a);
             let place = &before[b..];
             let close = place.iter().position(links).unwrap_or(place.len());
             let told = is_place(place) && talk.fits(&before[lead..b + close]) > 0;
@@ -241,222 +354,30 @@ fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let plural = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
-    let adds = tokens[from..a].iter().any(|t| super::super::rephrase::is_verb(t) && !is(Some(t), &["i", "we"]) || is(Some(t), &["the", "more"]) || number(t).is_some());
+    let adds = tokens[from..a].iter().any(|t| {
+        super::super::rephrase::is_verb(t) && !is(Some(t), &["i", "we"])
+            || is(Some(t), &["the", "more"])
+            || number(t).is_some()
+    });
     if !plural || adds {
         return tokens;
     }
     let place = &tokens[b..i - 1];
-    let place = if is_place(place) && !is(place.first(), &["in"]) { place } else { &[] };
+    let place = if is_place(place) && !is(place.first(), &["in"]) {
+        place
+    } else {
+        &[]
+    };
     let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[from],
+        &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]],
+    ));
     out
 }
 
 /// Small words that only say that it shall be so.
-fn plain_verb(t: &Token) -> bool {
+pub(super) fn plain_verb(t: &Token) -> bool {
     HELPERS.contains(&text(t)) || is(Some(t), &["to", "now", "rather", "better", "nicer", "preferable"])
-}
-
-/// "not two but four people should be walking across": four.
-fn not_but(tokens: Vec<Token>) -> Vec<Token> {
-    let found = (0..tokens.len()).find_map(|i| {
-        is(tokens.get(i), &["not"]).then_some(())?;
-        let only = usize::from(is(tokens.get(i + 1), &["only", "just"]));
-        tokens.get(i + 1 + only).filter(|t| number(t).is_some())?;
-        let but = (i + 2 + only..tokens.len().min(i + 7 + only)).find(|k| is(tokens.get(*k), &["but"]))?;
-        let many = but + 1 + usize::from(is(tokens.get(but + 1), &["rather"]));
-        tokens.get(many).filter(|t| number(t).is_some())?;
-        Some((i, but, many))
-    });
-    let Some((i, but, many)) = found else {
-        return tokens;
-    };
-    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let close = (many..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
-    let own = first_noun(&tokens[many..close]).filter(|x| x.0 < 4);
-    let old = first_noun(&tokens[i..but]);
-    let mut np: Vec<Token> = match (own, old) {
-        (Some(_), _) => tokens[many + 1..close].to_vec(),
-        (None, Some((a, b))) => [&tokens[i + a..i + b], &tokens[many + 1..close]].concat(),
-        _ => return tokens,
-    };
-    np.retain(|t| !plain_verb(t));
-    let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[close..]]));
-    out
-}
-
-/// "behind us there should be one car only": one there.
-fn place_then_only(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["there should be", "there must be", "there shall be", "should be", "there ought to be", "i want", "i need", "there are to be", "there may be"]).filter(|x| x.0 > 0) else {
-        return tokens;
-    };
-    let place = &tokens[..i];
-    let k = i + n + usize::from(is(tokens.get(i + n), &["only", "just", "exactly"]));
-    let many = tokens.get(k).filter(|t| number(t).is_some());
-    let Some((_, b)) = tokens.get(k..).and_then(first_noun).filter(|x| x.0 < 4) else {
-        return tokens;
-    };
-    let only = k > i + n || is(tokens.get(k + b), &["only"]);
-    let end = k + b + usize::from(is(tokens.get(k + b), &["only"]));
-    let placed = is_place(place) && first_noun(place).is_none() && !place.iter().any(links);
-    let np = tokens.get(k + 1..k + b).unwrap_or(&[]);
-    match many {
-        Some(many) if only && placed && tokens.get(end).is_none_or(links) && talk.fits(&[np, place].concat()) > 0 => {
-            led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, place, &tokens[end..]])
-        }
-        _ => tokens,
-    }
-}
-
-/// "the number of cars must not exceed three": three, if there are more.
-fn exceeds(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["must not exceed", "should not exceed", "may not exceed", "shall not exceed", "mustnt exceed", "shouldnt exceed", "must not be more than", "should not be more than", "is limited to", "should be limited to", "must be limited to"]).filter(|x| x.0 > 0) else {
-        return tokens;
-    };
-    let np = bare(&tokens[..i]);
-    let many = tokens.get(i + n).filter(|t| number(t).is_some());
-    match many {
-        Some(many) if first_noun(np).is_some_and(|x| x.0 < 4) && talk.fits(np) > number(many).unwrap_or(0).max(0) as usize => {
-            led("keep exactly", &tokens[0], &[std::slice::from_ref(many), np, &tokens[i + n + 1..]])
-        }
-        _ => tokens,
-    }
-}
-
-/// "five children would be nicer": five.
-fn nicer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let counted = tokens.first().is_some_and(|t| number(t).is_some_and(|n| n > 1) || text(t) == "one");
-    // "three pedestrians fewer would be good"
-    if counted
-        && tokens.iter().any(|t| matches!(text(t), "fewer" | "less" | "more"))
-        && let Some((i, n)) = find(&tokens, &["would be good", "would be nice", "would be better", "would be fine", "would be great", "would be welcome", "would be nicer", "would do"])
-        && i + n == tokens.len()
-    {
-        return tokens[..i].to_vec();
-    }
-    let Some((_, b)) = first_noun(&tokens).filter(|x| counted && x.0 < 4) else {
-        return tokens;
-    };
-    let Some((i, n)) = find(
-        &tokens[b..],
-        &["would be nicer", "would be better", "would be preferable", "would be nice", "would be fine", "would be ideal", "would be right", "would be perfect", "would be more realistic", "would look better", "would be good"],
-    ) else {
-        return tokens;
-    };
-    let place = &tokens[b..b + i];
-    let ends = tokens.get(b + i + n).is_none_or(links);
-    if !ends || !(place.is_empty() || is_place(place)) || talk.fits(&tokens[1..b]) == 0 {
-        return tokens;
-    }
-    led("keep exactly", &tokens[0], &[&tokens[..b + i], &tokens[b + i + n..]])
-}
-
-/// "three cones is not enough, we need at least six": six.
-fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(
-        &tokens,
-        &[
-            "is not enough", "are not enough", "isnt enough", "arent enough", "is too few", "are too few", "is insufficient",
-            "are insufficient", "will not do", "wont do", "are too many", "is too many", "is too much", "are too much",
-            "does not suffice", "do not suffice", "is a lot", "are a lot",
-        ],
-    ) else {
-        return tokens;
-    };
-    let np = &tokens[..i];
-    let known = is(np.first(), &["the", "these", "those", "only", "just", "my"]) || np.first().is_some_and(|t| number(t).is_some());
-    let rest = trimmed(&tokens[i + n..]);
-    // ("there should be eight" may follow in a sentence of its own)
-    if rest.is_empty() && !np.iter().any(links) && known && first_noun(np).is_some_and(|x| x.0 < 4) && talk.fits(bare(np)) > 0 {
-        return super::gifts::remark(bare(np));
-    }
-    let Some(k) = rest.iter().take(6).position(|t| number(t).is_some() && !is(Some(t), &["a", "an"])) else {
-        return tokens;
-    };
-    let lead = rest[..k].iter().all(|t| {
-        is(Some(t), &["we", "i", "need", "want", "at", "least", "make", "it", "there", "should", "be", "let", "id", "like", "would", "use", "have", "rather", "give", "me", "please", "exactly", "a", "total", "of", "must", "say", "only", "just", "keep", "leave"])
-    });
-    let own = first_noun(&rest[k..]);
-    let ends = rest.get(k + 1).is_none_or(|t| links(t) || is(Some(t), &["would", "will", "are", "is", "instead", "please", "of", "should"]));
-    if !known || !lead || first_noun(np).is_none_or(|x| x.0 > 4) || own.is_some() || !ends {
-        return tokens;
-    }
-    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np)])
-}
-
-/// "the parked cars go from two to four", "the cones drop to three".
-fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let known = is(tokens.first(), &["the", "our", "my", "these", "those"]);
-    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 7) else {
-        return tokens;
-    };
-    let grows = (b..tokens.len().min(b + 9)).find(|k| {
-        is(
-            tokens.get(*k),
-            &[
-                "go", "goes", "rise", "rises", "increase", "increases", "grow", "grows", "drop", "drops", "fall", "falls", "shrink",
-                "shrinks", "climb", "climbs", "sink", "sinks", "decrease", "decreases", "reduced", "increased", "raised", "lowered",
-                "cut", "number", "amount", "come", "limited", "rising", "went", "gone",
-            ],
-        )
-    });
-    let Some(v) = grows else {
-        return tokens;
-    };
-    let mut k = v + 1;
-    k += usize::from(is(tokens.get(k), &["up", "down", "back"]));
-    let mut ranged = false;
-    if is(tokens.get(k), &["from"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) {
-        k += 2;
-        ranged = true;
-    }
-    let to = is(tokens.get(k), &["to"]);
-    let num = k + usize::from(to);
-    let num = num + usize::from(is(tokens.get(num), &["just", "only", "exactly"]));
-    let counts = is(tokens.get(v), &["number", "amount"]) && !to;
-    let many = tokens.get(num).filter(|t| number(t).is_some() && (to || counts));
-    let ends = tokens.get(num + 1).is_none_or(links);
-    let strays = is(tokens.get(v), &["go", "goes", "come", "went", "gone", "drop", "drops", "fall", "falls", "cut"]) && !ranged && first_noun(&tokens[..b]).is_some_and(|_| !tokens[..v].iter().any(|t| text(t) == "number"));
-    let Some(many) = many.filter(|_| ends && !strays) else {
-        return tokens;
-    };
-    let mut np = tokens[..v].to_vec();
-    while np.last().is_some_and(plain_verb) {
-        np.pop();
-    }
-    let np = bare(&np).to_vec();
-    if talk.fits(&np) == 0 {
-        return tokens;
-    }
-    led("keep exactly", &tokens[0], &[std::slice::from_ref(many), &np, &tokens[num + 1..]])
-}
-
-/// "five parked cars would be better than three", "I'd rather have four on the right than two".
-fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
-    let prefers = tokens.iter().any(|t| {
-        matches!(text(t), "better" | "rather" | "prefer" | "nicer" | "preferable" | "sooner" | "preferred")
-    });
-    let found = (2..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["rather than", "than", "to", "over", "instead of"])?;
-        let n = n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
-        let few = tokens.get(i + n).filter(|t| number(t).is_some())?;
-        let of = leads(&tokens[i + n + 1..], &["of them", "of those", "as now", "as before"]).unwrap_or(0);
-        let end = i + n + 1 + of;
-        (text(few) != "a" && tokens.get(end).is_none_or(links)).then_some((i, end))
-    });
-    let Some((i, end)) = found.filter(|_| prefers) else {
-        return tokens;
-    };
-    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let Some(many) = (from..i).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1))) else {
-        return tokens;
-    };
-    if first_noun(&tokens[from..many]).is_some() || first_noun(&tokens[many..i]).is_none_or(|x| x.0 > 4) {
-        return tokens;
-    }
-    let np: Vec<Token> = tokens[many + 1..i].iter().filter(|t| !plain_verb(t)).cloned().collect();
-    let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[end..]]));
-    out
 }
