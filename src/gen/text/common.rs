@@ -49,7 +49,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
     let out = this_one(&out);
-    some_so_many(&part_for_whole(&out))
+    super::carried::plain(some_so_many(&part_for_whole(&out)))
 }
 
 /// "1st", "2nd": in words.

@@ -179,46 +179,6 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
 }
 
 impl Editor<'_> {
-    /// What commands of one sentence mean together: "turn the cones into barriers and the barriers into cones", "keep the
-    /// coach and the bus, lose the rest".
-    fn settle(&self, commands: &mut [Command]) {
-        let found = |c: &Command| -> Option<Vec<BoxId>> {
-            let mut all = Vec::new();
-            for m in &c.targets {
-                match choose(&self.map, &self.boxes, m, &c.mentions) {
-                    Chosen::These(ids) => all.extend(ids),
-                    _ => return None,
-                }
-            }
-            (!all.is_empty()).then_some(all)
-        };
-        for i in 1..commands.len() {
-            let (a, b) = (&commands[i - 1], &commands[i]);
-            let class = |m: Option<&Mention>| m.map(|m| m.spec.class);
-            let crosswise = a.verb == Verb::Replace
-                && b.verb == Verb::Replace
-                && class(a.by.as_ref()).is_some()
-                && class(a.by.as_ref()) == class(b.targets.first())
-                && class(b.by.as_ref()) == class(a.targets.first());
-            if crosswise {
-                commands[i].found = found(&commands[i]);
-                continue;
-            }
-            let rest = matches!(a.verb, Verb::Keep | Verb::Note)
-                && !a.targets.is_empty()
-                && b.verb == Verb::Remove
-                && b.back == Some(Back::Others);
-            if let Some(kept) = rest.then(|| found(a)).flatten() {
-                let alike = |x: &SceneBox| kept.iter().any(|id| self.boxes[id].class == x.class);
-                let others = self.boxes.values().any(|x| alike(x) && !kept.contains(&x.id));
-                if !others {
-                    let rest = self.boxes.keys().filter(|id| !kept.contains(id));
-                    commands[i].found = Some(rest.copied().collect());
-                }
-            }
-        }
-    }
-
     /// Carries out one command and reports it.
     fn read_command(&mut self, text: &str, i: usize, command: &Command) {
         let before = self.out.edits.len();
@@ -321,73 +281,7 @@ impl Editor<'_> {
                 }
             }
             Verb::Add => {
-                // what is there and was only named is not added
-                let named = |m: &Mention| {
-                    m.definite && m.pick != Some(Pick::More) && !m.is_anchor
-                        || m.uncounted && super::mention::means_all(m)
-                };
-                let theirs = ["their ", "his ", "her ", "its "]
-                    .iter()
-                    .any(|w| c.text.to_lowercase().starts_with(w));
-                let text = c.text.to_lowercase();
-                let orders = [
-                    "add",
-                    "insert",
-                    "include",
-                    "create",
-                    "generate",
-                    "spawn",
-                    "append",
-                    "duplicate",
-                    "introduce",
-                    "bring",
-                    "put",
-                    "place",
-                    "set",
-                    "park",
-                    "give",
-                    "draw",
-                    "show",
-                    "another",
-                    "more",
-                    "second",
-                    "extra",
-                ];
-                let ordered = text
-                    .split(|ch: char| !ch.is_alphanumeric())
-                    .any(|w| orders.contains(&w));
-                let there = |m: &Mention| {
-                    m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
-                };
-                let again = !ordered && !c.in_place && c.targets.iter().all(there);
-                // "half of the cones have been collected" speaks of those that are there
-                let part = [
-                    " of the ",
-                    " of these ",
-                    " of those ",
-                    " of our ",
-                    " of my ",
-                    " of them ",
-                ]
-                .iter()
-                .any(|of| {
-                    text.split_once(of)
-                        .is_some_and(|(before, _)| before.split(' ').count() < 3)
-                });
-                // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
-                let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
-                let remark = c.implied
-                    && !ordered
-                    && !c.in_place
-                    && !c.reading.not_understood.is_empty()
-                    && c.targets
-                        .iter()
-                        .all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
-                let again = again || remark;
-                if (c.implied || again)
-                    && !c.targets.is_empty()
-                    && (theirs || again || part || c.targets.iter().all(named))
-                {
+                if self.only_named(c) {
                     self.note(format!(
                         "{:?}: what should become of it was not understood",
                         c.text

@@ -107,6 +107,10 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/exam_5.jsonl"),
     ),
     (
+        "strangers_14.jsonl",
+        include_str!("../../../../tests/data/strangers_14.jsonl"),
+    ),
+    (
         "causes.jsonl",
         include_str!("../../../../tests/data/causes.jsonl"),
     ),

@@ -92,7 +92,15 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
             let relative = (1..3).any(|n| is(tokens.get(k.wrapping_sub(n)), &["that", "which", "who"]));
             t.kind != super::super::tokens::TokenKind::Word
                 || !relative && (HELPERS.contains(&text(t)) || is_finite(text(t), true))
-                || matches!(text(t), "and" | "with" | "by" | "into" | "to" | "onto")
+                || matches!(text(t), "with" | "by" | "into" | "to" | "onto")
+                // "and the coach" is spared, too
+                || text(t) == "and" && !(is(tokens.get(k + 1), &["the", "my", "that", "those"])
+                    && first_noun(&tokens[k + 1..]).is_some_and(|x| {
+                        x.0 < 4
+                            && tokens.get(k + 1 + x.1).is_none_or(|t| {
+                                t.kind != super::super::tokens::TokenKind::Word || HELPERS.contains(&text(t))
+                            })
+                    }))
         })
         .unwrap_or(tokens.len());
     let rest = [&tokens[..i], &tokens[end..]].concat();
@@ -202,6 +210,81 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
     }
     let end = gone.map_or(close, |g| g + 1);
     led("keep only", &tokens[0], &[np, &tokens[end..]])
+}
+
+/// "everything stays except the woman": she goes.
+pub(super) fn all_stays_but(tokens: Vec<Token>) -> Vec<Token> {
+    let whole = is(tokens.first(), &["everything", "everyone", "everybody", "all"]);
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "except for",
+            "except",
+            "apart from",
+            "save for",
+            "but for",
+            "but not",
+            "but",
+            "save",
+            "with the exception of",
+            "other than",
+            "aside from",
+        ],
+    )
+    .filter(|x| whole && x.0 > 1 && x.0 < 8) else {
+        return tokens;
+    };
+    let stays = tokens[1..i].iter().any(|t| {
+        matches!(
+            text(t),
+            "stay" | "stays" | "remain" | "remains" | "kept" | "left" | "same"
+        )
+    });
+    let plain = tokens[1..i].iter().all(|t| {
+        HELPERS.contains(&text(t))
+            || is(
+                Some(t),
+                &[
+                    "stay",
+                    "stays",
+                    "remain",
+                    "remains",
+                    "kept",
+                    "left",
+                    "the",
+                    "same",
+                    "as",
+                    "it",
+                    "else",
+                    "there",
+                    "of",
+                    "them",
+                    "untouched",
+                    "just",
+                ],
+            )
+    });
+    let np = &tokens[i + n..];
+    let known = is(
+        np.first(),
+        &["the", "my", "that", "both", "those", "these", "all"],
+    );
+    let verb = np
+        .iter()
+        .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
+    let Some((_, b)) = first_noun(np).filter(|x| known && x.0 < 4) else {
+        return tokens;
+    };
+    if !stays
+        || !plain
+        || verb
+        || np[b..]
+            .iter()
+            .any(|t| t.kind != super::super::tokens::TokenKind::Word)
+    {
+        return tokens;
+    }
+    led("remove", &tokens[0], &[np])
 }
 
 /// True if all that is named walks.

@@ -6,9 +6,8 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::replaced;
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{
-    find, first_noun, has_noun, is, is_place, is_unit, leads, led, longest, number, text, trimmed,
-};
+use super::spaces::{distance_to, emptied};
+use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
 
 const MAKE_DO: &str = "can do with just|could do with just|get by with|get along with|make do with|manage with|settle for|be content with|make do with just";
 const IN_TRUTH: &str = "in reality|in truth|as a matter of fact|in actual fact|strictly speaking";
@@ -21,7 +20,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&out, IN_TRUTH, "");
     let out = replaced(&out, NONE, "remove them");
     let out = replaced(&out, MOVING, "all moving objects");
-    let out = seen(out, talk);
+    let out = seen(so_many(out, talk), talk);
     let out = given(out, talk);
     let out = without(out, talk);
     let out = distance_to(out, talk);
@@ -43,7 +42,7 @@ pub(super) fn remark(np: &[Token]) -> Vec<Token> {
     led(the, &np[0], &[np, &led("alone", &np[0], &[])])
 }
 
-fn begins_at(tokens: &[Token], i: usize) -> bool {
+pub(super) fn begins_at(tokens: &[Token], i: usize) -> bool {
     i == 0
         || !matches!(tokens[i - 1].kind, TokenKind::Word | TokenKind::Number(_))
         || is(
@@ -54,6 +53,36 @@ fn begins_at(tokens: &[Token], i: usize) -> bool {
 
 fn is_fresh(t: Option<&Token>) -> bool {
     is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some())
+}
+
+/// "we don't need so many people": which are too many.
+fn so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "we dont need so many",
+            "i dont need so many",
+            "we do not need so many",
+            "i do not need so many",
+            "we dont need that many",
+            "i dont need that many",
+            "i dont want so many",
+            "we dont want so many",
+            "i dont want that many",
+            "not so many",
+            "we dont need this many",
+            "there are so many",
+            "why are there so many",
+            "why so many",
+        ],
+    ) else {
+        return tokens;
+    };
+    let np = &tokens[n..];
+    match first_noun(np).filter(|x| x.0 < 3 && (x.1 == np.len() || is_place(&np[x.1..]))) {
+        Some(_) if talk.fits(np) > 0 && !np.iter().any(|t| t.kind != TokenKind::Word) => remark(np),
+        _ => tokens,
+    }
 }
 
 /// "I see four pedestrians, ...", where there are four: a remark.
@@ -115,6 +144,7 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             match k.filter(|_| ends && !has_noun(rest)) {
                 Some(k) => led("keep exactly", &tokens[0], &[&rest[k..=k], np]),
                 None if has_noun(rest) => rest.to_vec(),
+                None if rest.iter().all(|t| number(t).is_none()) => remark(np),
                 None => tokens,
             }
         }
@@ -270,175 +300,6 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let and = led("and", &tokens[i], &[&remove]);
     [before, &and, &tokens[close..]].concat()
-}
-
-/// "increase the distance to the car behind to 20 m", "reduce the gap to the bus by 5 m".
-fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(
-        &tokens,
-        &[
-            "the distance to",
-            "the gap to",
-            "the distance from us to",
-            "the gap between us and",
-            "the distance between us and",
-            "the spacing to",
-            "the distance from me to",
-            "the gap between me and",
-            "the distance between me and",
-            "our distance to",
-            "our distance from",
-            "the distance from",
-            "the headway to",
-            "my distance to",
-            "my distance from",
-            "the distance of",
-        ],
-    )
-    .filter(|x| x.0 > 0) else {
-        return tokens;
-    };
-    let from = i + n;
-    let Some((_, b)) = first_noun(&tokens[from..]).filter(|x| x.0 < 4) else {
-        return tokens;
-    };
-    let step = (from + b..tokens.len()).find(|k| {
-        is(tokens.get(*k), &["to", "by", "at", "is", "of", "down", "up"])
-            && tokens.get(k + 1).is_some_and(|t| number(t).is_some())
-            && is_unit(tokens.get(k + 2))
-            || is(tokens.get(*k), &["should", "must"])
-    });
-    let Some(step) = step else {
-        return tokens;
-    };
-    let Some(metres) =
-        (step..tokens.len()).find(|k| number(&tokens[*k]).is_some() && is_unit(tokens.get(k + 1)))
-    else {
-        return tokens;
-    };
-    let mut np = tokens[from..step].to_vec();
-    if is(np.last(), &["behind", "ahead"]) {
-        np.extend(led(
-            if text(&np[np.len() - 1]) == "ahead" {
-                "of us"
-            } else {
-                "us"
-            },
-            &tokens[i],
-            &[],
-        ));
-    }
-    if talk.fits(&np) == 0 {
-        return tokens;
-    }
-    let lead = &tokens[..i];
-    let wider = lead.iter().any(|t| {
-        matches!(
-            text(t),
-            "increase" | "raise" | "widen" | "lengthen" | "extend" | "enlarge" | "grow"
-        )
-    });
-    let start = (0..i).rev().find(|k| begins_at(&tokens, *k)).unwrap_or(0);
-    let far = &tokens[metres..metres + 2];
-    let out = if is(tokens.get(step), &["by"]) {
-        let way = led(if wider { "further away" } else { "closer" }, &tokens[i], &[]);
-        led("move", &tokens[i], &[&np, far, &way])
-    } else {
-        [&np[..], &led("should keep a distance of", &tokens[i], &[far])].concat()
-    };
-    [&tokens[..start], &out, &tokens[metres + 2..]].concat()
-}
-
-/// "the crossing is empty now", "our lane must be free of cones": who is there goes.
-fn emptied(tokens: Vec<Token>) -> Vec<Token> {
-    let body = trimmed(&tokens);
-    let the = usize::from(is(body.first(), &["the", "our", "my"]));
-    let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest) else {
-        return tokens;
-    };
-    let place = &body[..the + n];
-    let mut k = the + n;
-    while is(
-        body.get(k),
-        &[
-            "is",
-            "are",
-            "should",
-            "must",
-            "has",
-            "have",
-            "needs",
-            "need",
-            "ought",
-            "shall",
-            "to",
-            "be",
-            "now",
-            "also",
-            "completely",
-            "totally",
-            "entirely",
-            "all",
-            "absolutely",
-            "again",
-            "will",
-            "stay",
-            "remain",
-            "kept",
-        ],
-    ) {
-        k += 1;
-    }
-    if k == the + n
-        || !is(
-            body.get(k),
-            &[
-                "empty",
-                "deserted",
-                "vacant",
-                "unoccupied",
-                "clear",
-                "free",
-                "cleared",
-                "emptied",
-            ],
-        )
-    {
-        return tokens;
-    }
-    let mut rest = &body[k + 1..];
-    let of = leads(rest, &["of all", "of any", "of", "from"]);
-    rest = &rest[of.unwrap_or(0)..];
-    let late = find(rest, &["now", "again", "any more", "please", "at last"]);
-    let what = trimmed(&rest[..late.map_or(rest.len(), |x| x.0)]);
-    // (what is to be done for it is said)
-    if late.is_some_and(|(k, n)| !trimmed(&rest[k + n..]).is_empty())
-        || what.iter().any(|t| t.kind == TokenKind::Comma)
-    {
-        return tokens;
-    }
-    // ("my lane is free" is a remark)
-    let wish = body[the + n..k].iter().any(|t| {
-        matches!(
-            text(t),
-            "should" | "must" | "to" | "be" | "shall" | "needs" | "now"
-        )
-    }) || is(body.get(k), &["empty", "deserted", "vacant"]);
-    let whole = of.is_some() == has_noun(what) && (of.is_some() || what.is_empty());
-    if !wish || !whole {
-        return tokens;
-    }
-    let lane = place.iter().any(|t| {
-        matches!(
-            text(t),
-            "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"
-        )
-    });
-    let at = led(if lane { "in" } else { "on" }, &body[0], &[place]);
-    match of {
-        Some(_) => led("remove all the", &body[0], &[what, &at]),
-        None => led("remove all the objects", &body[0], &[&at]),
-    }
 }
 
 /// "reduce the cones by half": halve them.

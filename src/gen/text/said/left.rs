@@ -4,7 +4,7 @@
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::words::{first_noun, is, is_place, led, longest, number};
+use super::words::{first_noun, is, is_place, leads, led, longest, number};
 
 /// Words for strips that "one" may stand for.
 const STRIPS: &[&str] = &[
@@ -30,6 +30,8 @@ pub struct Left {
     strip: Option<String>,
     /// A place with its preposition, if nothing was done there.
     place: Option<Vec<Token>>,
+    /// It changed nothing.
+    quiet: bool,
     /// It was a question.
     asked: bool,
     /// What it spoke of with a number, if it changed nothing: "there are two cyclists behind us".
@@ -83,6 +85,7 @@ impl Left {
         });
         Self {
             counted: counted.filter(|_| quiet),
+            quiet,
             strip,
             place: place.filter(|_| quiet),
             asked,
@@ -131,6 +134,28 @@ impl Left {
                 &tokens[0],
                 &[std::slice::from_ref(many), np, &tokens[body..]],
             );
+        }
+        // "is the bus necessary? I'd prefer a truck": in its place
+        if self.quiet
+            && talk.last.is_some()
+            && let Some(n) = leads(
+                &out,
+                &[
+                    "id prefer",
+                    "i would prefer",
+                    "i prefer",
+                    "id rather have",
+                    "i would rather have",
+                    "better",
+                    "rather",
+                    "id rather see",
+                    "we would prefer",
+                ],
+            )
+            && is(out.get(n), &["a", "an"])
+            && first_noun(&out[n..body]).is_some_and(|x| x.0 < 4 && n + x.1 == body)
+        {
+            return led("replace it with", &tokens[0], &[&out[n..]]);
         }
         // the answer to a question says nothing new
         if self.asked

@@ -12,6 +12,7 @@ mod exception;
 mod exchanges;
 mod forms;
 mod frame;
+mod gapped;
 mod gaps;
 mod gifts;
 mod idioms;
@@ -24,16 +25,20 @@ mod parting;
 mod passive;
 mod predicate;
 mod presence;
+mod question;
 mod reasons;
 mod recast;
 mod remaining;
 mod remarks;
+mod shorthand;
 mod skies;
 mod some_of;
+mod spaces;
 mod spoken;
 mod steps;
 mod strips;
 mod subject;
+mod sums;
 mod swap;
 #[cfg(test)]
 mod tests;
@@ -41,6 +46,7 @@ mod topics;
 mod totals;
 mod turns;
 mod untouched;
+mod wanted;
 mod ways;
 mod which;
 mod wider;
@@ -67,6 +73,7 @@ use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 use predicate::{in_place, parts};
+use question::question;
 pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
@@ -143,6 +150,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return stop.to_vec();
     }
     let out = exception::the_one_spared(out);
+    let out = exception::all_stays_but(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
     let mut out = totals::plain(out, talk);
@@ -268,82 +276,6 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     } else {
         plain()
     }
-}
-
-/// "why is the cyclist in front of me?" changes nothing; who it speaks of is remembered.
-fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
-    let (inner, _) = unwrapped(body);
-    let first = inner.first()?;
-    let asks = matches!(
-        text(first),
-        "why"
-            | "where"
-            | "wheres"
-            | "who"
-            | "whos"
-            | "whose"
-            | "when"
-            | "is"
-            | "are"
-            | "does"
-            | "do"
-            | "did"
-            | "was"
-            | "were"
-            | "has"
-            | "have"
-            | "which"
-    ) || text(first) == "how" && !is(inner.get(1), &["about"])
-        || text(first) == "what" && !is(inner.get(1), &["if", "about"]);
-    let begun = matches!(
-        text(&body[0]),
-        "why" | "where" | "wheres" | "who" | "whos" | "does" | "is" | "are" | "did"
-    );
-    // "how would the street look at midday?": so it shall
-    let looks = (text(first) == "how" || text(first) == "what")
-        && body
-            .iter()
-            .any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
-    if looks
-        && let Some(at) = (1..body.len())
-            .find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_))))
-    {
-        let from = (0..at)
-            .rev()
-            .find(|i| is(body.get(*i), &["at", "in", "by", "with", "during", "on", "under"]))
-            .map_or(at, |i| i + 1);
-        return Some(vec![Piece::Plain(led("make it", &body[0], &[&body[from..]]))]);
-    }
-    if !(asks || begun)
-        || is(body.get(1), &["not", "dont"])
-        || leads(
-            body,
-            &[
-                "is it possible",
-                "is there any way",
-                "is there a way",
-                "have the",
-                "have a",
-                "do you mind",
-                "do you think you could",
-            ],
-        )
-        .is_some()
-    {
-        return None;
-    }
-    let mut out = Vec::new();
-    if let Some((a, b)) = first_noun(body) {
-        let lead = (0..a)
-            .rev()
-            .take_while(|i| matches!(text(&body[*i]), "the" | "my" | "that" | "this"))
-            .last()
-            .or((talk.fits(&body[a..b]) > 0).then_some(a));
-        if let Some(lead) = lead {
-            out.push(remembered(&body[lead..b], talk));
-        }
-    }
-    Some(out)
 }
 
 /// A command that does nothing but say what "it" will mean.

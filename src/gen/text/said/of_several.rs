@@ -129,6 +129,21 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let rest = trimmed(&tokens[end..]);
+    // "only the nearest one should remain"
+    let only = leads(rest, &["only the", "just the", "keep only the", "leave only the"]);
+    if let Some(n) = only
+        && let Some(p) = rest.get(n..).and_then(pick_at)
+        && (rest[n + p..]
+            .iter()
+            .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]))
+            || n == 3)
+        && first_noun(&rest[n + p..]).is_none_or(|x| x.0 > 1)
+    {
+        let all = bare_np(np);
+        let one = singular_of(&all);
+        let except = led("except the", &rest[0], &[&rest[n..n + p], &one]);
+        return led("remove all the", &tokens[0], &[&all, &except]);
+    }
     let Some(n) = leads(
         rest,
         &[

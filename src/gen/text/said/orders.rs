@@ -125,6 +125,32 @@ pub(super) fn some_replaced(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piec
         ],
     );
     let part = number(inner.get(1)?).is_some() && is(inner.get(2), &["of"]);
+    if verb && !part && number(inner.get(1)?).is_some() {
+        // "turn one car into a bus", of several
+        let n = number(&inner[1])?.max(0) as usize;
+        let (_, b) = first_noun(&inner[2..]).filter(|x| x.0 < 3)?;
+        let k = (2 + b..inner.len())
+            .find(|k| is(inner.get(*k), &["with", "by", "for", "into", "to", "against"]))?;
+        let old = &inner[2..k];
+        let swaps = is(inner.first(), &["swap", "exchange", "substitute"])
+            && is(inner.get(k + 1), &["the", "all", "both"]);
+        if swaps || n == 0 || talk.fits(old) <= n || !has_noun(&inner[k + 1..]) {
+            return None;
+        }
+        let s = Subject {
+            kind: Kind::Part,
+            np: led("any", &inner[0], &[&inner[1..k]]),
+            noun: inner[2..2 + b].to_vec(),
+            pred: k,
+            plural: true,
+        };
+        let part = predicate::Part {
+            main: led("replaced by", &inner[0], &[&inner[k + 1..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
+    }
     if !(verb && part) {
         return None;
     }

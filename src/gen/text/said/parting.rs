@@ -301,6 +301,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         talk,
         mood.caused && leads(rest, &["let", "have", "make", "get"]).is_some(),
     ) {
+        // "the tanker and the van and put a car there": the verb is a command of its own
+        if s.pred > 0 && is(near.get(s.pred - 1), &["and", "then"]) && s.kind == Kind::Known {
+            return false;
+        }
         // "15 m ahead, two cars parked": a list goes on, and is no clause
         return match s.kind {
             Kind::Fresh => {

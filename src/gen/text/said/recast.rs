@@ -29,7 +29,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     );
     let out = replaced(
         &out,
-        "have now reached|has now reached|has reached|have reached|has arrived on|have arrived on|has made it to|have made it to|has got to|have got to|has arrived at|have arrived at|have arrived in|has arrived in",
+        "have all reached|have both reached|have already reached|has already reached|have since reached|has since reached|have safely reached|has safely reached|have now reached|has now reached|has reached|have reached|has arrived on|have arrived on|has made it to|have made it to|has got to|have got to|has arrived at|have arrived at|have arrived in|has arrived in",
         "should go to",
     );
     let out = replaced(

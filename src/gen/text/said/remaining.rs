@@ -179,8 +179,8 @@ fn nothing_there(tokens: &[Token]) -> Option<Vec<Token>> {
                 Some(t),
                 &[
                     "should", "must", "shall", "may", "is", "be", "to", "left", "standing", "parked",
-                    "driving", "can", "will", "there", "stand", "stands", "stay", "stays", "remain",
-                    "remains", "stopped", "blocks", "moving",
+                    "driving", "can", "will", "there", "seen", "visible", "found", "stand", "stands", "stay",
+                    "stays", "remain", "remains", "stopped", "blocks", "moving",
                 ],
             )
         })

@@ -7,6 +7,7 @@ use super::Talk;
 use super::frame::unwrapped;
 use super::lists::HELPERS;
 use super::some_of::WISHES;
+use super::wanted::{exceeds, from_to, nicer, not_but, not_enough, place_then_only, rather_than};
 use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
 
 const TIMES: &[&str] = &["twice", "double", "thrice", "triple", "half"];
@@ -85,6 +86,7 @@ const SAME_PLACE: &[&str] = &[
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = same_place(doubled(tokens));
+    let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
@@ -92,7 +94,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
 
-fn links(t: &Token) -> bool {
+pub(super) fn links(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
 }
 
@@ -221,7 +223,7 @@ fn same_kind(a: &[Token], b: &[Token]) -> bool {
 }
 
 /// A noun phrase without the article, quantity and "all".
-fn bare(np: &[Token]) -> &[Token] {
+pub(super) fn bare(np: &[Token]) -> &[Token] {
     let skip = |t: &Token| {
         is(
             Some(t),
@@ -403,304 +405,6 @@ fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
 }
 
 /// Small words that only say that it shall be so.
-fn plain_verb(t: &Token) -> bool {
+pub(super) fn plain_verb(t: &Token) -> bool {
     HELPERS.contains(&text(t)) || is(Some(t), &["to", "now", "rather", "better", "nicer", "preferable"])
-}
-
-/// "not two but four people should be walking across": four.
-fn not_but(tokens: Vec<Token>) -> Vec<Token> {
-    let found = (0..tokens.len()).find_map(|i| {
-        is(tokens.get(i), &["not"]).then_some(())?;
-        let only = usize::from(is(tokens.get(i + 1), &["only", "just"]));
-        tokens.get(i + 1 + only).filter(|t| number(t).is_some())?;
-        let but = (i + 2 + only..tokens.len().min(i + 7 + only)).find(|k| is(tokens.get(*k), &["but"]))?;
-        let many = but + 1 + usize::from(is(tokens.get(but + 1), &["rather"]));
-        tokens.get(many).filter(|t| number(t).is_some())?;
-        Some((i, but, many))
-    });
-    let Some((i, but, many)) = found else {
-        return tokens;
-    };
-    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let close = (many..tokens.len())
-        .find(|j| links(&tokens[*j]))
-        .unwrap_or(tokens.len());
-    let own = first_noun(&tokens[many..close]).filter(|x| x.0 < 4);
-    let old = first_noun(&tokens[i..but]);
-    let mut np: Vec<Token> = match (own, old) {
-        (Some(_), _) => tokens[many + 1..close].to_vec(),
-        (None, Some((a, b))) => [&tokens[i + a..i + b], &tokens[many + 1..close]].concat(),
-        _ => return tokens,
-    };
-    np.retain(|t| !plain_verb(t));
-    let mut out = tokens[..from].to_vec();
-    out.extend(led(
-        "keep exactly",
-        &tokens[from],
-        &[&tokens[many..=many], &np, &tokens[close..]],
-    ));
-    out
-}
-
-/// "five children would be nicer": five.
-fn nicer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let counted = tokens
-        .first()
-        .is_some_and(|t| number(t).is_some_and(|n| n > 1) || text(t) == "one");
-    // "three pedestrians fewer would be good"
-    if counted
-        && tokens
-            .iter()
-            .any(|t| matches!(text(t), "fewer" | "less" | "more"))
-        && let Some((i, n)) = find(
-            &tokens,
-            &[
-                "would be good",
-                "would be nice",
-                "would be better",
-                "would be fine",
-                "would be great",
-                "would be welcome",
-                "would be nicer",
-                "would do",
-            ],
-        )
-        && i + n == tokens.len()
-    {
-        return tokens[..i].to_vec();
-    }
-    let Some((_, b)) = first_noun(&tokens).filter(|x| counted && x.0 < 4) else {
-        return tokens;
-    };
-    let Some((i, n)) = find(
-        &tokens[b..],
-        &[
-            "would be nicer",
-            "would be better",
-            "would be preferable",
-            "would be nice",
-            "would be fine",
-            "would be ideal",
-            "would be right",
-            "would be perfect",
-            "would be more realistic",
-            "would look better",
-            "would be good",
-        ],
-    ) else {
-        return tokens;
-    };
-    let place = &tokens[b..b + i];
-    let ends = tokens.get(b + i + n).is_none_or(links);
-    if !ends || !(place.is_empty() || is_place(place)) || talk.fits(&tokens[1..b]) == 0 {
-        return tokens;
-    }
-    led(
-        "keep exactly",
-        &tokens[0],
-        &[&tokens[..b + i], &tokens[b + i + n..]],
-    )
-}
-
-/// "three cones is not enough, we need at least six": six.
-fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(
-        &tokens,
-        &[
-            "is not enough",
-            "are not enough",
-            "isnt enough",
-            "arent enough",
-            "is too few",
-            "are too few",
-            "is insufficient",
-            "are insufficient",
-            "will not do",
-            "wont do",
-            "are too many",
-            "is too many",
-            "is too much",
-            "are too much",
-            "does not suffice",
-            "do not suffice",
-            "is a lot",
-            "are a lot",
-        ],
-    ) else {
-        return tokens;
-    };
-    let np = &tokens[..i];
-    let known = is(np.first(), &["the", "these", "those", "only", "just", "my"])
-        || np.first().is_some_and(|t| number(t).is_some());
-    let rest = trimmed(&tokens[i + n..]);
-    // ("there should be eight" may follow in a sentence of its own)
-    if rest.is_empty()
-        && !np.iter().any(links)
-        && known
-        && first_noun(np).is_some_and(|x| x.0 < 4)
-        && talk.fits(bare(np)) > 0
-    {
-        return super::gifts::remark(bare(np));
-    }
-    let Some(k) = rest
-        .iter()
-        .take(6)
-        .position(|t| number(t).is_some() && !is(Some(t), &["a", "an"]))
-    else {
-        return tokens;
-    };
-    let lead = rest[..k].iter().all(|t| {
-        is(
-            Some(t),
-            &[
-                "we", "i", "need", "want", "at", "least", "make", "it", "there", "should", "be", "let", "id",
-                "like", "would", "use", "have", "rather", "give", "me", "please", "exactly", "a", "total",
-                "of", "must", "say", "only", "just", "keep", "leave",
-            ],
-        )
-    });
-    let own = first_noun(&rest[k..]);
-    let ends = rest.get(k + 1).is_none_or(|t| {
-        links(t)
-            || is(
-                Some(t),
-                &["would", "will", "are", "is", "instead", "please", "of", "should"],
-            )
-    });
-    if !known || !lead || first_noun(np).is_none_or(|x| x.0 > 4) || own.is_some() || !ends {
-        return tokens;
-    }
-    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np)])
-}
-
-/// "the parked cars go from two to four", "the cones drop to three".
-fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let known = is(tokens.first(), &["the", "our", "my", "these", "those"]);
-    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 7) else {
-        return tokens;
-    };
-    let grows = (b..tokens.len().min(b + 9)).find(|k| {
-        is(
-            tokens.get(*k),
-            &[
-                "go",
-                "goes",
-                "rise",
-                "rises",
-                "increase",
-                "increases",
-                "grow",
-                "grows",
-                "drop",
-                "drops",
-                "fall",
-                "falls",
-                "shrink",
-                "shrinks",
-                "climb",
-                "climbs",
-                "sink",
-                "sinks",
-                "decrease",
-                "decreases",
-                "reduced",
-                "increased",
-                "raised",
-                "lowered",
-                "cut",
-                "number",
-                "amount",
-                "come",
-                "limited",
-                "rising",
-                "went",
-                "gone",
-            ],
-        )
-    });
-    let Some(v) = grows else {
-        return tokens;
-    };
-    let mut k = v + 1;
-    k += usize::from(is(tokens.get(k), &["up", "down", "back"]));
-    let mut ranged = false;
-    if is(tokens.get(k), &["from"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) {
-        k += 2;
-        ranged = true;
-    }
-    let to = is(tokens.get(k), &["to"]);
-    let num = k + usize::from(to);
-    let num = num + usize::from(is(tokens.get(num), &["just", "only", "exactly"]));
-    let counts = is(tokens.get(v), &["number", "amount"]) && !to;
-    let many = tokens.get(num).filter(|t| number(t).is_some() && (to || counts));
-    let ends = tokens.get(num + 1).is_none_or(links);
-    let strays = is(
-        tokens.get(v),
-        &[
-            "go", "goes", "come", "went", "gone", "drop", "drops", "fall", "falls", "cut",
-        ],
-    ) && !ranged
-        && first_noun(&tokens[..b]).is_some_and(|_| !tokens[..v].iter().any(|t| text(t) == "number"));
-    let Some(many) = many.filter(|_| ends && !strays) else {
-        return tokens;
-    };
-    let mut np = tokens[..v].to_vec();
-    while np.last().is_some_and(plain_verb) {
-        np.pop();
-    }
-    let np = bare(&np).to_vec();
-    if talk.fits(&np) == 0 {
-        return tokens;
-    }
-    led(
-        "keep exactly",
-        &tokens[0],
-        &[std::slice::from_ref(many), &np, &tokens[num + 1..]],
-    )
-}
-
-/// "five parked cars would be better than three", "I'd rather have four on the right than two".
-fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
-    let prefers = tokens.iter().any(|t| {
-        matches!(
-            text(t),
-            "better" | "rather" | "prefer" | "nicer" | "preferable" | "sooner" | "preferred"
-        )
-    });
-    let found = (2..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["rather than", "than", "to", "over", "instead of"])?;
-        let n = n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
-        let few = tokens.get(i + n).filter(|t| number(t).is_some())?;
-        let of = leads(
-            &tokens[i + n + 1..],
-            &["of them", "of those", "as now", "as before"],
-        )
-        .unwrap_or(0);
-        let end = i + n + 1 + of;
-        (text(few) != "a" && tokens.get(end).is_none_or(links)).then_some((i, end))
-    });
-    let Some((i, end)) = found.filter(|_| prefers) else {
-        return tokens;
-    };
-    let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let Some(many) =
-        (from..i).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1)))
-    else {
-        return tokens;
-    };
-    if first_noun(&tokens[from..many]).is_some() || first_noun(&tokens[many..i]).is_none_or(|x| x.0 > 4) {
-        return tokens;
-    }
-    let np: Vec<Token> = tokens[many + 1..i]
-        .iter()
-        .filter(|t| !plain_verb(t))
-        .cloned()
-        .collect();
-    let mut out = tokens[..from].to_vec();
-    out.extend(led(
-        "keep exactly",
-        &tokens[from],
-        &[&tokens[many..=many], &np, &tokens[end..]],
-    ));
-    out
 }

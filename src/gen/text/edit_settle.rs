@@ -1,0 +1,127 @@
+//! What the commands of one sentence mean together.
+
+use super::edit::Editor;
+use super::edit_grammar::{Back, Command};
+use super::mention::{Mention, means_all};
+use super::select::{Chosen, choose, fitting};
+use super::words::edits::{Pick, Verb};
+use crate::scene::{BoxId, SceneBox};
+
+impl Editor<'_> {
+    /// What commands of one sentence mean together: "turn the cones into barriers and the barriers into cones", "keep the
+    /// coach and the bus, lose the rest".
+    pub(super) fn settle(&self, commands: &mut [Command]) {
+        let found = |c: &Command| -> Option<Vec<BoxId>> {
+            let mut all = Vec::new();
+            for m in &c.targets {
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => all.extend(ids),
+                    _ => return None,
+                }
+            }
+            (!all.is_empty()).then_some(all)
+        };
+        for i in 1..commands.len() {
+            let (a, b) = (&commands[i - 1], &commands[i]);
+            let class = |m: Option<&Mention>| m.map(|m| m.spec.class);
+            let crosswise = a.verb == Verb::Replace
+                && b.verb == Verb::Replace
+                && class(a.by.as_ref()).is_some()
+                && class(a.by.as_ref()) == class(b.targets.first())
+                && class(b.by.as_ref()) == class(a.targets.first());
+            if crosswise {
+                commands[i].found = found(&commands[i]);
+                continue;
+            }
+            // "the cars have left, only the truck is still there": what stays of those
+            let told = b.verb == Verb::Keep
+                && a.verb == Verb::Remove
+                && !a.targets.iter().any(means_all)
+                && ["only ", "just "]
+                    .iter()
+                    .any(|w| b.text.to_lowercase().starts_with(w));
+            if told {
+                commands[i].verb = Verb::Note;
+                continue;
+            }
+            let rest = matches!(a.verb, Verb::Keep | Verb::Note)
+                && !a.targets.is_empty()
+                && b.verb == Verb::Remove
+                && b.back == Some(Back::Others);
+            if let Some(kept) = rest.then(|| found(a)).flatten() {
+                let alike = |x: &SceneBox| kept.iter().any(|id| self.boxes[id].class == x.class);
+                let others = self.boxes.values().any(|x| alike(x) && !kept.contains(&x.id));
+                if !others {
+                    let rest = self.boxes.keys().filter(|id| !kept.contains(id));
+                    commands[i].found = Some(rest.copied().collect());
+                }
+            }
+        }
+    }
+
+    /// True if a command that adds, without a word for that, names what is there already: it is not put in a second time.
+    pub(super) fn only_named(&self, c: &Command) -> bool {
+        const ORDERS: &[&str] = &[
+            "add",
+            "insert",
+            "include",
+            "create",
+            "generate",
+            "spawn",
+            "append",
+            "duplicate",
+            "introduce",
+            "bring",
+            "put",
+            "place",
+            "set",
+            "park",
+            "give",
+            "draw",
+            "show",
+            "another",
+            "more",
+            "second",
+            "extra",
+        ];
+        if c.targets.is_empty() {
+            return false;
+        }
+        let words = c.text.to_lowercase();
+        let ordered = words
+            .split(|ch: char| !ch.is_alphanumeric())
+            .any(|w| ORDERS.contains(&w));
+        let theirs = ["their ", "his ", "her ", "its "]
+            .iter()
+            .any(|w| words.starts_with(w));
+        let named = |m: &Mention| {
+            m.definite && m.pick != Some(Pick::More) && !m.is_anchor || m.uncounted && means_all(m)
+        };
+        let there = |m: &Mention| m.definite && !fitting(&self.map, &self.boxes, m, &c.mentions).is_empty();
+        let again = !ordered && !c.in_place && c.targets.iter().all(there);
+        // "half of the cones have been collected" speaks of those that are there
+        let part = [
+            " of the ",
+            " of these ",
+            " of those ",
+            " of our ",
+            " of my ",
+            " of them ",
+        ]
+        .iter()
+        .any(|of| {
+            words
+                .split_once(of)
+                .is_some_and(|(before, _)| before.split(' ').count() < 3)
+        });
+        // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
+        let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
+        let remark = !ordered
+            && !c.in_place
+            && !c.reading.not_understood.is_empty()
+            && c.targets
+                .iter()
+                .all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
+        again || c.implied && (theirs || part || remark || c.targets.iter().all(named))
+    }
+}

@@ -1,0 +1,176 @@
+//! Room between and on places: "increase the distance to the car behind to 20 m", "the crossing should be empty".
+
+use super::super::lexicon::Sense;
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::gifts::begins_at;
+use super::words::{find, first_noun, has_noun, is, is_unit, leads, led, longest, number, text, trimmed};
+
+/// "increase the distance to the car behind to 20 m", "reduce the gap to the bus by 5 m".
+pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "the distance to",
+            "the gap to",
+            "the distance from us to",
+            "the gap between us and",
+            "the distance between us and",
+            "the spacing to",
+            "the distance from me to",
+            "the gap between me and",
+            "the distance between me and",
+            "our distance to",
+            "our distance from",
+            "the distance from",
+            "the headway to",
+            "my distance to",
+            "my distance from",
+            "the distance of",
+        ],
+    )
+    .filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let from = i + n;
+    let Some((_, b)) = first_noun(&tokens[from..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let step = (from + b..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["to", "by", "at", "is", "of", "down", "up"])
+            && tokens.get(k + 1).is_some_and(|t| number(t).is_some())
+            && is_unit(tokens.get(k + 2))
+            || is(tokens.get(*k), &["should", "must"])
+    });
+    let Some(step) = step else {
+        return tokens;
+    };
+    let Some(metres) =
+        (step..tokens.len()).find(|k| number(&tokens[*k]).is_some() && is_unit(tokens.get(k + 1)))
+    else {
+        return tokens;
+    };
+    let mut np = tokens[from..step].to_vec();
+    if is(np.last(), &["behind", "ahead"]) {
+        np.extend(led(
+            if text(&np[np.len() - 1]) == "ahead" {
+                "of us"
+            } else {
+                "us"
+            },
+            &tokens[i],
+            &[],
+        ));
+    }
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    let lead = &tokens[..i];
+    let wider = lead.iter().any(|t| {
+        matches!(
+            text(t),
+            "increase" | "raise" | "widen" | "lengthen" | "extend" | "enlarge" | "grow"
+        )
+    });
+    let start = (0..i).rev().find(|k| begins_at(&tokens, *k)).unwrap_or(0);
+    let far = &tokens[metres..metres + 2];
+    let out = if is(tokens.get(step), &["by"]) {
+        let way = led(if wider { "further away" } else { "closer" }, &tokens[i], &[]);
+        led("move", &tokens[i], &[&np, far, &way])
+    } else {
+        [&np[..], &led("should keep a distance of", &tokens[i], &[far])].concat()
+    };
+    [&tokens[..start], &out, &tokens[metres + 2..]].concat()
+}
+
+/// "the crossing is empty now", "our lane must be free of cones": who is there goes.
+pub(super) fn emptied(tokens: Vec<Token>) -> Vec<Token> {
+    let body = trimmed(&tokens);
+    let the = usize::from(is(body.first(), &["the", "our", "my"]));
+    let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest) else {
+        return tokens;
+    };
+    let place = &body[..the + n];
+    let mut k = the + n;
+    while is(
+        body.get(k),
+        &[
+            "is",
+            "are",
+            "should",
+            "must",
+            "has",
+            "have",
+            "needs",
+            "need",
+            "ought",
+            "shall",
+            "to",
+            "be",
+            "now",
+            "also",
+            "completely",
+            "totally",
+            "entirely",
+            "all",
+            "absolutely",
+            "again",
+            "will",
+            "stay",
+            "remain",
+            "kept",
+        ],
+    ) {
+        k += 1;
+    }
+    if k == the + n
+        || !is(
+            body.get(k),
+            &[
+                "empty",
+                "deserted",
+                "vacant",
+                "unoccupied",
+                "clear",
+                "free",
+                "cleared",
+                "emptied",
+            ],
+        )
+    {
+        return tokens;
+    }
+    let mut rest = &body[k + 1..];
+    let of = leads(rest, &["of all", "of any", "of", "from"]);
+    rest = &rest[of.unwrap_or(0)..];
+    let late = find(rest, &["now", "again", "any more", "please", "at last"]);
+    let what = trimmed(&rest[..late.map_or(rest.len(), |x| x.0)]);
+    // (what is to be done for it is said)
+    if late.is_some_and(|(k, n)| !trimmed(&rest[k + n..]).is_empty())
+        || what.iter().any(|t| t.kind == TokenKind::Comma)
+    {
+        return tokens;
+    }
+    // ("my lane is free" is a remark)
+    let wish = body[the + n..k].iter().any(|t| {
+        matches!(
+            text(t),
+            "should" | "must" | "to" | "be" | "shall" | "needs" | "now"
+        )
+    }) || is(body.get(k), &["empty", "deserted", "vacant"]);
+    let whole = of.is_some() == has_noun(what) && (of.is_some() || what.is_empty());
+    if !wish || !whole {
+        return tokens;
+    }
+    let lane = place.iter().any(|t| {
+        matches!(
+            text(t),
+            "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"
+        )
+    });
+    let at = led(if lane { "in" } else { "on" }, &body[0], &[place]);
+    match of {
+        Some(_) => led("remove all the", &body[0], &[what, &at]),
+        None => led("remove all the objects", &body[0], &[&at]),
+    }
+}
