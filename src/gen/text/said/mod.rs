@@ -135,12 +135,19 @@ pub enum Piece {
     Plain(Vec<Token>),
 }
 
+/// Longest sentence in tokens in which choices and totals are looked for.
+const LONGEST_CHOICE: usize = 120;
+
 /// A sentence with choices among a group and totals said plainly: before exceptions are looked for.
 pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let (body, stop) = match sentence.split_last() {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
+    // (nobody says so much in one sentence; each turn of speech looks through all of it)
+    if body.len() > LONGEST_CHOICE {
+        return sentence.to_vec();
+    }
     let out = remarks::plain(spoken::sides_named(body.to_vec()), talk);
     let out = exchanges::plain(presence::plain(wider::plain(out, talk), talk), talk);
     let out = reasons::plain(out, talk);
