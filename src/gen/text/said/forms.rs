@@ -66,6 +66,9 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         main.push(words::word("and", first));
     }
     main.pop();
+    while is(main.first(), &["and"]) {
+        main.remove(0);
+    }
     // "directly behind the first one"
     if let Some((i, n)) = find(
         &main,

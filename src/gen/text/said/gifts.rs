@@ -273,5 +273,10 @@ fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         text: many.to_string(),
         span: tokens[i].span,
     };
+    // "I want as many motorcycles as cars": so many in all
+    let wish = ["i want", "we want", "i need", "we need", "there should be", "there must be", "let there be", "i would like", "id like", "make it", "there are", "there shall be"];
+    if leads(&tokens[..i], &wish) == Some(i) {
+        return led("keep exactly", &tokens[0], &[&[digit], &tokens[i + n..as_], &tokens[end..]]);
+    }
     [&tokens[..i], &[digit], &tokens[i + n..as_], &tokens[end..]].concat()
 }

@@ -14,6 +14,7 @@ mod frame;
 mod gaps;
 mod gifts;
 mod idioms;
+mod likewise;
 mod limits;
 pub(super) mod lists;
 mod of_several;
@@ -127,6 +128,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         _ => (sentence, &[][..]),
     };
     let out = doers::plain(dealt::plain(body.to_vec(), talk), talk);
+    let out = likewise::plain(out, talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
@@ -501,6 +503,11 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     // "fire engine in" of one that is there: more of it is not meant
     if is(pred.first(), &["in"]) {
         return None;
+    }
+    // "the fourth is still crossing": as before
+    let still = pred.iter().take(3).any(|t| text(t) == "still");
+    if still && !pred.iter().any(|t| is(Some(t), &["should", "must", "shall", "needs", "not"])) && !pred.iter().any(|t| matches!(text(t), "and" | "but")) {
+        return Some(vec![remembered(&s.np, talk)]);
     }
     let parts = parts(pred, s.plural || mood.caused);
     // "Bus is too far off": a complaint says only what "it" will mean

@@ -124,7 +124,7 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .position(|t| t.kind == TokenKind::Comma)
         .or_else(|| {
             (n + 2..tokens.len())
-                .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"]))
+                .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep", "only", "just"]))
                 .map(|k| k - 1)
                 .filter(|k| first_noun(&tokens[n..=*k]).is_some())
         })?;

@@ -59,6 +59,13 @@ pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
     {
         return Some((Back::Others, n));
     }
+    // "the fourth is still crossing"
+    let nth = super::words::leads(tokens, &["the second", "the third", "the fourth", "the fifth", "the last"]);
+    if let Some(n) = nth
+        && tokens.get(n).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) && super::words::noun_at(&tokens[n..]).is_none())
+    {
+        return Some((Back::Others, n));
+    }
     let both = super::words::leads(
         tokens,
         &[

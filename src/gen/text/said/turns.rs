@@ -152,7 +152,7 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             "i dont want a", "i do not want a", "we dont want a", "we do not want a", "i dont want the", "i do not want the",
             "i no longer want a", "i no longer want the", "we no longer want a", "i dont need a", "we dont need a",
             "there should no longer be a", "there should not be a", "there shouldnt be a", "there must not be a",
-            "not a", "i dont want to see a", "there should be no longer a", "there should be not a", "no longer a",
+            "not a", "i dont want to see a", "there should be no longer a", "there should be not a", "no longer a", "no more",
         ],
     ) else {
         return tokens;
