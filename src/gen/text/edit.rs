@@ -297,6 +297,14 @@ impl Editor<'_> {
                 let part = [" of the ", " of these ", " of those ", " of our ", " of my ", " of them "]
                     .iter()
                     .any(|of| text.split_once(of).is_some_and(|(before, _)| before.split(' ').count() < 3));
+                // "barriers cost money", "one is still to come": a remark on what is there
+                let has = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
+                let remark = |m: &Mention| {
+                    let stays = [" left", " remain", " still", " enough", "where "].iter().any(|w| text.contains(w));
+                    let bare = m.uncounted && m.plural && m.pick.is_none();
+                    m.spec.relations.is_empty() && has(m) && (bare || stays)
+                };
+                let part = part || !c.in_place && !ordered && c.targets.iter().all(remark);
                 if (c.implied || again) && !c.targets.is_empty() && (theirs || again || part || c.targets.iter().all(named)) {
                     self.note(format!("{:?}: what should become of it was not understood", c.text));
                     return (!done.is_empty()).then(|| done.join(", "));

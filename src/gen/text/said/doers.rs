@@ -28,7 +28,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&out, TAKES_PLACE, "takes the place of");
     let out = replaced(&out, DRIVER, "the vehicle behind us");
     let out = replaced(&out, DRIVER_AHEAD, "the vehicle in front of us");
-    let out = metres_back(out);
+    let out = gap_closed(metres_back(out));
     let out = couple(out, talk);
     let out = sent_home(done_away(out, talk));
     let out = gap_left(out);
@@ -44,6 +44,26 @@ fn opens(tokens: &[Token], i: usize) -> bool {
 
 fn known(t: Option<&Token>) -> bool {
     is(t, &["the", "all", "both", "every", "my", "our", "that", "those", "these"])
+}
+
+/// "the pickup closes the gap to 7 m": so far it is then.
+fn gap_closed(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let verb = ["closes", "close", "closed", "narrows", "narrowed", "reduces", "reduced", "shortens", "shortened", "opens", "opened", "widens", "widened", "increases", "increased", "lets", "let", "cuts", "cut"];
+        is(tokens.get(i), &verb).then_some(())?;
+        let n = leads(&tokens[i + 1..], &["the gap", "the distance", "its distance", "his distance", "her distance", "their distance", "its gap", "his gap", "her gap", "up the gap"])?;
+        let to = (i + 1 + n..tokens.len().min(i + n + 8)).find(|k| is(tokens.get(*k), &["to", "at"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(k + 2)))?;
+        let between = tokens[i + 1 + n..to].iter().all(|t| is(Some(t), &["to", "us", "me", "from", "between", "and", "itself", "down", "up", "behind", "ahead", "a", "bit", "grow"]));
+        let from = (0..i).rev().find(|k| opens(&tokens, *k))?;
+        let who = &tokens[from..i];
+        let helped = who.iter().rposition(|t| !HELPERS.contains(&text(t))).map_or(0, |k| k + 1);
+        let one = is(who.first(), &["it", "he", "she", "they"]) && helped == 1 || known(who.first()) && has_noun(&who[..helped]);
+        (between && one).then_some((from + helped, to + 1))
+    });
+    match found {
+        Some((i, k)) => [&tokens[..i], &led("should keep a distance of", &tokens[i], &[&tokens[k..k + 2]]), &tokens[k + 2..]].concat(),
+        None => tokens,
+    }
 }
 
 /// "he is 20 m back now": behind us.
@@ -95,7 +115,7 @@ fn done_away(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         // "somebody has bought it"
         let someone = is(tokens.get(from), &["somebody", "someone", "they", "people"]) && from + 1 == i;
         if someone && is(np.first(), &["it", "them", "him", "her"]) && np.get(1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["away", "off", "up", "home", "and", "now"])) {
-            return Some((from, v + n, v + n + 1));
+            return Some((from, i, v + n, v + n + 1));
         }
         let part = np.first().is_some_and(|t| number(t).is_some()) && is(np.get(1), &["of"]) && known(np.get(2));
         (known(np.first()) || part).then_some(())?;
@@ -103,15 +123,21 @@ fn done_away(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let end = v + n + b;
         // the doer says nothing of a place: "has taken the left lane" is none of this
         let place = is_place(&tokens[end..]) && !is(tokens.get(end), &["away", "up", "off", "from", "out", "down"]);
-        (!place && talk.fits(&np[if part { 2 } else { 0 }..b]) > 0).then_some((from, v + n, end))
+        (!place && talk.fits(&np[if part { 2 } else { 0 }..b]) > 0).then_some((from, i, v + n, end))
     });
-    let Some((from, np, end)) = found else {
+    let Some((from, has, np, end)) = found else {
         return tokens;
     };
     let close = (end..tokens.len())
         .find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["and", "but", "so"]))
         .unwrap_or(tokens.len());
     let remove = led("remove", &tokens[from], &[&tokens[np..end]]);
+    // "... and is about to leave": said of him who did it
+    let goes_on = is(tokens.get(close), &["and", "but"])
+        && tokens.get(close + 1).is_some_and(|t| HELPERS.contains(&text(t)) || super::words::is_finite(text(t), false));
+    if goes_on {
+        return [&tokens[..from], &remove, &tokens[close..=close], &tokens[from..has], &tokens[close + 1..]].concat();
+    }
     [&tokens[..from], &remove, &tokens[close..]].concat()
 }
 

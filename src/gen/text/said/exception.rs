@@ -56,7 +56,7 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let plain = is(
         tokens.get(all + group.0),
         &["everything", "everyone", "everybody", "objects", "things"],
-    );
+    ) && !is_place(&tokens[all + group.1..i]);
     let from = i + n;
     let definite = is(tokens.get(from), &["the", "my", "that", "those", "these"]);
     if plain || !definite || leads(&tokens[from..], &["the one", "the ones", "the following"]).is_some() {
@@ -148,6 +148,14 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     let end = gone.map_or(close, |g| g + 1);
+    // "everything on the road goes except the bulldozer": what is elsewhere stays
+    let told = &before[whole + 1..];
+    let told = &told[usize::from(is(told.first(), &["else", "objects"]))..];
+    let stop = told.iter().position(|t| HELPERS.contains(&text(t)) || goes(t)).unwrap_or(told.len());
+    if is_place(&told[..stop]) && is(told.first(), &["on", "in", "at", "behind", "ahead"]) {
+        let objects = led("remove all the objects", &tokens[0], &[&told[..stop]]);
+        return [&objects, &led("except", &tokens[0], &[np]), &tokens[end..]].concat();
+    }
     led("keep only", &tokens[0], &[np, &tokens[end..]])
 }
 

@@ -14,11 +14,11 @@ const ENOUGH: &[&str] = &["are enough", "is enough", "would be enough", "will be
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = remark(tokens);
+    let out = where_were(number_of(remark(tokens)));
     let out = so_too(out, talk);
     let out = paired(out, talk);
     let out = more_and_less(out);
-    let out = enough_there(out);
+    let out = if talk.others { out } else { enough_there(out) };
     let out = some_of_them(out, talk);
     spared_too(out)
 }
@@ -46,6 +46,72 @@ fn remark(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     tokens[i + 1..].to_vec()
+}
+
+/// "the number of cyclists has gone down to two".
+fn number_of(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["the number of", "the count of", "the amount of"]) else {
+        return tokens;
+    };
+    let Some((a, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 3).map(|x| (n + x.0, n + x.1)) else {
+        return tokens;
+    };
+    let verb = (b..tokens.len()).find(|k| HELPERS.contains(&text(&tokens[*k])) || is_finite(text(&tokens[*k]), false));
+    let to = (b..tokens.len()).rev().find(|k| is(tokens.get(*k), &["to", "by", "is", "now", "be", "at", "just", "only"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()));
+    let (Some(verb), Some(to)) = (verb, to) else {
+        return tokens;
+    };
+    let end = to + 2;
+    let closed = tokens.get(end).is_none_or(|t| closes(Some(t)) || is(Some(t), &["and", "now"]));
+    if !closed || super::words::is_unit(tokens.get(end)) || verb > to {
+        return tokens;
+    }
+    let place = if is_place(&tokens[b..verb]) { &tokens[b..verb] } else { &[] };
+    let np = &tokens[a..b];
+    let many = &tokens[to + 1..end];
+    let at = &tokens[0];
+    let out = if is(tokens.get(to), &["by"]) {
+        let less = tokens[verb..to].iter().any(|t| matches!(text(t), "down" | "fallen" | "fell" | "falls" | "dropped" | "drops" | "shrunk" | "shrinks" | "reduced" | "decreased" | "decreases" | "sunk" | "lowered" | "cut"));
+        let more = tokens[verb..to].iter().any(|t| matches!(text(t), "up" | "grown" | "grew" | "grows" | "risen" | "rises" | "rose" | "increased" | "increases" | "raised"));
+        match (less, more) {
+            (true, false) => led("remove", at, &[many, np, place]),
+            (false, true) => led("add", at, &[many, &led("more", at, &[np, place])]),
+            _ => return tokens,
+        }
+    } else {
+        led("keep exactly", at, &[many, np, place])
+    };
+    [&out, &tokens[end..]].concat()
+}
+
+/// "where four children were walking there are only two now": only two are left.
+fn where_were(tokens: Vec<Token>) -> Vec<Token> {
+    if !is(tokens.first(), &["where"]) || !tokens.iter().any(|t| matches!(text(t), "were" | "was" | "used")) {
+        return tokens;
+    }
+    let mut from = 1;
+    while is(tokens.get(from), &["there", "once", "before", "were", "was", "used", "to", "be", "stood"]) {
+        from += 1;
+    }
+    let first = tokens.get(from).filter(|t| number(t).is_some());
+    let Some((a, b)) = first_noun(tokens.get(from..).unwrap_or_default()).filter(|x| first.is_some() && x.0 < 4).map(|x| (from + x.0, from + x.1)) else {
+        return tokens;
+    };
+    let Some(k) = (b..tokens.len()).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1))) else {
+        return tokens;
+    };
+    let said = tokens[b..k].iter().any(|t| matches!(text(t), "there" | "only" | "just" | "now" | "are" | "is" | "remain"));
+    let own = first_noun(&tokens[k..]);
+    if !said || own.is_some() && tokens[k..].iter().all(|t| !tokens[a..b].iter().any(|n| n.text.trim_end_matches('s') == t.text.trim_end_matches('s'))) {
+        return tokens;
+    }
+    let place = (b..k).find(|j| is(tokens.get(*j), &["on", "in", "at", "along", "beside", "behind"]));
+    let place: &[Token] = place.map_or(&[], |j| {
+        let end = (j..k).find(|e| closes(tokens.get(*e)) || is(tokens.get(*e), &["there", "only", "just", "now"])).unwrap_or(k);
+        &tokens[j..end]
+    });
+    let place = if is_place(place) { place } else { &[] };
+    led("keep exactly", &tokens[0], &[&tokens[k..=k], &tokens[from + 1..b], place])
 }
 
 /// True if the clause says that its subject is gone.

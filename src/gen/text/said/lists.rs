@@ -68,7 +68,7 @@ lists! {
         the street|the area|the place|the picture|the image|the site|us|me|home|work|instead|then|long|because|since|after|\
         anyway|off|at|with|for good";
     /// Words of `acts.rs`.
-    BECOMES = "given way to|made way for|made room for|given place to|gives way to|give way to|gave way to|has given way to|makes way for|make way for|made way for|become|becomes|became|turn into|turns into|turned into|change into|changes into|changed into|changed to|change to|\
+    BECOMES = "turn out to be|proves to be|prove to be|proved to be|given way to|made way for|made room for|given place to|gives way to|give way to|gave way to|has given way to|makes way for|make way for|made way for|become|becomes|became|turn into|turns into|turned into|change into|changes into|changed into|changed to|change to|\
         changes to|transformed into|transforms into|transform into|morphs into|morphed into|converted into|converted to|\
         swapped for|swapped with|swapped out for|swapped by|swapped against|exchanged for|exchanged with|exchanged by|\
         exchanged against|replaced by|replaced with|replaced for|substituted by|substituted with|substituted for|traded for|\

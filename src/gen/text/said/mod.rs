@@ -505,7 +505,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     // "the fourth is still crossing": as before
-    let still = pred.iter().take(3).any(|t| text(t) == "still");
+    let still = pred.iter().take(3).any(|t| text(t) == "still") || leads(pred, &["is about to", "are about to", "was about to", "were about to"]).is_some();
     if still && !pred.iter().any(|t| is(Some(t), &["should", "must", "shall", "needs", "not"])) && !pred.iter().any(|t| matches!(text(t), "and" | "but")) {
         return Some(vec![remembered(&s.np, talk)]);
     }

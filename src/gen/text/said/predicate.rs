@@ -31,7 +31,7 @@ impl Part {
             let there = self.main.is_empty() || self.begins(&THERE).is_some();
             return there;
         }
-        if gone_off(&self.main) {
+        if gone_off(&self.main) || is(self.main.first(), &["vanished", "vanishes", "vanish", "disappeared", "disappears", "disappear"]) {
             return true;
         }
         let Some(n) = self.begins(&GONE) else {
