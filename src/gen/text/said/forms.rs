@@ -73,6 +73,10 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
     if let Some((i, n)) = find(
         &main,
         &[
+            "the other two",
+            "the other three",
+            "the other four",
+            "the others",
             "the first one",
             "the first",
             "the other one",

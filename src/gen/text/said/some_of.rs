@@ -280,7 +280,11 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let (a, b) = first_noun(&tokens[n..]).map(|x| (n + x.0, n + x.1))?;
     let counted = tokens[n..a].iter().any(|t| number(t).is_some());
     let rest = trimmed(&tokens[b..]);
-    let w = leads(rest, WISHES)?;
+    // "instead of one car, three are waiting at the crossing"
+    let w = leads(rest, WISHES).or_else(|| {
+        let verb = rest.get(1).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
+        (verb && rest.first().is_some_and(|t| number(t).is_some())).then_some(0)
+    })?;
     let k = w + usize::from(is(rest.get(w), &["just", "only"]));
     let many = rest.get(k).filter(|t| number(t).is_some())?;
     let ends =
@@ -290,7 +294,10 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let all = leads(tail, &["all of them", "all", "each of them", "every one of them", "all three", "of them", "both", "both of them"])
         .unwrap_or(0);
     let place = trimmed(&tail[all..]);
-    let placed = super::words::is_place(place) && first_noun(place).is_none() && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let place = &place[if w == 0 { place.iter().take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["now", "to"])).count() } else { 0 }..];
+    let stands = usize::from(w == 0 && is(place.first(), &["waiting", "standing", "wait", "stand", "drive", "driving", "walking", "walk", "parked"]));
+    let placed = w == 0 && place.len() > stands && super::words::is_place(&place[stands..]) && first_noun(place).is_none();
+    let placed = placed || super::words::is_place(place) && first_noun(place).is_none() && !place.iter().any(|t| t.kind == TokenKind::Comma);
     let place = if placed { place } else { &[] };
     (counted && (ends || placed) && a < n + 5).then(|| {
         led(
