@@ -27,7 +27,7 @@ const UNTIL_WE: &str = "brakes until|slows down until|speeds up until|accelerate
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = replaced(&tokens, ", please ,", ",");
+    let out = replaced(&tokens, ", please , but", ", but");
     let out = replaced(&out, TAKES_PLACE, "takes the place of");
     let out = replaced(&out, DRIVER, "the vehicle behind us");
     let out = replaced(&out, DRIVER_AHEAD, "the vehicle in front of us");
@@ -37,7 +37,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = we_are(out);
     let out = relatives(out, talk);
     let out = carried_over(out, talk);
-    let out = two_let(out);
+    let out = two_let(brought(out, talk));
     let out = couple(out, talk);
     let out = sent_home(done_away(out, talk));
     let out = gap_left(out);
@@ -131,6 +131,34 @@ fn carried_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         Some((from, np)) => [&tokens[..from], &led("move", &tokens[from], &[&tokens[np..]])].concat(),
         None => tokens,
     }
+}
+
+/// "the workers fetch two more cones and set them up beside the four": two more.
+fn brought(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const BRINGS: &[&str] = &[
+        "fetch", "fetches", "have fetched", "has fetched", "bring", "brings", "have brought", "has brought", "add", "adds", "have added", "has added",
+        "set up", "sets up", "have set up", "has set up", "put up", "puts up", "have put up", "has put up", "put out", "puts out", "have put out",
+        "has put out", "lay out", "lays out", "have placed", "has placed", "places", "have laid out", "has laid out",
+    ];
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && known(tokens.first())) else {
+        return tokens;
+    };
+    let Some(n) = leads(&tokens[b..], BRINGS).filter(|_| talk.fits(&tokens[..b]) > 0) else {
+        return tokens;
+    };
+    let np = &tokens[b + n..];
+    let fresh = is(np.first(), &["a", "an", "another"]) || np.first().is_some_and(|t| number(t).is_some());
+    let Some((_, e)) = first_noun(np).filter(|x| fresh && x.0 < 5) else {
+        return tokens;
+    };
+    let rest = &np[e..];
+    let same = leads(rest, &["and set them up", "and put them up", "and set it up", "and put it", "and put them", "and place them"]).is_some();
+    let alike = same && (talk.fits(&np[e - 1..e]) > 0) && first_noun(rest).is_none();
+    let rest = if alike { &[][..] } else { rest };
+    if !alike && same {
+        return tokens;
+    }
+    led("add", &tokens[0], &[np.get(..e).unwrap_or_default(), rest])
 }
 
 /// "instead of the two cars, let two vans drive in the right lane": two vans.

@@ -91,7 +91,11 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         ],
     ) && words::noun_at(&main[i + n..]).is_none()
     {
-        let one = if is(main.get(i + n - 1), &["first", "one", "other"]) { super::topics::singular_of(&s.noun) } else { s.noun.clone() };
+        let many = is(main.get(i + n - 1), &["two", "three", "four", "others"]);
+        let one = if let (true, [noun]) = (many, s.noun.as_slice()) {
+            let many = matches!(look_up(text(noun)), Some(Sense::Noun(_, true)));
+            vec![if many { noun.clone() } else { words::word(&super::super::lexicon::plural(text(noun)), noun) }]
+        } else if is(main.get(i + n - 1), &["first", "one", "other"]) { super::topics::singular_of(&s.noun) } else { s.noun.clone() };
         let the = led("the", first, &[&one]);
         main.splice(i..i + n, the);
     }

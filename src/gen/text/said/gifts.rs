@@ -226,6 +226,10 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
     rest = &rest[of.unwrap_or(0)..];
     let late = find(rest, &["now", "again", "any more", "please", "at last"]).map_or(rest.len(), |x| x.0);
     let what = trimmed(&rest[..late]);
+    // what more is asked for in the sentence is read, too
+    let cut = what.iter().position(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)));
+    let more = cut.map_or_else(|| find(&rest[late..], &[","]).map_or(&[][..], |x| &rest[late + x.0..]), |c| &what[c..]);
+    let what = trimmed(&what[..cut.unwrap_or(what.len())]);
     // ("my lane is free" is a remark)
     let wish = body[the + n..k].iter().any(|t| matches!(text(t), "should" | "must" | "to" | "be" | "shall" | "needs" | "now"))
         || is(body.get(k), &["empty", "deserted", "vacant"]);
@@ -236,8 +240,8 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
     let lane = place.iter().any(|t| matches!(text(t), "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"));
     let at = led(if lane { "in" } else { "on" }, &body[0], &[place]);
     match of {
-        Some(_) => led("remove all the", &body[0], &[what, &at]),
-        None => led("remove all the objects", &body[0], &[&at]),
+        Some(_) => led("remove all the", &body[0], &[what, &at, more]),
+        None => led("remove all the objects", &body[0], &[&at, more]),
     }
 }
 

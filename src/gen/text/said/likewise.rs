@@ -20,7 +20,8 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = more_and_less(out);
     let out = if talk.others { out } else { enough_there(out) };
     let out = some_of_them(out, talk);
-    spared_too(out)
+    let out = just_so_many(spared_too(out), talk);
+    and_none(out, talk)
 }
 
 fn known(t: Option<&Token>) -> bool {
@@ -256,12 +257,12 @@ fn some_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     while let Some((a, b)) = first_noun(&tokens[from..i]) {
         let np = tokens[from + a..from + b].to_vec();
         let many = matches!(super::look_up(text(&np[np.len() - 1])), Some(super::Sense::Noun(_, true)));
-        if many && talk.fits(&np) > 1 {
+        if many && talk.fits(&np) as i64 > number(&tokens[i]).unwrap_or(0) {
             named = Some(np);
         }
         from += b;
     }
-    let noun = named.or_else(|| talk.last.as_ref().map(|l| led(&super::super::lexicon::plural(l), &tokens[i], &[])).filter(|np| i == 0 && talk.fits(np) > 1));
+    let noun = named.or_else(|| talk.last.as_ref().map(|l| led(&super::super::lexicon::plural(l), &tokens[i], &[])).filter(|np| i == 0 && talk.fits(np) as i64 > number(&tokens[i]).unwrap_or(0)));
     match noun {
         Some(np) => [&tokens[..i + 2], &led("the", &tokens[i], &[&np]), &tokens[i + 3..]].concat(),
         None => tokens,
@@ -283,5 +284,68 @@ fn spared_too(tokens: Vec<Token>) -> Vec<Token> {
     match leads(&out, &["i can do without", "we can do without", "i could do without", "we could do without"]) {
         Some(n) => led("remove", &tokens[0], &[&out[n..]]),
         None => out,
+    }
+}
+
+/// "just one cyclist should be riding behind us", "let three cars wait at the crossing instead of two".
+fn just_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let lead = leads(&tokens, &["only", "just", "let", "have"]).unwrap_or(0);
+    let only = lead > 0 && is(tokens.first(), &["only", "just"]);
+    let than = (3..tokens.len()).find(|k| {
+        leads(&tokens[*k..], &["instead of", "rather than"]) == Some(2)
+            && tokens.get(k + 2).is_some_and(|t| number(t).is_some())
+            && tokens.get(k + 3).is_none_or(|t| closes(Some(t)))
+    });
+    let Some((_, b)) = first_noun(tokens.get(lead..).unwrap_or_default())
+        .filter(|x| x.0 > 0 && x.0 < 4 && number(&tokens[lead]).is_some())
+        .map(|x| (lead + x.0, lead + x.1))
+    else {
+        return tokens;
+    };
+    let end = than.unwrap_or(tokens.len());
+    let verb = tokens.get(b).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
+    if !(only || than.is_some()) || !verb || end <= b {
+        return tokens;
+    }
+    let mut place = &tokens[b..end];
+    while let Some((first, rest)) = place.split_first()
+        && (HELPERS.contains(&text(first)) || text(first).ends_with("ing") || is(Some(first), &["parked", "wait", "stand", "drive", "walk", "ride", "to"]))
+    {
+        place = rest;
+    }
+    let np = &tokens[lead + 1..b];
+    let at = [np, place].concat();
+    let many = number(&tokens[lead]).unwrap_or(0).max(0) as usize;
+    // (fewer than that are there: more are wanted, and that is read elsewhere)
+    let whole = place.is_empty() || is_place(place) && !has_noun(place) && place.iter().all(|t| t.kind != TokenKind::Comma);
+    let there = if place.is_empty() { talk.fits(np) } else { talk.fits(&at) };
+    if !whole || there == 0 || only && there <= many {
+        return tokens;
+    }
+    let rest = than.map_or(&[][..], |k| &tokens[k + 3..]);
+    [&led("keep exactly", &tokens[0], &[&tokens[lead..=lead], &at]), rest].concat()
+}
+
+/// "make it seven parked cars and no scooter": those go.
+fn and_none(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (2..tokens.len()).find_map(|i| {
+        (is(tokens.get(i), &["no"]) && is(tokens.get(i - 1), &["and", "but"])).then_some(())?;
+        let (_, b) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 3)?;
+        let np = &tokens[i + 1..i + 1 + b];
+        let end = tokens.get(i + 1 + b).is_none_or(|t| closes(Some(t)));
+        (end && talk.fits(np) > 0).then_some((i, i + 1 + b))
+    });
+    let orders = leads(&tokens, &["make it", "make that", "keep", "leave", "add", "put", "give me", "give us", "place", "show"]).is_some();
+    match found.filter(|_| orders) {
+        Some((i, end)) => {
+            let mut np = tokens[i + 1..end].to_vec();
+            if let Some(last) = np.last_mut()
+                && matches!(super::look_up(&last.text), Some(super::Sense::Noun(_, false)))
+            {
+                last.text = super::super::lexicon::plural(&last.text);
+            }
+            [&tokens[..i - 1], &led("and remove all the", &tokens[i], &[&np]), &tokens[end..]].concat()
+        }
+        None => tokens,
     }
 }

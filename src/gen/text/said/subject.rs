@@ -404,7 +404,8 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         None if caused => (from..tokens.len()).find(|i| is_place(&tokens[*i..]))?,
         None => return None,
     };
-    let one_of = one_of || leave && super::predicate::parts(&tokens[pred..], true).iter().any(super::predicate::Part::is_gone);
+    let one_of = one_of || leave && !tokens[pred..].iter().any(|t| matches!(text(t), "missing" | "absent"))
+            && super::predicate::parts(&tokens[pred..], true).iter().any(super::predicate::Part::is_gone);
     let known = definite || bare && talk.fits(&tokens[..end]) > 0;
     let kind = if part || one_of {
         Kind::Part
