@@ -8,7 +8,7 @@ use crate::editor::arrange::LANE_REACH_M;
 use crate::editor::lanes::nearest_lane;
 use crate::editor::pick::{self, Handle};
 use crate::editor::{Edit, Shape};
-use crate::scene::{BoxLabel, BevLayer, BoxId, Class, Frame, Scene, SceneBox};
+use crate::scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox};
 
 use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;

@@ -15,7 +15,7 @@ use crate::editor::checks::{self, Finding, Seen};
 use crate::generation::sensors::lidar;
 use crate::generation::sensors::splat::PREVIEW_SIZE;
 use crate::scene::raster::box_cells;
-use crate::scene::{BoxLabel, BoxId, Class, GridSpec, Scene, SceneBox, SceneRev};
+use crate::scene::{BoxId, BoxLabel, Class, GridSpec, Scene, SceneBox, SceneRev};
 
 /// Quiet time before a scene is checked, s.
 const AFTER_S: f64 = 0.5;

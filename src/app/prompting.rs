@@ -1,6 +1,8 @@
 //! How a description becomes a scene: which placer, with or without memory, on which road, around which objects. The window,
 //! the command line and the evaluation share it.
 
+mod filling;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,24 +10,19 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::memory::{layout_of, own_scenes};
+pub use filling::{Remembered, recall, remembered_phrases};
+use filling::{fill_in, memory};
+
+use super::memory::layout_of;
 use crate::generation::model::layout::net::LayoutNet;
 use crate::generation::placement::diffuse::{self, PlacementReport, STEPS};
-use crate::generation::placement::facts::{self, RoadKind};
-use crate::generation::placement::memory::{Entry, Memory, Open, RoadRef};
-use crate::generation::text::description::{
-    Became, Count, Description, Environment, ObjectSpec, Phrase, TimeOfDay, Weather,
-};
-use crate::generation::text::lexicon::{Sense, look_up};
+use crate::generation::placement::memory::RoadRef;
+use crate::generation::text::description::Description;
 use crate::generation::text::place::{Placement, place_with};
 use crate::generation::text::road::{self, Chosen};
 use crate::generation::text::to_graph::{Graphed, to_graph};
-use crate::generation::text::tokens::Span;
-use crate::scene::graph::{LaneRole, Locked, NodeKind, ObjectState};
-use crate::scene::{BevLayout, BoxId, Class, SceneBox};
-
-/// Most objects that memory adds.
-const MOST_REMEMBERED: usize = 14;
+use crate::scene::graph::{LaneRole, Locked, NodeKind};
+use crate::scene::{BevLayout, BoxId, SceneBox};
 
 /// Who places the objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -96,20 +93,6 @@ impl Ask {
             &self.how,
         )
     }
-}
-
-/// What came from memory.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Remembered {
-    /// The nearest scenes: what a person would say of each, and how near (cosine).
-    pub scenes: Vec<(String, f64)>,
-    /// What was filled in, in words.
-    pub filled: Vec<String>,
-    /// True if the road is a remembered one.
-    pub road: bool,
-    /// The nearest of them, whole.
-    #[serde(skip)]
-    pub nearest: Option<Entry>,
 }
 
 /// How the diffusion went.
@@ -269,15 +252,6 @@ fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {
     })
 }
 
-fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
-    let bundled = Memory::bundled()?;
-    let Some(folder) = &how.own_scenes else {
-        return Ok((bundled, Vec::new()));
-    };
-    let (own, problems) = own_scenes(folder);
-    Ok((Arc::new(bundled.with(own)), problems))
-}
-
 /// Boxes by diffusion and projection; then rules place what was left out or breaks a statement, around all the others.
 fn diffuse_and_mend(
     net: &LayoutNet,
@@ -376,168 +350,12 @@ fn road_under(
     }
 }
 
-/// Fills what a description leaves open from the nearest scenes; the road that they propose.
-fn fill_in(memory: &Memory, prompt: &str, d: &mut Description, seed: u64) -> Option<(Remembered, RoadRef)> {
-    let mut counts: BTreeMap<Class, usize> = BTreeMap::new();
-    for o in &d.foreground {
-        // "seven vehicles" counts every class that the word may mean.
-        let all: &[Class] = match look_up(&o.noun) {
-            Some(Sense::Noun(noun, _)) => noun.classes,
-            _ => &[],
-        };
-        all.iter().chain([&o.class]).for_each(|c| {
-            counts.entry(*c).or_insert(0);
-        });
-        *counts.entry(o.class).or_insert(0) += o.count.n as usize;
-    }
-    for class in d.absent.iter().flat_map(|a| &a.classes) {
-        counts.entry(*class).or_insert(0);
-    }
-    let open = Open {
-        text: prompt.to_string(),
-        road: d.road.kind.and_then(|k| RoadKind::of_template(k.name())),
-        environment: d.environment.map(environment),
-        night: d.time_of_day.map(|t| t == TimeOfDay::Night),
-        weather: d.weather.and_then(weather_index),
-        counts,
-    };
-    let proposal = memory.fill_in(&open, seed)?;
-    let mut filled = Vec::new();
-    if d.time_of_day.is_none() {
-        d.time_of_day = Some(if proposal.night {
-            TimeOfDay::Night
-        } else {
-            TimeOfDay::Day
-        });
-        filled.push(format!("time: {}", d.time_of_day.map_or("", TimeOfDay::name)));
-    }
-    if d.weather.is_none() {
-        d.weather = [
-            Weather::Clear,
-            Weather::Overcast,
-            Weather::Rain,
-            Weather::Snow,
-            Weather::Fog,
-        ]
-        .get(proposal.weather)
-        .copied();
-        filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
-    }
-    // A prompt that says how busy it is, or that this is all, leaves nothing of that open.
-    let said = prompt.to_lowercase();
-    let closed = [
-        "only",
-        "nothing but",
-        "nothing else",
-        "no one else",
-        "alone",
-        "just",
-        "exactly",
-        "lone",
-        "empty",
-        "deserted",
-    ]
-    .iter()
-    .any(|w| said.contains(w));
-    let mut room = if d.density.is_some() || closed {
-        0
-    } else {
-        MOST_REMEMBERED
-    };
-    for (class, by_state) in &proposal.counts {
-        for (n, state) in
-            by_state
-                .iter()
-                .zip([ObjectState::Moving, ObjectState::Parked, ObjectState::Waiting])
-        {
-            let n = (*n).min(room);
-            if n == 0 {
-                continue;
-            }
-            room -= n;
-            let word = format!("{state:?}").to_lowercase();
-            filled.push(format!("{n} x {} ({word})", class.label()));
-            d.foreground.push(ObjectSpec {
-                class: *class,
-                noun: class.label(),
-                count: Count::exactly(n as u32),
-                state: Some(state),
-                size: None,
-                color: None,
-                attributes: vec!["from memory".into()],
-                size_m: None,
-                relations: Vec::new(),
-                span: Span { start: 0, end: 0 },
-            });
-        }
-    }
-    let scenes = proposal
-        .from
-        .iter()
-        .map(|r| (memory.entries()[r.entry].text.clone(), r.similarity))
-        .collect();
-    Some((
-        Remembered {
-            scenes,
-            filled,
-            road: false,
-            nearest: proposal.from.first().map(|r| memory.entries()[r.entry].clone()),
-        },
-        proposal.road,
-    ))
-}
-
-/// What memory would put into a description; none without its weights.
-pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Remembered> {
-    let (memory, _) = memory(&How::default()).ok()?;
-    let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed)?;
-    Some(found)
-}
-
-/// Chips for what memory put in.
-pub fn remembered_phrases(d: &Description) -> Vec<Phrase> {
-    let from_memory = |o: &ObjectSpec| o.attributes.iter().any(|a| a == "from memory");
-    d.foreground
-        .iter()
-        .enumerate()
-        .filter(|(_, o)| from_memory(o))
-        .map(|(i, o)| Phrase {
-            span: o.span,
-            text: format!("{} {}", o.count.n, o.noun),
-            became: Became::Object(i),
-            meaning: "from memory".into(),
-        })
-        .collect()
-}
-
-fn environment(e: Environment) -> facts::Environment {
-    match e {
-        Environment::Downtown | Environment::Urban => facts::Environment::Downtown,
-        Environment::Suburban => facts::Environment::Suburban,
-        Environment::Residential => facts::Environment::Residential,
-        Environment::Rural => facts::Environment::Rural,
-        Environment::Highway => facts::Environment::Highway,
-        Environment::Industrial => facts::Environment::Industrial,
-        Environment::Nature => facts::Environment::Nature,
-    }
-}
-
-fn weather_index(w: Weather) -> Option<usize> {
-    [
-        Weather::Clear,
-        Weather::Overcast,
-        Weather::Rain,
-        Weather::Snow,
-        Weather::Fog,
-    ]
-    .iter()
-    .position(|x| *x == w)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generation::text::description::TimeOfDay;
     use crate::generation::text::read;
+    use crate::scene::Class;
 
     #[test]
     fn a_kept_road_stays_and_objects_are_placed_on_it() {

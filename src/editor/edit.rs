@@ -7,8 +7,10 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
-use crate::scene::{BoxName, BoxLabel, BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, Polyline, Scene, SceneBox, SensorRig, SourceFrame,
-    VoxelGrid, VoxelPaint, Waiver, raster,};
+use crate::scene::{
+    BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Frame, GridSpec, Polyline, Scene, SceneBox,
+    SensorRig, SourceFrame, VoxelGrid, VoxelPaint, Waiver, raster,
+};
 
 use super::Shape;
 use super::checks::waive;

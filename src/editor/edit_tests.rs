@@ -364,10 +364,15 @@ fn a_label_is_no_work_for_the_networks_and_goes_with_the_class() {
     assert_eq!(frame.occupancy, before.occupancy);
     assert_eq!(frame.boxes, frame.source.boxes, "nothing waits to be generated");
     let class = Class::Truck;
-    Edit::SetBoxClass { id, class }.apply(&mut scene).expect("a class of objects");
+    Edit::SetBoxClass { id, class }
+        .apply(&mut scene)
+        .expect("a class of objects");
     assert_eq!(scene.frame().boxes[&id].called(), "yellow truck");
     let nobody = Edit::LabelBox { id: BoxId(99), label };
-    assert!(matches!(nobody.apply(&mut scene), Err(EditError::UnknownBox { .. })));
+    assert!(matches!(
+        nobody.apply(&mut scene),
+        Err(EditError::UnknownBox { .. })
+    ));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::graph::{Edge, LaneRole, Locked, NodeKind, RelationKind, SceneGraph};
 use super::road_map::{CrossingArea, HALF_LANE_M, RoadMap, inside, outline_distance_m};
-use super::{BoxLabel, BevLayer, BoxId, Class, SceneBox};
+use super::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
 /// Up to this speed an object stands, m/s.
 pub const STANDING_MPS: f64 = 0.5;

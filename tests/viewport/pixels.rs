@@ -1,7 +1,7 @@
 //! Pixels that must have a certain colour: projection, occlusion, picking, what is skipped.
 
 use glam::{DVec2, DVec3};
-use sceneloom::scene::{BoxLabel, BevLayer, BoxId, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
+use sceneloom::scene::{BevLayer, BoxId, BoxLabel, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
 use sceneloom::viewport::{
     Background, LayoutPlane, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, ViewportError,
     headless_device,

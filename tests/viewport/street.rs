@@ -1,8 +1,10 @@
 //! A synthetic street for looking at the viewport: road, walkways, cars, buildings, trees, a sweep.
 
 use glam::{DVec2, DVec3};
-use sceneloom::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, GridSpec, LidarPoint, LidarSweep, Polyline, PolylineKind, SceneBox,
-    VoxelGrid, raster,};
+use sceneloom::scene::{
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, LidarPoint, LidarSweep, Polyline, PolylineKind,
+    SceneBox, VoxelGrid, raster,
+};
 
 pub struct Street {
     pub grid: VoxelGrid,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::editor::{Edit, Shape};
 use crate::generation::world::draw::Draw;
 use crate::scene::raster::{box_cells, disc_cells};
-use crate::scene::{BoxLabel, BevLayer, BoxId, Class, Frame, GridSpec, PolylineKind, SceneBox, VoxelGrid};
+use crate::scene::{BevLayer, BoxId, BoxLabel, Class, Frame, GridSpec, PolylineKind, SceneBox, VoxelGrid};
 
 /// Kinds of edits, by name.
 pub const KINDS: [&str; 6] = ["remove", "add", "move", "class", "road", "crossing"];

@@ -62,7 +62,8 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
                 picked |= ui.selectable_value(&mut paint, None, "Any paint").clicked();
                 for other in Paint::ALL {
                     ui.horizontal(|ui| {
-                        let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
+                        let (rect, _) =
+                            ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
                         icons::swatch(ui, rect.center(), 12.0, color(other));
                         let name = theme::sentence(other.name());
                         picked |= ui.selectable_value(&mut paint, Some(other), name).clicked();

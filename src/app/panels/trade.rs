@@ -5,7 +5,7 @@ use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::theme;
-use crate::app::trade::load::Load;
+use crate::app::trade::load::{Load, machine};
 use crate::app::trade::plot::{Mark, front_plot, percent, seconds};
 use crate::app::tuning::{LastEdit, Measuring, Tuning, foretold};
 use crate::generation::job::GenParams;
@@ -128,6 +128,11 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
                 ),
                 (true, _) => (
                     format!("times of this machine ({})", tuning.stops.machine),
+                    theme::text_weak(),
+                ),
+                // (weights and program may be older than this one)
+                (false, _) if tuning.stops.machine == machine() => (
+                    format!("times of a machine like this one ({})", tuning.stops.machine),
                     theme::text_weak(),
                 ),
                 (false, _) => (

@@ -1,5 +1,7 @@
 //! How busy the machine is, and which one it is: figures of a busy machine are worth little, those of another one nothing.
 
+use std::sync::LazyLock;
+
 use serde::Serialize;
 
 /// Load per core above which times are not to be trusted.
@@ -42,6 +44,12 @@ impl Load {
 
 /// Names this machine: processor, threads, what our kernels find.
 pub fn machine() -> String {
+    // (asked for with every frame of the panel)
+    static NAME: LazyLock<String> = LazyLock::new(describe_machine);
+    NAME.clone()
+}
+
+fn describe_machine() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()

@@ -17,7 +17,7 @@ use crate::generation::world::draw::{Draw, hash};
 use crate::generation::world::template;
 use crate::scene::graph::SceneGraph;
 use crate::scene::road_map::RoadMap;
-use crate::scene::{BoxLabel, BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
 /// Format of bank files.
 pub const VERSION: u32 = 1;

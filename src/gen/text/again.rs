@@ -77,7 +77,7 @@ impl Parser<'_> {
         };
         let many = m.plural || m.spec.count.n > 1;
         // ("a line of taxis, eight of them": how many was not said)
-        if !(m.uncounted || !m.spec.count.is_exact()) || !many {
+        if !many || !m.uncounted && m.spec.count.is_exact() {
             return false;
         }
         m.spec.count = count;
@@ -268,48 +268,6 @@ impl Parser<'_> {
         m.spec.noun = word.to_string();
         m.spec.size_m = noun.size_m;
         true
-    }
-
-    /// "witnesses counted five cones": who tells of the scene is not in it. True if it was that.
-    pub(super) fn tells(&mut self, noun: &'static Noun) -> bool {
-        static SAYING: std::sync::LazyLock<std::collections::HashSet<String>> =
-            std::sync::LazyLock::new(|| {
-                use super::words::verbs::{SAYING, forms};
-                let all = SAYING.split('|').map(forms);
-                all.flat_map(|f| [f.base, f.s, f.past, f.participle]).collect()
-            });
-        if noun.classes[0] != Class::Pedestrian {
-            return false;
-        }
-        let mut j = self.at + 1;
-        while self
-            .item(j)
-            .is_some_and(|n| matches!(n.words.as_str(), "has" | "have" | "had"))
-        {
-            j += 1;
-        }
-        let items = self.items;
-        let words = |k: usize| items.get(k).map_or("", |n| n.words.as_str());
-        let one = words(j)
-            .trim_start_matches("has ")
-            .trim_start_matches("have ")
-            .trim_start_matches("had ");
-        let two = format!("{one} {}", words(j + 1));
-        let said = SAYING.contains(one)
-            && self
-                .item(j)
-                .is_some_and(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
-            || SAYING.contains(&two);
-        if said {
-            // past the verb, and a "that" after it
-            self.at = j + usize::from(SAYING.contains(&two));
-            if words(self.at + 1) == "that" {
-                self.at += 1;
-            }
-            self.new_clause();
-            self.fresh = true;
-        }
-        said
     }
 
     /// Where "both" points: to two that were named right before, or to a group of two. True if it was that.

@@ -15,7 +15,10 @@ pub fn counted(clause: &[Token]) -> Option<(Vec<Token>, Option<Change>)> {
             "the", "number", "of", "count", "amount", "total", "quantity", "how", "many", "there", "are",
             "up", "down",
         ];
-        let from = tokens.iter().position(|t| !skip.contains(&text(t))).unwrap_or(0);
+        let from = tokens
+            .iter()
+            .position(|t| !skip.contains(&text(t)) && number(t).is_none())
+            .unwrap_or(0);
         let end = tokens
             .iter()
             .rposition(|t| !matches!(text(t), "up" | "down" | "back" | "from" | "in" | "number"))
@@ -230,7 +233,9 @@ pub fn arithmetic(rest: &[Token]) -> Option<(Vec<Token>, Change)> {
         .find_map(|t| number(t).or((matches!(t.text.as_str(), "a" | "an")).then_some(1)))
         .unwrap_or(1);
     let noun = noun_from(rest)?;
-    let next_to_noun = fewer + 1 == rest.len() || fewer < noun || rest[fewer + 1].text == "please"
+    let next_to_noun = fewer + 1 == rest.len()
+        || fewer < noun
+        || rest[fewer + 1].text == "please"
         || super::said::words::is_place(&rest[fewer + 1..]);
     if !next_to_noun || rest.get(fewer + 1).is_some_and(|t| t.text == "than") {
         return None;

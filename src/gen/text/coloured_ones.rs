@@ -28,8 +28,12 @@ pub fn named(tokens: &[Token]) -> Vec<Token> {
             && tokens[i - 3].kind == TokenKind::Comma
             && matches!(tokens[i - 2].text.as_str(), "a" | "an")
             && is_noun(&tokens[i - 4]);
-        if said_more {
-            out.push(t.clone());
+        if said_more && out.len() > 3 {
+            // (noun, comma, article, colour are there already)
+            let colour = out.pop().into_iter();
+            out.truncate(out.len() - 2);
+            let noun = out.pop().into_iter();
+            out.extend(colour.chain(noun));
             continue;
         }
         let nouns = || (0..i).rev().filter(|k| is_noun(&tokens[*k]));

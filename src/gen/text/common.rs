@@ -18,6 +18,10 @@ const ORDINALS: [&str; 12] = [
 
 const CLOSING: &str = "that is all|thats all|this is all|and that is it|and thats it|that is everything|thats everything|that is already everything|thats already everything|nothing more than that|no more than that|that will be all|thatll be all|that would be all|that will do|that should be all|that is the lot|thats the lot";
 
+const CROSSES_OURS: &str = "street that crosses ours|road that crosses ours|street which crosses ours|road which crosses ours|street that crosses mine|road that crosses mine|street that crosses our street|street that crosses our road|road that crosses our road|road that crosses our street|street that crosses my street|road that crosses my road|street crossing ours|road crossing ours|street crossing our road|street crossing our street|road crossing our street|road crossing our road|street running across ours|road running across ours|street that runs across ours";
+
+const SET_OFF: &str = "quite near|quite close|very near|very close|rather close|rather near|of course|as usual|as always|by the way|for example|for instance|say|i think|i guess|i believe|apparently|obviously|as it happens|so it seems|it seems|sadly|luckily|unfortunately|fortunately|naturally|needless to say|believe it or not|as you can see|you see|mind you|i suppose|let us say|lets say|i would say|id say|in fact|actually|surprisingly|for a change|as so often";
+
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
         || matches!(look_up(&t.text), Some(Sense::Count(c)) if c.is_exact() && t.text != "a")
@@ -34,6 +38,13 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = replaced(&out, "( ego ) vehicle|( ego ) car|( ego )", "ego vehicle");
     let out = replaced(&out, FREE, "");
     let out = without_asides(&without_closing(&out));
+    let out = replaced(&own_thing(&out), "in number|in numbers", "in total");
+    let out = replaced(
+        &of_so_many(&out),
+        "ourselves|myself|itself|himself|herself|themselves",
+        "",
+    );
+    let out = replaced(&out, CROSSES_OURS, "cross street");
     let out = both_the(&out);
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
@@ -156,6 +167,59 @@ fn bounds(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
+/// "a family of five": five people.
+fn of_so_many(tokens: &[Token]) -> Vec<Token> {
+    const GROUP: &str =
+        "family of|group of|party of|team of|crew of|band of|gang of|bunch of|crowd of|class of";
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], GROUP).filter(|n| {
+            let many = tokens.get(i + n).is_some_and(is_number);
+            let bare = tokens.get(i + n + 1).is_none_or(|t| {
+                !matches!(
+                    look_up(&t.text),
+                    Some(Sense::Noun(..) | Sense::Attribute(_) | Sense::Size(_) | Sense::Color(_))
+                )
+            });
+            many && bare
+        });
+        match n {
+            Some(n) => {
+                if out
+                    .last()
+                    .is_some_and(|t| matches!(t.text.as_str(), "a" | "the" | "one" | "another"))
+                {
+                    out.pop();
+                }
+                out.push(tokens[i + n].clone());
+                out.push(word("people", &tokens[i]));
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "his own car": his car.
+fn own_thing(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let whose = out
+            .last()
+            .is_some_and(|b| matches!(b.text.as_str(), "his" | "her" | "their" | "its"));
+        let thing = tokens.get(i + 1).is_some_and(super::ellipsis::is_noun);
+        if !(t.text == "own" && whose && thing) {
+            out.push(t.clone());
+        }
+    }
+    out
+}
+
 /// ", unable to pass,": why somebody does what is told says nothing of where.
 fn without_asides(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = "unable|ready|willing|eager|keen|hoping|hesitant|reluctant|afraid|impatient|unwilling|intending|unsure|obliged|determined|prepared|anxious|desperate|wanting|meaning|wishing|refusing|failing";
@@ -165,9 +229,24 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
         let aside = begins(&tokens[i..], LEAD)
             .filter(|_| out.last().is_some_and(|t| t.kind == TokenKind::Comma))
             .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == "to"));
-        let end = aside.and_then(|n| {
-            (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word)
+        let end =
+            aside.and_then(|n| (i + n..tokens.len().min(i + 8)).find(|k| tokens[*k].kind != TokenKind::Word));
+        // ", quite near,"
+        let said = begins(&tokens[i..], SET_OFF).filter(|n| {
+            let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
+            comma(out.last()) && comma(tokens.get(i + n))
         });
+        if let Some(n) = said {
+            out.pop();
+            let verb = tokens.get(i + n + 1).is_some_and(|t| {
+                matches!(
+                    t.text.as_str(),
+                    "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives"
+                )
+            });
+            i += n + usize::from(verb);
+            continue;
+        }
         let plain = |k: usize| !tokens[i..k].iter().any(super::ellipsis::is_noun);
         match end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k)) {
             Some(end) => {

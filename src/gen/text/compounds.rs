@@ -94,7 +94,17 @@ fn agents(items: Vec<Item>) -> Vec<Item> {
         while out.get(next).is_some_and(|n| {
             matches!(
                 n.words.as_str(),
-                "is" | "are" | "were" | "was" | "who" | "that" | "has" | "with" | "just" | "in" | "his" | "her"
+                "is" | "are"
+                    | "were"
+                    | "was"
+                    | "who"
+                    | "that"
+                    | "has"
+                    | "with"
+                    | "just"
+                    | "in"
+                    | "his"
+                    | "her"
             )
         }) {
             next += 1;

@@ -15,7 +15,7 @@ use super::select::{Candidate, Chosen, choose};
 use super::tokens::{LONGEST, Span};
 use super::words::edits::{Pick, Verb};
 use crate::scene::graph::{LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind};
-use crate::scene::{BevLayout, BoxLabel, BoxId, Class, SceneBox};
+use crate::scene::{BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
 /// Most commands of one text that are carried out.
 pub const MOST_COMMANDS: usize = 100;
@@ -156,13 +156,15 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     let mut done = 0;
     while let Some(mut commands) = reader.next(&editor.map, &editor.boxes, &editor.last) {
         // "keep the bus and remove the cars": among other commands that only says what stays
-        let others = commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
+        let others =
+            commands.iter().filter(|c| c.verb != Verb::Note).count() > 1 || done > 0 || !reader.ended();
         for c in commands.iter_mut().filter(|c| c.verb == Verb::Keep && others) {
             let counted = c.change.is_some() || c.targets.iter().any(|t| !t.uncounted);
             if !c.only && !counted && !c.targets.is_empty() {
                 c.verb = Verb::Note;
             }
         }
+        editor.settle(&mut commands);
         for command in commands {
             if done < MOST_COMMANDS {
                 editor.read_command(text, done, &command);
@@ -179,6 +181,46 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
 }
 
 impl Editor<'_> {
+    /// What commands of one sentence mean together: "turn the cones into barriers and the barriers into cones", "keep the
+    /// coach and the bus, lose the rest".
+    fn settle(&self, commands: &mut [Command]) {
+        let found = |c: &Command| -> Option<Vec<BoxId>> {
+            let mut all = Vec::new();
+            for m in &c.targets {
+                match choose(&self.map, &self.boxes, m, &c.mentions) {
+                    Chosen::These(ids) => all.extend(ids),
+                    _ => return None,
+                }
+            }
+            (!all.is_empty()).then_some(all)
+        };
+        for i in 1..commands.len() {
+            let (a, b) = (&commands[i - 1], &commands[i]);
+            let class = |m: Option<&Mention>| m.map(|m| m.spec.class);
+            let crosswise = a.verb == Verb::Replace
+                && b.verb == Verb::Replace
+                && class(a.by.as_ref()).is_some()
+                && class(a.by.as_ref()) == class(b.targets.first())
+                && class(b.by.as_ref()) == class(a.targets.first());
+            if crosswise {
+                commands[i].found = found(&commands[i]);
+                continue;
+            }
+            let rest = matches!(a.verb, Verb::Keep | Verb::Note)
+                && !a.targets.is_empty()
+                && b.verb == Verb::Remove
+                && b.back == Some(Back::Others);
+            if let Some(kept) = rest.then(|| found(a)).flatten() {
+                let alike = |x: &SceneBox| kept.iter().any(|id| self.boxes[id].class == x.class);
+                let others = self.boxes.values().any(|x| alike(x) && !kept.contains(&x.id));
+                if !others {
+                    let rest = self.boxes.keys().filter(|id| !kept.contains(id));
+                    commands[i].found = Some(rest.copied().collect());
+                }
+            }
+        }
+    }
+
     /// Carries out one command and reports it.
     fn read_command(&mut self, text: &str, i: usize, command: &Command) {
         let before = self.out.edits.len();
@@ -286,33 +328,85 @@ impl Editor<'_> {
             }
             Verb::Add => {
                 // what is there and was only named is not added
-                let named = |m: &Mention| m.definite && m.pick != Some(Pick::More) && !m.is_anchor
-                    || m.uncounted && super::mention::means_all(m);
-                let theirs = ["their ", "his ", "her ", "its "].iter().any(|w| c.text.to_lowercase().starts_with(w));
+                let named = |m: &Mention| {
+                    m.definite && m.pick != Some(Pick::More) && !m.is_anchor
+                        || m.uncounted && super::mention::means_all(m)
+                };
+                let theirs = ["their ", "his ", "her ", "its "]
+                    .iter()
+                    .any(|w| c.text.to_lowercase().starts_with(w));
                 let text = c.text.to_lowercase();
                 let orders = [
-                    "add", "insert", "include", "create", "generate", "spawn", "append", "duplicate", "introduce", "bring", "put",
-                    "place", "set", "park", "give", "draw", "show", "another", "more", "second", "extra",
+                    "add",
+                    "insert",
+                    "include",
+                    "create",
+                    "generate",
+                    "spawn",
+                    "append",
+                    "duplicate",
+                    "introduce",
+                    "bring",
+                    "put",
+                    "place",
+                    "set",
+                    "park",
+                    "give",
+                    "draw",
+                    "show",
+                    "another",
+                    "more",
+                    "second",
+                    "extra",
                 ];
-                let ordered = text.split(|ch: char| !ch.is_alphanumeric()).any(|w| orders.contains(&w));
+                let ordered = text
+                    .split(|ch: char| !ch.is_alphanumeric())
+                    .any(|w| orders.contains(&w));
                 let there = |m: &Mention| {
                     m.definite && !super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
                 };
                 let again = !ordered && !c.in_place && c.targets.iter().all(there);
                 // "half of the cones have been collected" speaks of those that are there
-                let part = [" of the ", " of these ", " of those ", " of our ", " of my ", " of them "]
-                    .iter()
-                    .any(|of| text.split_once(of).is_some_and(|(before, _)| before.split(' ').count() < 3));
+                let part = [
+                    " of the ",
+                    " of these ",
+                    " of those ",
+                    " of our ",
+                    " of my ",
+                    " of them ",
+                ]
+                .iter()
+                .any(|of| {
+                    text.split_once(of)
+                        .is_some_and(|(before, _)| before.split(' ').count() < 3)
+                });
+                // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
+                let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
+                let remark = c.implied
+                    && !ordered
+                    && !c.in_place
+                    && !c.reading.not_understood.is_empty()
+                    && c.targets
+                        .iter()
+                        .all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
+                let again = again || remark;
                 // "barriers cost money", "one is still to come": a remark on what is there
-                let has = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
-                let remark = |m: &Mention| {
-                    let stays = [" left", " remain", " still", " enough", "where "].iter().any(|w| text.contains(w));
+                let told = |m: &Mention| {
+                    let stays = [" left", " remain", " still", " enough", "where "]
+                        .iter()
+                        .any(|w| text.contains(w));
                     let bare = m.uncounted && m.plural && m.pick.is_none();
-                    m.spec.relations.is_empty() && has(m) && (bare || stays)
+                    m.spec.relations.is_empty() && alike(m) && (bare || stays)
                 };
-                let part = part || !c.in_place && !ordered && c.targets.iter().all(remark);
-                if (c.implied || again) && !c.targets.is_empty() && (theirs || again || part || c.targets.iter().all(named)) {
-                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                let part = part || !c.in_place && !ordered && c.targets.iter().all(told);
+                if (c.implied || again)
+                    && !c.targets.is_empty()
+                    && (theirs || again || part || c.targets.iter().all(named))
+                {
+                    self.note(format!(
+                        "{:?}: what should become of it was not understood",
+                        c.text
+                    ));
                     return (!done.is_empty()).then(|| done.join(", "));
                 }
                 let d = &c.reading.description;
@@ -340,7 +434,9 @@ impl Editor<'_> {
                 }
                 // ("neither cones nor anything else stands ahead of us" speaks of a place)
                 let all = c.implied && c.reading.description.absent.iter().any(|a| a.classes.len() > 6);
-                let placed = [" in ", " on ", " ahead", " behind", " left", " right"].iter().any(|w| text.contains(w));
+                let placed = [" in ", " on ", " ahead", " behind", " left", " right"]
+                    .iter()
+                    .any(|w| text.contains(w));
                 if all && placed {
                     self.note(format!("{:?}: what should go was not understood", c.text));
                 } else if !c.reading.description.absent.is_empty() {
@@ -458,6 +554,14 @@ impl Editor<'_> {
 
     /// The boxes that a command is about; asks back or notes where none or several fit.
     pub(super) fn targets(&mut self, c: &Command, removing: bool) -> Option<Vec<BoxId>> {
+        if let Some(found) = &c.found {
+            let ids: Vec<BoxId> = found
+                .iter()
+                .filter(|id| self.boxes.contains_key(id))
+                .copied()
+                .collect();
+            return (!ids.is_empty()).then_some(ids);
+        }
         if let Some(back) = c.back {
             let ids: Vec<BoxId> = match back {
                 Back::Same => self.last.clone(),
@@ -520,6 +624,10 @@ impl Editor<'_> {
                 _ => super::select::fitting(&self.map, &self.boxes, spared, &c.except),
             };
             all.retain(|id| !ids.contains(id));
+        }
+        // "remove everything else": but what was spoken of
+        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else") {
+            all.retain(|id| !self.last.contains(id));
         }
         all.sort_unstable();
         all.dedup();

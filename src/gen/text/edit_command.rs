@@ -216,6 +216,8 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let given = verb;
     let mut verb = match verb {
         None if only => Verb::Keep,
+        // "the cyclist behind us has two friends with him" asks for nothing that is known
+        None if there_already && placed && says_something(tokens) => Verb::Note,
         None if there_already && placed => Verb::Move,
         None if there_already => Verb::Make,
         None => Verb::Add,
@@ -249,7 +251,10 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let implied = given.is_none();
     let mut c = Command::new(verb, text, span);
     c.implied = implied;
-    c.only = only || tokens.iter().take(3).any(|t| matches!(t.text.as_str(), "only" | "just" | "exactly"));
+    c.only = tokens
+        .iter()
+        .take(4)
+        .any(|t| matches!(t.text.as_str(), "only" | "just" | "nothing" | "alone"));
     c.state = match first {
         "stop" | "halt" => Some(ObjectState::Waiting),
         "park" => Some(ObjectState::Parked),
@@ -356,6 +361,29 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
         }
     }
     c
+}
+
+/// True if a verb is said of what is named.
+fn says_something(tokens: &[Token]) -> bool {
+    let noun = tokens.iter().position(super::rephrase::is_noun).unwrap_or(0);
+    tokens[noun..].iter().any(|t| {
+        matches!(
+            t.text.as_str(),
+            "has"
+                | "have"
+                | "had"
+                | "is"
+                | "are"
+                | "was"
+                | "were"
+                | "does"
+                | "do"
+                | "did"
+                | "disturbs"
+                | "seems"
+                | "looks"
+        )
+    })
 }
 
 fn is_adjective(item: &Item) -> bool {

@@ -35,6 +35,7 @@ impl Editor<'_> {
         others
             .iter()
             .for_each(|id| self.push(TextEdit::Remove { id: *id }));
+        self.last = ids.to_vec();
     }
 
     /// The boxes that a mention fits, children apart from adults where the scene has both.
@@ -82,9 +83,11 @@ impl Editor<'_> {
         let said = c.text.to_lowercase();
         let said = said.trim_start_matches(|ch: char| !ch.is_alphabetic());
         let keeps = c.only
-            || ["keep", "leave", "retain", "preserve", "save", "spare", "only", "just", "let", "stick"]
-                .iter()
-                .any(|w| said.starts_with(w) || said.contains(&format!(" {w} ")));
+            || [
+                "keep", "leave", "retain", "preserve", "save", "spare", "only", "just", "let", "stick",
+            ]
+            .iter()
+            .any(|w| said.starts_with(w) || said.contains(&format!(" {w} ")));
         for m in &c.targets {
             let fitting = self.those_meant(m, c);
             let wanted = match c.change {
@@ -95,7 +98,10 @@ impl Editor<'_> {
             if c.change.is_none() && m.definite && !m.plural {
                 // "keep only the bus"
                 if !keeps {
-                    self.note(format!("{:?}: what should become of it was not understood", c.text));
+                    self.note(format!(
+                        "{:?}: what should become of it was not understood",
+                        c.text
+                    ));
                     continue;
                 }
                 match choose(&self.map, &self.boxes, m, &c.mentions) {
@@ -113,6 +119,11 @@ impl Editor<'_> {
                 self.keep_only(&fitting);
                 continue;
             }
+            // "leave only the two cars": nothing else stays
+            if c.only && c.change.is_none() && m.definite && !m.uncounted && fitting.len() == wanted {
+                self.keep_only(&fitting);
+                continue;
+            }
             if fitting.len() > wanted {
                 let mut by_range: Vec<(f64, BoxId)> = fitting
                     .iter()
@@ -122,7 +133,11 @@ impl Editor<'_> {
                 for (_, id) in by_range.iter().take(fitting.len() - wanted) {
                     self.push(TextEdit::Remove { id: *id });
                 }
-                self.last = fitting.iter().filter(|id| self.boxes.contains_key(id)).copied().collect();
+                self.last = fitting
+                    .iter()
+                    .filter(|id| self.boxes.contains_key(id))
+                    .copied()
+                    .collect();
                 self.note(format!("the {} farthest were removed", fitting.len() - wanted));
             } else if fitting.len() < wanted {
                 let mut spec = m.spec.clone();
@@ -185,7 +200,10 @@ impl Editor<'_> {
     pub(super) fn replace_all(&mut self, ids: &[BoxId], c: &Command) {
         let all = c.targets.first().is_some_and(|m| m.uncounted && m.plural);
         // "replace each barrier by two cones"
-        let per_each = c.targets.first().is_some_and(|m| m.pick == Some(super::words::edits::Pick::All) && !m.plural && m.uncounted);
+        let per_each = c
+            .targets
+            .first()
+            .is_some_and(|m| m.pick == Some(super::words::edits::Pick::All) && !m.plural && m.uncounted);
         let wanted = match &c.by {
             Some(by) if per_each && !by.uncounted => by.spec.count.n as usize * ids.len(),
             Some(by) if !by.uncounted && (!all || by.spec.count.n > 1 || said_one(&c.text)) => {
@@ -193,6 +211,7 @@ impl Editor<'_> {
             }
             _ => ids.len(),
         };
+        let old = ids.first().and_then(|id| self.boxes.get(id)).copied();
         for id in ids.iter().skip(wanted.max(1)) {
             self.push(TextEdit::Remove { id: *id });
         }
@@ -204,11 +223,32 @@ impl Editor<'_> {
             spec.count = Count::exactly((wanted - ids.len()) as u32);
             spec.relations
                 .retain(|r| !matches!(r.anchor, super::description::Anchor::Object(_)));
-            // the others stand where those stood
-            self.like_the_others(&mut spec, ids);
+            // more than were there stand by the first: in its strip, on its side of the ego vehicle
+            if let Some(old) = old.filter(|_| spec.relations.is_empty()) {
+                spec.relations.extend(self.where_it_is(&old, spec.span));
+                let side = if old.center_m.x > 0.0 {
+                    RelationKind::InFrontOf
+                } else {
+                    RelationKind::Behind
+                };
+                if old.center_m.x.abs() > 6.0 {
+                    spec.relations.push(Stated {
+                        relation: side,
+                        anchor: Anchor::Ego,
+                        and: None,
+                        distance_m: None,
+                        span: spec.span,
+                    });
+                }
+            } else {
+                self.like_the_others(&mut spec, ids);
+            }
             let parked = spec.relations.iter().any(|r| {
                 use crate::scene::graph::LaneRole as L;
-                matches!(r.anchor, Anchor::Lane(L::LeftRoadside | L::RightRoadside | L::Carpark))
+                matches!(
+                    r.anchor,
+                    Anchor::Lane(L::LeftRoadside | L::RightRoadside | L::Carpark)
+                )
             });
             if parked && spec.state.is_none() && spec.class.is_vehicle() {
                 spec.state = Some(crate::scene::graph::ObjectState::Parked);

@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Piece, Talk, chosen, except, said, worded};
+use super::said::{Left, Piece, Talk, chosen, except, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -117,6 +117,8 @@ pub struct Command {
     pub only: bool,
     /// No verb was said.
     pub implied: bool,
+    /// Boxes that were found before an earlier command of the sentence made others of them.
+    pub found: Option<Vec<BoxId>>,
     /// Each of those named is meant: "the nurse and the child".
     pub each: bool,
 }
@@ -146,6 +148,7 @@ impl Command {
             in_place: false,
             only: false,
             implied: false,
+            found: None,
             each: false,
         }
     }
@@ -218,6 +221,8 @@ pub(super) struct Reader<'t> {
     tokens: Vec<Token>,
     at: usize,
     last_noun: Option<Vec<Token>>,
+    /// What the sentences before left to be pointed at.
+    left: Left,
     /// What the sentences before named, one of a kind.
     named: Vec<Class>,
 }
@@ -226,9 +231,10 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: labelled_apart(super::common::plain(&tokens(text))),
+            tokens: labelled_apart(super::said::told_once(super::common::plain(&tokens(text)))),
             at: 0,
             last_noun: None,
+            left: Left::default(),
             named: Vec::new(),
         }
     }
@@ -283,13 +289,13 @@ impl<'t> Reader<'t> {
             carried: false,
             last: of_last.map(|c| c.label()),
         };
-        let whole = &super::said::spared(&chosen(&self.tokens[from..end], &talk))[..];
+        let asked = self.tokens[from..end]
+            .last()
+            .is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
+        let pointed = self.left.resolved(&self.tokens[from..end], &talk);
+        let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
-        let trace = std::env::var("TRACE_K").is_ok(); // TRACE
-        let joined = |t: &[Token]| t.iter().map(|t| t.text.clone()).collect::<Vec<_>>().join(" "); // TRACE
-        if trace { eprintln!("  tokens: {}\n  chosen: {}", joined(&self.tokens[from..end]), joined(whole)); // TRACE
-            eprintln!("  worded: {}", joined(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk))); } // TRACE
         let mut out: Vec<Command> = Vec::new();
         for piece in pieces {
             match piece {
@@ -298,11 +304,12 @@ impl<'t> Reader<'t> {
                     out.push(*command);
                 }
                 Piece::Plain(tokens) => {
-                    if trace { eprintln!("  plain: {} => {}", joined(&tokens), joined(&rephrase(&tokens).tokens)); } // TRACE
                     out.extend(imperatives(self.text, &rephrase(&tokens), &mut self.last_noun));
                 }
             }
         }
+        let quiet = out.iter().all(|c| c.verb == Verb::Note);
+        self.left = Left::of(&pointed, asked, quiet, std::mem::take(&mut self.left));
         if let Some((_, np)) = cut {
             let mut spared = Command::new(Verb::Note, self.text, np[0].span);
             target_part(self.text, &tag(&np), &mut spared);
@@ -314,8 +321,9 @@ impl<'t> Reader<'t> {
                 c.except.clone_from(&spared.targets);
             }
         }
-        self.named = (from..end).filter_map(|i| only_one(&self.tokens[i], boxes)).collect();
-        if trace { for c in &out { eprintln!("  cmd {:?} {:?} targets {:?} back {:?} dest {:?} turn {:?} state {:?} in_place {} implied {} only {}", c.verb, c.text, c.targets.iter().map(|t| format!("{}{} {:?} {:?} {:?}", if t.uncounted {0} else {t.spec.count.n}, t.spec.noun, t.spec.state, t.pick, t.spec.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>())).collect::<Vec<_>>(), c.back, c.destination.as_ref().map(|d| match d { Destination::Place(p) => format!("Place {:?}", p.relations.iter().map(|r| (r.relation, r.anchor.clone(), r.distance_m)).collect::<Vec<_>>()), d => format!("{d:?}")}), c.turn, c.state, c.in_place, c.implied, c.only); } } // TRACE
+        self.named = (from..end)
+            .filter_map(|i| only_one(&self.tokens[i], boxes))
+            .collect();
         Some(out)
     }
 }

@@ -95,11 +95,46 @@ impl Editor<'_> {
         }
     }
 
+    /// "an excavator there, and a truck behind the excavator": where the scene has none, the new one is meant.
+    fn refer_to_new(&self, d: &mut Description) {
+        let refers = referred(d);
+        let stands_for = (0..d.foreground.len()).find_map(|i| {
+            let o = &d.foreground[i];
+            let named = self.definite.contains(&o.span) && refers.contains(&i) && o.relations.is_empty();
+            if !named || !self.meant(o).is_empty() {
+                return None;
+            }
+            let new = (0..d.foreground.len()).find(|&j| {
+                let n = &d.foreground[j];
+                j != i
+                    && n.class == o.class
+                    && !self.definite.contains(&n.span)
+                    && !n.relations.iter().any(|r| r.anchor == Anchor::Object(i))
+            })?;
+            Some((i, new))
+        });
+        let Some((old, new)) = stands_for else {
+            return;
+        };
+        d.foreground.remove(old);
+        let renumber = |a: &mut Anchor| {
+            if let Anchor::Object(k) = a {
+                let to = if *k == old { new } else { *k };
+                *k = to - usize::from(to > old);
+            }
+        };
+        for r in d.foreground.iter_mut().flat_map(|o| &mut o.relations) {
+            renumber(&mut r.anchor);
+            r.and.iter_mut().for_each(renumber);
+        }
+    }
+
     /// Finds places for what a description names; `from` is the box that is moved there, which does not stand in its own way.
     pub(super) fn arrange(&mut self, d: &Description, from: Option<&SceneBox>) -> Arranged {
         let mut d = d.clone();
         d.density = None;
         self.lanes_that_are_there(&mut d);
+        self.refer_to_new(&mut d);
         let refers = referred(&d);
         let mut held: Vec<(usize, Vec<SceneBox>)> = Vec::new();
         for i in 0..d.foreground.len() {
@@ -195,7 +230,11 @@ impl Editor<'_> {
         let mut follows = d.clone();
         let mut any = false;
         for o in &mut follows.foreground {
-            let drives = (o.class.is_vehicle() || matches!(o.class, crate::scene::Class::Motorcycle | crate::scene::Class::Bicycle))
+            let drives = (o.class.is_vehicle()
+                || matches!(
+                    o.class,
+                    crate::scene::Class::Motorcycle | crate::scene::Class::Bicycle
+                ))
                 && o.state != Some(crate::scene::graph::ObjectState::Parked);
             let lane = o.relations.iter().any(|r| matches!(r.anchor, Anchor::Lane(_)));
             for r in o.relations.iter_mut().filter(|_| drives && !lane) {
@@ -246,7 +285,11 @@ impl Editor<'_> {
         let Some(spec) = d.foreground.first() else {
             return false;
         };
-        let spots: Vec<SceneBox> = if self.left.is_empty() { self.gone.clone() } else { std::mem::take(&mut self.left) };
+        let spots: Vec<SceneBox> = if self.left.is_empty() {
+            self.gone.clone()
+        } else {
+            std::mem::take(&mut self.left)
+        };
         let mut rest = spec.count.n as usize;
         self.last.clear();
         for old in spots.iter().take(rest) {
@@ -278,13 +321,21 @@ impl Editor<'_> {
 
     /// "the motorcycle takes its place": what is there already is moved to where another has stood.
     pub(super) fn put_in_place(&mut self, c: &super::edit_grammar::Command) -> bool {
-        let ([old], [m]) = (if self.left.is_empty() { &self.gone[..] } else { &self.left[..] }, c.targets.as_slice()) else {
+        let ([old], [m]) = (
+            if self.left.is_empty() {
+                &self.gone[..]
+            } else {
+                &self.left[..]
+            },
+            c.targets.as_slice(),
+        ) else {
             return false;
         };
         if !m.definite {
             return false;
         }
-        let super::select::Chosen::These(ids) = super::select::choose(&self.map, &self.boxes, m, &c.mentions) else {
+        let super::select::Chosen::These(ids) = super::select::choose(&self.map, &self.boxes, m, &c.mentions)
+        else {
             return false;
         };
         let (old, [id]) = (*old, ids.as_slice()) else {
@@ -294,7 +345,11 @@ impl Editor<'_> {
             return false;
         };
         let center_m = old.center_m.truncate().extend(b.center_m.z);
-        self.push(TextEdit::Move { id: *id, center_m, yaw_rad: old.yaw_rad });
+        self.push(TextEdit::Move {
+            id: *id,
+            center_m,
+            yaw_rad: old.yaw_rad,
+        });
         self.last = vec![*id];
         true
     }

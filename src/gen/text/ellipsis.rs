@@ -14,8 +14,9 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
         let mut s = super::measures::farther_by(sentence, &out);
         s = super::measures::same_distance(&s, &out);
         s = same_side(&s, &out);
-        s = one_lane(&s);
-        s = has_again(&s);
+        s = super::ellipsis_lanes::one_lane(&s);
+        s = super::ellipsis_lanes::has_again(&s);
+        s = super::ellipsis_lanes::next_lane(&s);
         s = second_side(&s);
         s = place_again(&s, &out);
         s = replaced(
@@ -59,7 +60,7 @@ pub(super) fn is_unit(t: &Token) -> bool {
 }
 
 /// Kerbs, pavements: strips that each side of a road has.
-fn is_strip(word: &str) -> bool {
+pub(super) fn is_strip(word: &str) -> bool {
     matches!(
         look_up(word),
         Some(Sense::Place(
@@ -108,107 +109,6 @@ fn same_side(sentence: &[Token], before: &[Token]) -> Vec<Token> {
                 i += begins(&sentence[i..], "of the road|of the street|of the carriageway").unwrap_or(0);
             }
             _ => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
-}
-
-/// "the lane to my left has a bus in it, the one to my right a taxi": a lane again, which has something again.
-fn one_lane(sentence: &[Token]) -> Vec<Token> {
-    const SIDES: &str = "to my right|to my left|to our right|to our left|on my right|on my left|on our right|on our left|on the right|on the left|to the right|to the left";
-    let Some(lane) = sentence.iter().position(|t| t.text == "lane") else {
-        return sentence.to_vec();
-    };
-    let has = sentence[lane..]
-        .iter()
-        .find(|t| matches!(t.text.as_str(), "has" | "holds" | "contains" | "carries"));
-    let sentence = &replaced(sentence, "holds a|contains a|carries a", "has a")[..];
-    let mut out = sentence[..lane].to_vec();
-    let mut i = lane;
-    while i < sentence.len() {
-        let one =
-            begins(&sentence[i..], "the one|that").filter(|n| begins(&sentence[i + n..], SIDES).is_some());
-        let Some(n) = one else {
-            out.push(sentence[i].clone());
-            i += 1;
-            continue;
-        };
-        let at = out.len();
-        out.extend(["the", "lane"].map(|w| word(w, &sentence[i])));
-        i += n;
-        let side = begins(&sentence[i..], SIDES).unwrap_or(0);
-        out.extend_from_slice(&sentence[i..i + side]);
-        i += side;
-        let fresh = sentence
-            .get(i)
-            .is_some_and(|t| matches!(t.text.as_str(), "a" | "an" | "another") || number(t).is_some());
-        if fresh && has.is_some() {
-            out.push(word("has", &sentence[i]));
-            if let Some(t) = out
-                .get_mut(at.saturating_sub(1))
-                .filter(|t| t.kind == TokenKind::Comma)
-            {
-                t.kind = TokenKind::Stop;
-            }
-        }
-    }
-    out
-}
-
-/// "the left lane contains two cars, and the right lane a truck": which has it again.
-fn has_again(sentence: &[Token]) -> Vec<Token> {
-    let place = |t: &Token| is_strip(&t.text) || matches!(t.text.as_str(), "lane" | "side" | "one");
-    let verb = sentence.iter().position(|t| {
-        matches!(
-            t.text.as_str(),
-            "has" | "holds" | "contains" | "carries" | "hosts" | "features" | "gets"
-        )
-    });
-    let Some(verb) = verb.filter(|v| sentence[..*v].iter().rev().take(5).any(place)) else {
-        return sentence.to_vec();
-    };
-    let mut out = sentence[..=verb].to_vec();
-    let mut i = verb + 1;
-    while i < sentence.len() {
-        let opens = sentence[i].kind == TokenKind::Comma || matches!(sentence[i].text.as_str(), "and" | "while");
-        let the = i + 1 + usize::from(sentence.get(i + 1).is_some_and(|t| matches!(t.text.as_str(), "and" | "while")));
-        let named = opens
-            && sentence
-                .get(the)
-                .is_some_and(|t| matches!(t.text.as_str(), "the" | "my" | "our"));
-        // the place, and what it has at once after it
-        let fresh = (the + 2..sentence.len().min(the + 8))
-            .take_while(|k| !ends(sentence.get(*k)) && !is_noun(&sentence[*k - 1]))
-            .find(|k| {
-                let again = sentence[*k].text == "one"
-                    && matches!(
-                        sentence[*k - 1].text.as_str(),
-                        "left" | "right" | "hand" | "other" | "far" | "near" | "opposite" | "oncoming"
-                    );
-                (matches!(sentence[*k].text.as_str(), "a" | "an" | "another") || number(&sentence[*k]).is_some())
-                    && !again
-                    && !sentence.get(k + 1).is_some_and(is_unit)
-            });
-        match fresh.filter(|k| named && sentence[the..*k].iter().any(place)) {
-            Some(fresh) => {
-                out.push(Token {
-                    kind: TokenKind::Stop,
-                    ..word(".", &sentence[i])
-                });
-                for t in &sentence[the..fresh] {
-                    let same = sentence[..verb].iter().rev().find(|p| place(p) && p.text != "one");
-                    match same.filter(|_| t.text == "one") {
-                        Some(p) => out.push(word(&p.text, t)),
-                        None => out.push(t.clone()),
-                    }
-                }
-                out.push(word("has", &sentence[fresh]));
-                i = fresh;
-            }
-            None => {
                 out.push(sentence[i].clone());
                 i += 1;
             }
@@ -368,8 +268,10 @@ fn one_a_side(sentence: &[Token]) -> Vec<Token> {
     });
     let n = begins(&sentence[i..], EACH).unwrap_or(0);
     // "flanked by two motorbikes, one on either side": that is what flanking is
-    let flanks = sentence[..i].windows(2).any(|w| w[0].text == "flanked" && w[1].text == "by");
-    if flanks && ends(sentence.get(i + n + 1)) {
+    let flanks = sentence[..i]
+        .windows(2)
+        .any(|w| w[0].text == "flanked" && w[1].text == "by");
+    if flanks && i + n < sentence.len() && ends(sentence.get(i + n + 1)) {
         let apart = usize::from(sentence[i - 1].kind == TokenKind::Comma);
         return [&sentence[..i - apart], &sentence[i + n + 1..]].concat();
     }

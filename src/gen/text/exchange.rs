@@ -26,6 +26,11 @@ const BRINGS: &[&[&str]] = &[
     &["insert"],
     &["show"],
     &["give", "me"],
+    &["get", "me"],
+    &["bring", "me"],
+    &["fetch", "me"],
+    &["find", "me"],
+    &["fetch"],
     &["have"],
     &["use"],
     &["show", "me"],
@@ -101,9 +106,14 @@ pub fn exchanged(clause: &[Token]) -> Option<Vec<Token>> {
         (both && fresh).then(|| command("replace", first, &[old, &[by(first)], new]))
     };
     if matches!(text(first), "substitute" | "swap")
-        && clause
-            .get(1)
-            .is_some_and(|t| matches!(text(t), "a" | "an" | "in") || number(t).is_some() && text(t) != "both")
+        && clause.get(1).is_some_and(|t| {
+            let bare = text(first) == "substitute"
+                && is_noun(t)
+                && clause.windows(2).any(|w| {
+                    text(&w[0]) == "for" && matches!(text(&w[1]), "the" | "all" | "every" | "both" | "those")
+                });
+            matches!(text(t), "a" | "an" | "in") || number(t).is_some() && text(t) != "both" || bare
+        })
     {
         let k = clause.iter().position(|t| text(t) == "for")?;
         let new = if text(&clause[1]) == "in" {

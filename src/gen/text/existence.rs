@@ -124,6 +124,9 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         "nobody" | "noone" => 1,
         _ => begins_with(clause, &["no", "one"]).then_some(2)?,
     };
+    if clause.iter().any(|t| text(t) == "yet") {
+        return Some(Vec::new()); // a remark
+    }
     let clause_end = clause
         .iter()
         .position(|t| matches!(text(t), "any" | "anymore" | "here") || t.kind == TokenKind::Comma)
@@ -136,7 +139,11 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         _ => "remove all people",
     };
     if who != "remove all people" {
-        return Some(command(who, first, &[clause.get(n + 1..clause_end).unwrap_or(&[])]));
+        return Some(command(
+            who,
+            first,
+            &[clause.get(n + 1..clause_end).unwrap_or(&[])],
+        ));
     }
     let rest: Vec<Token> = clause[n..clause_end.max(n)]
         .iter()

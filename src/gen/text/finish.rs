@@ -1,6 +1,8 @@
 //! Mentions to the description: parts of groups, both sides, contradictions, phrases.
 
-use super::description::{Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay};
+use super::description::{
+    Anchor, Became, Count, ObjectSpec, Phrase, Reading, Road, Stated, TimeOfDay, Weather,
+};
 use super::mention::Mention;
 use super::tokens::Span;
 use crate::scene::Class;
@@ -25,82 +27,6 @@ fn drop_totals(mentions: &mut [Mention]) {
             mentions[i].gone = true;
         }
         mentions[i].spec.attributes.retain(|a| a != "in total");
-    }
-}
-
-/// Nouns that only say of what sort the ones are that a list then names.
-const SORTS: &str = "vehicle|machine|construction machine|construction vehicle|work machine|site machine|building machine|heavy machine|person|people|pedestrian|road user|two wheeler|thing|object|obstacle|piece of construction equipment|piece of heavy machinery|motor vehicle|large vehicle|heavy vehicle|traffic participant|participant|vru|someone|folk|bike|passerby|passer by|human|individual|figure|adult";
-
-fn is_sort(noun: &str) -> bool {
-    use super::lexicon::{Sense, look_up};
-    let of = |w: &str| match look_up(w) {
-        Some(Sense::Noun(n, _)) => Some(n),
-        _ => None,
-    };
-    let singular = |w: &str| SORTS.split('|').any(|s| s == w || super::lexicon::plural(s) == w);
-    singular(noun) || matches!(noun, "people" | "persons") && of(noun).is_some()
-}
-
-/// "two machines, a crane and an excavator": the list says which two they are.
-fn drop_named(mentions: &mut [Mention], prompt: &str) {
-    let joined = |a: &Mention, b: &Mention| {
-        let gap = prompt.get(a.spec.span.end..b.spec.span.start).unwrap_or("?");
-        let gap = gap.trim().trim_start_matches([',', ':', '(', '-', '–', '—']).trim();
-        matches!(gap, "" | "and" | "plus" | "namely" | "and also" | "i.e." | "viz.")
-    };
-    for i in 0..mentions.len() {
-        let m = &mentions[i];
-        if m.gone || !m.plural || m.uncounted || !m.spec.count.is_exact() || !is_sort(&m.spec.noun) {
-            continue;
-        }
-        let apposed = prompt
-            .get(m.spec.span.end..)
-            .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
-        // "three vehicles ahead: a car in our lane and two vans behind it"
-        let listed = mentions.get(i + 1).is_some_and(|next| {
-            let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
-            !gap.contains(['.', ';', '!', '?'])
-                && [":", "namely", " - ", "–", "—", "(", "i.e", "to be exact", "specifically"]
-                    .iter()
-                    .any(|w| gap.contains(w))
-        });
-        let one_sentence = |a: &Mention, b: &Mention| {
-            prompt
-                .get(a.spec.span.end..b.spec.span.start)
-                .is_some_and(|gap| !gap.contains(['.', ';', '!', '?']))
-        };
-        let apposed = apposed || listed;
-        let mut sum = 0;
-        let mut last = i;
-        while last + 1 < mentions.len()
-            && sum < mentions[i].spec.count.n
-            && (joined(&mentions[last], &mentions[last + 1])
-                || listed && one_sentence(&mentions[last], &mentions[last + 1]))
-            && mentions[i].classes.contains(&mentions[last + 1].spec.class)
-            && !is_sort(&mentions[last + 1].spec.noun)
-        {
-            last += 1;
-            sum += mentions[last].spec.count.n;
-        }
-        if !apposed || last < i + 2 || sum != mentions[i].spec.count.n {
-            continue;
-        }
-        let theirs = mentions[i].spec.relations.clone();
-        let state = mentions[i].spec.state;
-        for m in &mut mentions[i + 1..=last] {
-            m.spec.state = m.spec.state.or(state);
-            if m.spec.relations.is_empty() {
-                m.spec.relations.clone_from(&theirs);
-            }
-        }
-        mentions[i].gone = true;
-        for m in mentions.iter_mut() {
-            for r in &mut m.spec.relations {
-                if r.anchor == Anchor::Object(i) {
-                    r.anchor = Anchor::Object(i + 1);
-                }
-            }
-        }
     }
 }
 
@@ -148,6 +74,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
         for (spec, is_left) in [(&mut mentions[i].spec, true), (&mut other.spec, false)] {
             add_side(spec, is_left, class, state, span);
         }
+        // "two men, one on each pavement, look at each other"
+        if other.spec.attributes.iter().any(|a| a == "facetoface") {
+            let twin = mentions.len();
+            for (spec, whom) in [(&mut mentions[i].spec, twin), (&mut other.spec, i)] {
+                spec.attributes.retain(|a| a != "facetoface");
+                spec.state = Some(ObjectState::Waiting);
+                spec.relations.retain(|r| r.relation != RelationKind::Crossing);
+                spec.relations.push(Stated {
+                    relation: RelationKind::Facing,
+                    anchor: Anchor::Object(whom),
+                    and: None,
+                    distance_m: None,
+                    span,
+                });
+            }
+        }
         mentions.push(other);
         // "two buses on both sides, and behind them two cars": one behind each
         let twin = mentions.len() - 1;
@@ -177,6 +119,22 @@ fn split_sides(mentions: &mut Vec<Mention>) {
 /// "a bus 18 m out in our lane": a distance alone counts ahead.
 fn distance_ahead(spec: &mut ObjectSpec) {
     use RelationKind as R;
+    // "at a distance of 12 m a car is in front of us"
+    let far = spec
+        .relations
+        .iter()
+        .position(|r| r.relation == R::Near && r.anchor == Anchor::Ego && r.distance_m.is_some());
+    let side = spec.relations.iter().position(|r| {
+        matches!(r.relation, R::InFrontOf | R::Behind) && r.anchor == Anchor::Ego && r.distance_m.is_none()
+    });
+    let told = spec
+        .relations
+        .iter()
+        .any(|r| matches!(r.relation, R::InFrontOf | R::Behind) && r.distance_m.is_some());
+    if let (Some(far), Some(side), false) = (far, side, told) {
+        spec.relations[side].distance_m = spec.relations[far].distance_m;
+        spec.relations.remove(far);
+    }
     let sided = spec.relations.iter().any(|r| {
         r.anchor == Anchor::Ego
             && !matches!(
@@ -368,6 +326,16 @@ fn sun_shines(reading: &mut Reading) {
         let words = p.text.to_lowercase();
         p.became == Became::Weather && words.contains("sun") && !p.meaning.contains("not")
     });
+    // "in the afternoon sun"
+    let shines = reading.phrases.iter().any(|p| {
+        let words = p.text.to_lowercase();
+        p.became == Became::Time
+            && (words.ends_with(" sun") || words.contains("sunshine"))
+            && !words.contains("before")
+    });
+    if shines && reading.description.weather.is_none() {
+        reading.description.weather = Some(Weather::Clear);
+    }
     if sunny && reading.description.time_of_day.is_none() {
         reading.description.time_of_day = Some(TimeOfDay::Day);
     }
@@ -376,11 +344,12 @@ fn sun_shines(reading: &mut Reading) {
 /// Fills the description and the phrases of objects.
 pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) {
     drop_totals(mentions);
-    drop_named(mentions, prompt);
+    super::finish_groups::drop_named(mentions, prompt);
     super::reciprocal::face(mentions);
     super::reciprocal::abreast(mentions);
     stopped_across(mentions, prompt);
     split_sides(mentions);
+    super::finish_groups::apart_for(mentions);
     // Works beside cones or a digger that were named are made of those.
     let works: Vec<Span> = mentions
         .windows(3)
@@ -403,6 +372,8 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
     sun_shines(reading);
     in_car_park(mentions, reading);
     share_places(mentions);
+    super::finish_groups::from_cross_street(mentions, prompt);
+    super::finish_groups::closed_with(mentions, prompt);
     super::inferred_places::infer(mentions);
     let mut index = vec![None; mentions.len()];
     let mut next = 0;
@@ -458,7 +429,11 @@ pub fn finish(mentions: &mut Vec<Mention>, reading: &mut Reading, prompt: &str) 
         {
             reading.notes.push(format!("{} are placed as cars", spec.noun));
         }
-        if let Some(color) = spec.color.as_ref().filter(|c| super::names::paint_of(c).is_none()) {
+        if let Some(color) = spec
+            .color
+            .as_ref()
+            .filter(|c| super::names::paint_of(c).is_none())
+        {
             reading
                 .notes
                 .push(format!("{color} is no paint of boxes: it is kept in words only"));

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::lanes::LaneMap;
 use crate::scene::graph::{LaneRole, RelationKind};
-use crate::scene::{BoxLabel, BevLayer, BoxId, Class, SceneBox};
+use crate::scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
 /// What a relation is to.
 #[derive(Clone, Copy, Debug, PartialEq)]

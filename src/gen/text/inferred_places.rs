@@ -62,7 +62,16 @@ pub fn infer(mentions: &mut [Mention]) {
             drawn(&mut mentions[i], &other, k);
             let ahead = mentions[i].spec.relations.iter().any(is_ahead_of_ego);
             let room = mentions[i].spec.class == Class::Trailer || ahead && mentions[i].spec.count.n == 1;
-            let room_m = room_m(other.spec.class, mentions[i].spec.class);
+            let mut room_m = room_m(other.spec.class, mentions[i].spec.class);
+            // "a lorry ahead of us is followed by two cars": both find room between it and us
+            let several = mentions[i].spec.count.n == 2
+                && r.relation == R::Following
+                && mentions[i].spec.class == Class::Car
+                && !mentions[i].spec.relations.iter().any(|r| r.anchor == Anchor::Ego);
+            if several {
+                room_m += 8.0;
+            }
+            let room = room || several;
             let far = mentions[k].spec.relations.iter_mut().find(|r| is_ahead_of_ego(r));
             if let (Some(far), true, R::Behind | R::Following) =
                 (far, room && other.spec.count.n == 1, r.relation)
@@ -81,7 +90,7 @@ fn blocked_at(m: &mut Mention) {
         .iter()
         .any(|r| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind));
     let far = m.spec.relations.iter_mut().find(|r| {
-        matches!(r.relation, R::Blocking | R::Crossing) && is_lane(r.anchor) && r.distance_m.is_some()
+        matches!(r.relation, R::Blocking | R::Crossing | R::On) && is_lane(r.anchor) && r.distance_m.is_some()
     });
     if let Some(r) = far {
         let stated = Stated {

@@ -18,7 +18,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
         "nothing but|nothing except|nothing other than|nothing more than",
         "only",
     );
-    let out = pointing_back(&led_by_others(&drivers(&out)));
+    let out = pointing_back(&super::told::plainly(&out));
     let out = participle_first(&out);
     let out = crossed_over(&out);
     let out = beyond(&out);
@@ -28,7 +28,6 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
-    let out = namely(&out);
     let out = replaced(
         &out,
         "namely|to wit|viz|that is to say|specifically|to be exact",
@@ -41,44 +40,12 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     );
     replaced(
         &out,
-        "besides ours|besides mine|besides my own|besides our own|apart from ours|apart from mine|apart from my own|aside from ours|in addition to ours|not counting mine|not counting ours|not counting my own",
+        "besides us|besides me|apart from us|apart from me|aside from us|aside from me|besides ours|besides mine|besides my own|besides our own|apart from ours|apart from mine|apart from my own|aside from ours|in addition to ours|not counting mine|not counting ours|not counting my own",
         "",
     )
 }
 
-/// "traffic, namely four cars and a truck": what follows lists it.
-fn namely(tokens: &[Token]) -> Vec<Token> {
-    const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|in the shape of|consisting of|made up of|composed of|comprising|which consists of|which consist of|that consists of|which is made up of|which is composed of|which comprises|meaning|that is|i e|ie|in other words|being";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let before = out.iter().rev().find(|t| t.kind != TokenKind::Comma);
-        let sorts = before.is_some_and(|t| {
-            matches!(look_up(&t.text), Some(Sense::Noun(n, many)) if n.classes.len() > 2 && many || t.text == "traffic")
-        });
-        let n = begins(&tokens[i..], NAMELY)
-            .filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
-        match n {
-            Some(n) => {
-                while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
-                    out.pop();
-                }
-                out.push(Token {
-                    kind: TokenKind::Mark,
-                    ..word(":", &tokens[i])
-                });
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
-}
-
-fn opens(tokens: &[Token], i: usize) -> bool {
+pub(super) fn opens(tokens: &[Token], i: usize) -> bool {
     i == 0
         || matches!(
             tokens[i - 1].kind,
@@ -87,73 +54,8 @@ fn opens(tokens: &[Token], i: usize) -> bool {
         || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but")
 }
 
-fn is_fresh(t: &Token) -> bool {
+pub(super) fn is_fresh(t: &Token) -> bool {
     matches!(t.text.as_str(), "a" | "an" | "another") || number(t).is_some()
-}
-
-/// "a van driver has stopped for them": his van has; who drives is not on foot.
-fn drivers(tokens: &[Token]) -> Vec<Token> {
-    const DRIVES: &str = "stops|stop|has stopped|have stopped|stopped|brakes|is braking|yields|is yielding|gives way|is giving way|lets|is letting|drives|drive|is driving|are driving|overtakes|overtake|is overtaking|are overtaking|turns|is turning|approaches|is approaching|follows|is following|tailgates|is tailgating|comes towards|is coming towards|cuts in|pulls out|is pulling out|reverses|is reversing|slows down|is slowing down";
-    const FOOT: &str = "foot|pavement|sidewalk|footpath|walks|walking|kerb";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let t = &tokens[i];
-        let who = matches!(t.text.as_str(), "driver" | "drivers" | "motorist" | "motorists");
-        let clause = tokens[i + 1..].iter().take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma));
-        let foot = clause.into_iter().any(|t| FOOT.split('|').any(|w| w == t.text));
-        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !foot;
-        let vehicle = out.last().is_some_and(|b| {
-            matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
-        });
-        let fresh = out
-            .iter()
-            .rev()
-            .take(3)
-            .any(|b| matches!(b.text.as_str(), "a" | "an" | "another" | "one" | "two" | "three"));
-        match (drives, vehicle, fresh) {
-            (true, true, true) if t.text.ends_with('s') => {
-                let many = out.pop().map(|b| super::lexicon::plural(&b.text));
-                out.push(word(&many.unwrap_or_default(), t));
-            }
-            (true, true, true) => {}
-            (true, false, true) => out.push(word(if t.text.ends_with('s') { "cars" } else { "car" }, t)),
-            _ => out.push(t.clone()),
-        }
-        i += 1;
-    }
-    out
-}
-
-/// "flanked by two motorbikes, a limousine comes": a limousine comes, flanked by two motorbikes.
-fn led_by_others(tokens: &[Token]) -> Vec<Token> {
-    const BY: &str = "flanked by|followed by|accompanied by|escorted by|preceded by|chased by|trailed by|pursued by|surrounded by|closely followed by|tailed by|overtaken by|being overtaken by|being followed by";
-    let mut out: Vec<Token> = Vec::new();
-    for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
-        let moved = begins(sentence, BY).and_then(|_| {
-            // ("flanked by two motorbikes, one on each side, a car": the last comma before the subject)
-            let commas = (1..sentence.len().min(20)).filter(|k| sentence[*k].kind == TokenKind::Comma);
-            let comma = commas
-                .filter(|k| {
-                    let next = sentence.get(k + 1);
-                    next.is_some_and(is_fresh)
-                        && sentence[k + 1..].iter().take(5).any(is_noun)
-                        && !sentence[k + 1..]
-                            .iter()
-                            .take_while(|t| t.kind != TokenKind::Comma)
-                            .any(|t| t.text == "each")
-                })
-                .last()?;
-            let end = sentence.len() - usize::from(sentence.last()?.kind == TokenKind::Stop);
-            let apart = Token {
-                kind: TokenKind::Comma,
-                ..word(",", &sentence[comma])
-            };
-            Some([&sentence[comma + 1..end], &[apart], &sentence[..comma], &sentence[end..]].concat())
-        });
-        out.extend(moved.unwrap_or_else(|| sentence.to_vec()));
-    }
-    out
 }
 
 /// "behind that a van": behind it.
@@ -204,7 +106,13 @@ fn crossed_over(tokens: &[Token]) -> Vec<Token> {
                     | "hurries"
                     | "strolling"
             );
-        if over && walks && tokens[..i].iter().any(zebra) {
+        // "an old woman is halfway across"
+        let halfway = i > 1
+            && matches!(
+                tokens[i - 1].text.as_str(),
+                "halfway" | "midway" | "partway" | "way" | "already" | "nearly" | "almost"
+            );
+        if over && (walks || halfway) && tokens[..i].iter().any(zebra) {
             out.pop();
             out.extend(["across", "the", "zebra"].map(|w| word(w, t)));
         }

@@ -28,6 +28,16 @@ pub struct LaneMap<'a> {
     pub crossings: Vec<Vec<DVec2>>,
     /// Middle of the nearest junction.
     pub junction: Option<DVec2>,
+    /// Indices of the points by squares of the plane: the nearest of them is asked for thousands of times.
+    squares: Vec<Vec<u32>>,
+}
+
+/// Side of a square, m, and how many there are along one axis.
+const SQUARE_M: f64 = 5.0;
+const SQUARES: i64 = 18;
+
+fn square(v: f64) -> i64 {
+    ((v / SQUARE_M).floor() as i64 + SQUARES / 2).clamp(0, SQUARES - 1)
 }
 
 /// How far from the middle boxes may stand, m.
@@ -76,6 +86,7 @@ impl<'a> LaneMap<'a> {
                 .filter(|l| l.iter().any(|p| p.abs().max_element() < REACH_M))
                 .collect(),
             junction: None,
+            squares: vec![Vec::new(); (SQUARES * SQUARES) as usize],
         };
         map.points = lanes
             .iter()
@@ -99,6 +110,9 @@ impl<'a> LaneMap<'a> {
                     role: LaneRole::Ego,
                 })
                 .collect();
+        }
+        for (i, l) in map.points.iter().enumerate() {
+            map.squares[(square(l.p.x) * SQUARES + square(l.p.y)) as usize].push(i as u32);
         }
         map.junction = map.find_junction();
         map
@@ -151,9 +165,32 @@ impl<'a> LaneMap<'a> {
 
     /// The nearest lane point.
     pub fn nearest(&self, p: DVec2) -> Option<&LanePoint> {
-        self.points
-            .iter()
-            .min_by(|a, b| a.p.distance_squared(p).total_cmp(&b.p.distance_squared(p)))
+        let (x, y) = (square(p.x), square(p.y));
+        let mut best: Option<(f64, u32)> = None;
+        for ring in 0..SQUARES {
+            // what lies farther out than this ring is at least so far away
+            let beyond = (ring - 1).max(0) as f64 * SQUARE_M;
+            if best.is_some_and(|b| b.0.sqrt() < beyond) {
+                break;
+            }
+            for a in (x - ring).max(0)..=(x + ring).min(SQUARES - 1) {
+                for b in (y - ring).max(0)..=(y + ring).min(SQUARES - 1) {
+                    if (a - x).abs().max((b - y).abs()) != ring {
+                        continue;
+                    }
+                    for &i in &self.squares[(a * SQUARES + b) as usize] {
+                        let found = (self.points[i as usize].p.distance_squared(p), i);
+                        let nearer = best.is_none_or(|b| {
+                            found.0.total_cmp(&b.0).then(found.1.cmp(&b.1)) == std::cmp::Ordering::Less
+                        });
+                        if nearer {
+                            best = Some(found);
+                        }
+                    }
+                }
+            }
+        }
+        best.map(|b| &self.points[b.1 as usize])
     }
 
     fn find_junction(&self) -> Option<DVec2> {

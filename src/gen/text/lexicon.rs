@@ -291,7 +291,14 @@ fn build() -> Table {
         words(list).for_each(|w| put(w, Sense::Reversed(*relation)));
     }
     for (relation, anchor, list) in places::FIXED {
-        words(list).for_each(|w| put(w, Sense::Fixed(*relation, *anchor)));
+        for w in words(list) {
+            put(w, Sense::Fixed(*relation, *anchor));
+            if w.starts_with("waiting ") {
+                for be in ["is", "are", "was", "were"] {
+                    put(&format!("{be} {w}"), Sense::Fixed(*relation, *anchor));
+                }
+            }
+        }
     }
     let alone: HashSet<&str> = places::EGO_RELATIONS.iter().flat_map(|(_, l)| words(l)).collect();
     for (relation, list) in places::RELATIONS {

@@ -41,9 +41,9 @@ pub(super) fn farther_by(sentence: &[Token], before: &[Token]) -> Vec<Token> {
             let metres = number(sentence.get(i + n)?)?;
             let on = begins(&sentence[i + n + 2..], ON)?;
             // ("12 m further on than the bus" says from where)
-            let free = sentence
-                .get(i + n + 2 + on)
-                .is_none_or(|t| t.kind != TokenKind::Word || matches!(t.text.as_str(), "in" | "and" | "is" | "a"));
+            let free = sentence.get(i + n + 2 + on).is_none_or(|t| {
+                t.kind != TokenKind::Word || matches!(t.text.as_str(), "in" | "and" | "is" | "a")
+            });
             let way = said[k + 2..].iter().take(2).find_map(|t| match t.text.as_str() {
                 "behind" => Some("behind"),
                 "ahead" | "in" => Some("ahead of"),
@@ -59,7 +59,11 @@ pub(super) fn farther_by(sentence: &[Token], before: &[Token]) -> Vec<Token> {
                     unit.text = "m".into();
                     unit.kind = TokenKind::Word;
                 }
-                out.extend(way.split(' ').chain(["me"]).map(|w| super::wording::word(w, &sentence[i])));
+                out.extend(
+                    way.split(' ')
+                        .chain(["me"])
+                        .map(|w| super::wording::word(w, &sentence[i])),
+                );
                 i += n;
             }
             None => {

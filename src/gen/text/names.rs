@@ -155,6 +155,16 @@ pub fn label_of(spec: &ObjectSpec) -> BoxLabel {
     }
 }
 
+/// True if these nouns name things of two kinds: an excavator is no bulldozer.
+pub fn are_of_two_kinds(one: &str, other: &str) -> bool {
+    let kind = |noun: &str| {
+        let noun = singular(noun);
+        SAME.iter().position(|g| g.split('|').any(|w| w.trim() == noun))
+    };
+    matches!((kind(one), kind(other)), (Some(a), Some(b)) if a != b)
+        && !is_called(singular(one), singular(other))
+}
+
 /// True if a box of this name may be called by that noun.
 fn is_called(name: &str, noun: &str) -> bool {
     let part = |whole: &str, part: &str| {

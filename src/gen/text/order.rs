@@ -1,7 +1,10 @@
 //! Lists that are ordered by distance: "nearest first: a cyclist, then a bus, then a tanker".
 
 use super::description::{Anchor, Stated};
+use super::mention::{Frag, Mention, Prep};
 use super::parse::Parser;
+use super::tag::Item;
+use super::tokens::Span;
 use crate::scene::graph::{LaneRole as L, RelationKind as R};
 
 /// What says that a list goes from near to far.
@@ -9,7 +12,55 @@ pub const NEAR_FIRST: &str = "nearest first|closest first|the nearest first|the 
 /// The other way round.
 pub const FAR_FIRST: &str = "farthest first|furthest first|the farthest first|the furthest first|from far to near|from farthest to nearest|from furthest to nearest|in order of decreasing distance|starting with the farthest|starting with the furthest|far to near";
 
+/// What says that something is farther on than what was named before it.
+const FARTHER: &str = "further ahead|farther ahead|further on|farther on|further up|farther up|further along|further in front|farther in front|further up the road|further down the road|farther down the road|even further ahead";
+
 impl Parser<'_> {
+    /// "and further ahead a bus": ahead of what was named ahead of us before.
+    pub(super) fn farther_on(&mut self, item: &Item, span: Span) {
+        if self.edits || !FARTHER.split('|').any(|w| w == item.words) {
+            return;
+        }
+        let ahead = |m: &Mention| {
+            m.spec
+                .relations
+                .iter()
+                .any(|r| r.anchor == Anchor::Ego && r.relation == R::InFrontOf)
+        };
+        let own = if self.fronted.is_empty() {
+            self.targets()
+        } else {
+            Vec::new()
+        };
+        let before = (0..self.mentions.len()).rev().find(|i| {
+            !own.contains(i)
+                && !self.mentions[*i].gone
+                && !self.mentions[*i].is_anchor
+                && ahead(&self.mentions[*i])
+        });
+        let Some(before) = before else {
+            return;
+        };
+        if own.is_empty() {
+            self.fronted.push(Frag {
+                prep: Prep::Rels(vec![R::InFrontOf]),
+                anchor: Anchor::Object(before),
+                and: None,
+                distance_m: None,
+                span,
+            });
+        }
+        for i in own.into_iter().filter(|i| *i > before) {
+            self.mentions[i].spec.relations.push(Stated {
+                relation: R::InFrontOf,
+                anchor: Anchor::Object(before),
+                and: None,
+                distance_m: None,
+                span,
+            });
+        }
+    }
+
     /// A list ordered by distance begins, or goes on, here.
     pub(super) fn ordered_by(&mut self, words: &str) {
         self.order = Some((words == "nearfirst", None));

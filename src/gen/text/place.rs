@@ -13,7 +13,7 @@ use crate::scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use crate::scene::raster::box_cells;
-use crate::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, SceneBox};
+use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
 /// Orders that are tried while something is left out or a relation broken.
 const ATTEMPTS: u64 = 5;

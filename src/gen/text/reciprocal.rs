@@ -8,6 +8,8 @@ use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 pub(super) fn face(mentions: &mut Vec<Mention>) {
     let met: Vec<usize> = (0..mentions.len())
         .filter(|i| !mentions[*i].gone && mentions[*i].spec.attributes.iter().any(|a| a == "facetoface"))
+        // (those on both sides of the road are parted there)
+        .filter(|i| mentions[*i].both.is_none())
         .collect();
     for i in &met {
         mentions[*i].spec.attributes.retain(|a| a != "facetoface");

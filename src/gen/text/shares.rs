@@ -6,136 +6,30 @@ use super::ellipsis::{digits, ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 use super::wording::{begins, replaced, word};
-use crate::scene::Class;
 use crate::scene::graph::LaneRole;
 
 /// A text with its shares in numbers.
 pub fn counted(tokens: &[Token]) -> Vec<Token> {
-    let out = of_which_there_are(&without_times(tokens));
-    let out = riders_wait(&out);
-    let out = in_each_lane(&waited_for(&out));
+    let out = of_which_there_are(&super::listed::plain(tokens));
     let out = replaced(&out, "of which|of whom", "of them");
     let out = of_a_group(&out);
-    let out = halves(&out);
+    let out = some_of_so_many(&halves(&out));
     let out = as_many_of_both(&out);
-    let out = added_and_taken(&out);
-    let out = so_is(&out);
     let out = two_strips(&out);
     let out = per_side(&out);
     one_by_one(&out)
 }
 
-fn opens(tokens: &[Token], i: usize) -> bool {
+pub(super) fn opens(tokens: &[Token], i: usize) -> bool {
     i == 0
         || matches!(
             tokens[i - 1].kind,
             TokenKind::Comma | TokenKind::Stop | TokenKind::Mark
         )
-        || matches!(tokens[i - 1].text.as_str(), "and" | "while" | "but" | "where" | "with")
-}
-
-/// "1 x pedestrian": one.
-fn without_times(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    for t in tokens {
-        let times = t.text == "x" && out.last().is_some_and(|b| number(b).is_some());
-        if !times {
-            out.push(t.clone());
-        }
-    }
-    // "one (1) truck"
-    let mut i = 0;
-    while i + 3 < out.len() {
-        let said = |t: &Token| number(t).or((t.text == "zero").then_some(0));
-        let same = said(&out[i]).is_some() && said(&out[i]) == said(&out[i + 2]);
-        if same && out[i + 1].text == "(" && out[i + 3].text == ")" {
-            out.drain(i + 1..i + 4);
-        }
-        i += 1;
-    }
-    out
-}
-
-/// "taxis that wait for passengers": who is waited for in general is not there.
-fn waited_for(tokens: &[Token]) -> Vec<Token> {
-    const WAIT: &str = "wait for|waits for|waiting for|waited for|looking for|hoping for";
-    const WHOM: &str = "passengers|customers|clients|guests|fares|orders|business|work|riders";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let n = begins(&tokens[i..], WAIT).filter(|n| {
-            begins(&tokens[i + n..], WHOM).is_some_and(|m| {
-                ends(tokens.get(i + n + m)) || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))
-            })
-        });
-        match n {
-            Some(n) => {
-                out.push(tokens[i].clone());
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
-}
-
-/// "two mopeds whose riders are waiting": which are.
-fn riders_wait(tokens: &[Token]) -> Vec<Token> {
-    let two_wheels = |t: &Token| {
-        matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
-    };
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let n = begins(&tokens[i..], "whose rider|whose riders|whose driver|whose drivers")
-            .filter(|_| out.iter().rev().take(2).any(two_wheels));
-        match n {
-            Some(n) => {
-                out.push(word("which", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
-}
-
-/// "a coach in each of the other two lanes": one in the left lane, one in the right lane.
-fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
-    const EACH: &str = "in each of the other two lanes|in each of the other lanes|in each of the two other lanes|in each of the neighbouring lanes|in each of the neighboring lanes|in each of the adjacent lanes|in each of the lanes beside us|in each of the lanes beside me|in each of the lanes next to us|in each of the lanes next to me|in each neighbouring lane|in each neighboring lane|in each adjacent lane|in both other lanes|in both the other lanes|in both of the other lanes|in both neighbouring lanes|in both neighboring lanes|in both adjacent lanes|in the lanes on both sides of us|in the lanes on both sides of me|in the lanes to both sides of us|in the lanes on either side of us|in the lanes on either side of me|in the lane on each side of us|in the lane on each side of me|in the lane on either side of us|in the lane on either side of me";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        // who is there: "a coach", "two parked cars"
-        let lead = begins(&tokens[i..], EACH).and_then(|n| {
-            let from = (0..out.len()).rev().take(5).find(|k| {
-                number(&out[*k]).is_some() || matches!(out[*k].text.as_str(), "a" | "an" | "one")
-            })?;
-            let np = &out[from..];
-            let plain = np.iter().filter(|t| is_noun(t)).count() == 1 && np.iter().all(|t| t.kind != TokenKind::Stop);
-            plain.then(|| (n, np.to_vec()))
-        });
-        match lead {
-            Some((n, np)) => {
-                let at = &tokens[i];
-                out.extend(["in", "the", "left", "lane", "and"].map(|w| word(w, at)));
-                out.extend(np.iter().map(|t| Token { span: at.span, ..t.clone() }));
-                out.extend(["in", "the", "right", "lane"].map(|w| word(w, at)));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        || matches!(
+            tokens[i - 1].text.as_str(),
+            "and" | "while" | "but" | "where" | "with"
+        )
 }
 
 /// "the cones, of which there are seven": seven of them.
@@ -144,8 +38,9 @@ fn of_which_there_are(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let n = begins(&tokens[i..], LEAD)
-            .filter(|n| tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1)));
+        let n = begins(&tokens[i..], LEAD).filter(|n| {
+            tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1))
+        });
         match n {
             Some(n) => {
                 out.push(tokens[i + n].clone());
@@ -168,7 +63,10 @@ fn of_a_group(tokens: &[Token]) -> Vec<Token> {
         let the = tokens
             .get(i + 1)
             .is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "my" | "our"));
-        let stop = matches!(i.checked_sub(1).map(|k| &tokens[k].kind), None | Some(TokenKind::Stop));
+        let stop = matches!(
+            i.checked_sub(1).map(|k| &tokens[k].kind),
+            None | Some(TokenKind::Stop)
+        );
         let rest = &tokens[i + 1..];
         let group = rest.iter().take(6).take_while(|t| !ends(Some(t))).any(is_noun)
             && rest.iter().take(7).any(|t| t.kind == TokenKind::Comma)
@@ -192,16 +90,57 @@ fn whole(before: &[Token]) -> Option<u32> {
         let dozen = (before[k].text == "dozen").then_some(12);
         let half = k > 0 && (before[k - 1].text == "half" || k > 1 && before[k - 2].text == "half");
         let many = dozen.map(|d| if half { d / 2 } else { d }).or(number(&before[k]));
-        many.filter(|n| group && !unit && *n > 1)
+        // "cars, six altogether"
+        let total = begins(&before[k + 1..], "altogether|in total|in all|all told|of them").is_some()
+            && before[..k].iter().rev().take(3).any(is_noun);
+        many.filter(|n| (group || total) && !unit && *n > 1)
     })
+}
+
+/// "of the six parked cars": their number, their words, and how many words that is.
+fn own_group(rest: &[Token]) -> Option<((u32, &[Token]), usize)> {
+    let of = begins(rest, "of the|of these|of those|of my|of our|of all")?;
+    let whole = rest.get(of).and_then(number).filter(|n| *n > 1)?;
+    let noun = (of + 1..rest.len().min(of + 4)).find(|k| is_noun(&rest[*k]))?;
+    let plain = !rest[of..noun].iter().any(|t| ends(Some(t))) && !rest.get(noun + 1).is_some_and(is_noun);
+    plain.then(|| ((whole, &rest[of - 1..=noun]), noun + 1))
+}
+
+/// "one of the two men crosses, the other waits": the two men, one of them.
+fn some_of_so_many(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let many = number(&tokens[i]).filter(|_| opens(tokens, i));
+        let own = many.and_then(|m| Some((m, own_group(&tokens[i + 1..]).filter(|g| g.0.0 > m)?)));
+        match own {
+            Some((_, ((_, noun), len))) => {
+                out.extend_from_slice(noun);
+                out.push(Token {
+                    kind: TokenKind::Comma,
+                    ..word(",", &tokens[i])
+                });
+                out.push(tokens[i].clone());
+                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+                i += 1 + len;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
 }
 
 /// "half of them": so many.
 fn halves(tokens: &[Token]) -> Vec<Token> {
-    const SHARES: [(u32, &str); 3] = [
-        (2, "one half|a half|half"),
-        (3, "a third|one third"),
-        (4, "a quarter|one quarter|a fourth"),
+    const SHARES: [((u32, u32), &str); 5] = [
+        ((1, 2), "one half|a half|half"),
+        ((1, 3), "a third|one third"),
+        ((1, 4), "a quarter|one quarter|a fourth"),
+        ((2, 3), "two thirds|2 thirds"),
+        ((3, 4), "three quarters|3 quarters|three fourths"),
     ];
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
@@ -209,9 +148,12 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
         let found = SHARES
             .iter()
             .find_map(|(d, said)| begins(&tokens[i..], said).map(|n| (*d, n)));
-        let Some((divisor, n)) = found else {
+        let Some(((share, divisor), n)) = found else {
             // "the other half", "the remaining half"
-            match begins(&tokens[i..], "the other half of them|the other half|the remaining half|the second half") {
+            match begins(
+                &tokens[i..],
+                "the other half of them|the other half|the remaining half|the second half",
+            ) {
                 Some(n) if whole(&out).is_some() => {
                     out.extend(["the", "others"].map(|w| word(w, &tokens[i])));
                     i += n;
@@ -224,6 +166,19 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
             continue;
         };
         let rest = &tokens[i + n..];
+        // "half of the six cars are parked": six cars, three of them
+        if let Some((group, len)) = own_group(rest).filter(|g| opens(tokens, i) && g.0.0 % divisor == 0) {
+            let (whole, noun) = group;
+            out.extend_from_slice(noun);
+            out.push(Token {
+                kind: TokenKind::Comma,
+                ..word(",", &tokens[i])
+            });
+            out.push(digits(whole / divisor * share, &tokens[i]));
+            out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+            i += n + len;
+            continue;
+        }
         let of = begins(rest, "of them|of these|of those").unwrap_or(0);
         // "half of the cars", "half the cars"
         let own = begins(rest, "of the|the|of my|of these|of those")
@@ -241,7 +196,7 @@ fn halves(tokens: &[Token]) -> Vec<Token> {
         let many = whole(&out).filter(|w| w % divisor == 0 && (of + own > 0 || bare));
         match many {
             Some(many) => {
-                out.push(digits(many / divisor, &tokens[i]));
+                out.push(digits(many / divisor * share, &tokens[i]));
                 out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
                 i += n + of.max(own);
             }
@@ -274,7 +229,10 @@ fn as_many_of_both(tokens: &[Token]) -> Vec<Token> {
         let mut lead = at - 1;
         while lead > 0
             && (ends(Some(&sentence[lead - 1]))
-                || matches!(sentence[lead - 1].text.as_str(), "namely" | "that" | "is" | "which" | "exactly" | "with"))
+                || matches!(
+                    sentence[lead - 1].text.as_str(),
+                    "namely" | "that" | "is" | "which" | "exactly" | "with"
+                ))
         {
             lead -= 1;
         }
@@ -287,15 +245,34 @@ fn as_many_of_both(tokens: &[Token]) -> Vec<Token> {
             && (plural[0]..lead).all(|k| {
                 plural.contains(&k)
                     || ends(Some(&sentence[k]))
-                    || matches!(sentence[k].text.as_str(), "and" | "as" | "or" | "plus")
-                    || matches!(look_up(&sentence[k].text), Some(Sense::State(_, false) | Sense::Attribute(_)))
+                    || matches!(
+                        sentence[k].text.as_str(),
+                        "and"
+                            | "as"
+                            | "or"
+                            | "plus"
+                            | "in"
+                            | "this"
+                            | "the"
+                            | "scene"
+                            | "picture"
+                            | "here"
+                            | "there"
+                    )
+                    || matches!(
+                        look_up(&sentence[k].text),
+                        Some(Sense::State(_, false) | Sense::Attribute(_))
+                    )
             });
         if !listed {
             out.extend_from_slice(sentence);
             continue;
         }
-        let first = begins(&sentence[plural[0].saturating_sub(2)..], "as many|equally many|just as many")
-            .map_or(plural[0], |_| plural[0] - 2);
+        let first = begins(
+            &sentence[plural[0].saturating_sub(2)..],
+            "as many|equally many|just as many",
+        )
+        .map_or(plural[0], |_| plural[0] - 2);
         out.extend_from_slice(&sentence[..first]);
         for (j, k) in plural.iter().enumerate() {
             if j > 0 {
@@ -320,53 +297,16 @@ fn is_strip(word: &str) -> bool {
         )
 }
 
-/// "+ 2 cars, + 1 bus, - pedestrians": in a list with plus signs a minus says what is not there.
-fn added_and_taken(tokens: &[Token]) -> Vec<Token> {
-    let sign = |i: usize, sign: &str| tokens[i].text == sign && tokens[i].kind != TokenKind::Word;
-    if !(0..tokens.len()).any(|i| sign(i, "+") && opens(tokens, i)) {
-        return tokens.to_vec();
-    }
-    let mut out: Vec<Token> = Vec::new();
-    for i in 0..tokens.len() {
-        if sign(i, "-") && opens(tokens, i) {
-            out.push(word("no", &tokens[i]));
-        } else if !(sign(i, "+") && opens(tokens, i)) {
-            out.push(tokens[i].clone());
-        }
-    }
-    out
-}
-
-/// "the truck is parked, and so is the bus" in a word of its own.
-fn so_is(tokens: &[Token]) -> Vec<Token> {
-    const SO: &str = "so is|so are|so was|so were|so does|so do|so did|so has|so have|so stands|so stand|as is|as are|as does|as do|just as is|likewise is|likewise are";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let led = opens(tokens, i) && out.iter().any(is_noun);
-        match begins(&tokens[i..], SO).filter(|n| {
-            led && tokens[i + n..].iter().take(5).take_while(|t| !ends(Some(t))).any(is_noun)
-        }) {
-            Some(n) => {
-                out.push(word("soistoo", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
-}
-
 /// "on the two pavements": on both.
 fn two_strips(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let two = begins(&tokens[i..], "the two|our two|these two|the 2")
-            .filter(|n| tokens.get(i + n).is_some_and(|t| t.text.ends_with('s') && is_strip(&t.text)));
+        let two = begins(&tokens[i..], "the two|our two|these two|the 2").filter(|n| {
+            tokens
+                .get(i + n)
+                .is_some_and(|t| t.text.ends_with('s') && is_strip(&t.text))
+        });
         match two {
             Some(n) => {
                 out.push(word("both", &tokens[i]));
@@ -420,10 +360,14 @@ fn one_by_one(tokens: &[Token]) -> Vec<Token> {
         let unit = tokens.get(i + at + 1).is_some_and(is_unit);
         (tokens.get(i + at).is_some_and(|t| number(t).is_some()) && unit).then_some(())
     };
-    let lead = |i: usize| begins(&tokens[i..], "and then|then|and next|next|and finally|finally|and lastly|lastly");
-    let first = (1..tokens.len()).find(|i| {
-        tokens[*i].text == "first" && opens(tokens, *i) && far(i + 1).is_some()
-    });
+    let lead = |i: usize| {
+        begins(
+            &tokens[i..],
+            "and then|then|and next|next|and finally|finally|and lastly|lastly",
+        )
+    };
+    let first =
+        (1..tokens.len()).find(|i| tokens[*i].text == "first" && opens(tokens, *i) && far(i + 1).is_some());
     let Some(first) = first else {
         return tokens.to_vec();
     };
@@ -468,9 +412,15 @@ mod tests {
             said("six cars: half of them come, the other half go"),
             "six cars : 3 of them come , the others go"
         );
-        assert_eq!(said("parked cars on both sides, two each"), "parked cars on both sides , two on each side");
+        assert_eq!(
+            said("parked cars on both sides, two each"),
+            "parked cars on both sides , two on each side"
+        );
         assert_eq!(said("four cars, two per side"), "four cars , two on each side");
-        assert_eq!(said("as many buses as trucks, namely two of each"), "2 buses and 2 trucks");
+        assert_eq!(
+            said("as many buses as trucks, namely two of each"),
+            "2 buses and 2 trucks"
+        );
         assert_eq!(said("half a mile ahead"), "half a mile ahead");
         assert_eq!(
             said("cars: first at 10 m, then at 20 m"),

@@ -168,6 +168,9 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
                     Sense::Article(_) | Sense::In | Sense::At | Sense::Rel(_) | Sense::Color(_) | Sense::Not
                 )
             ) || matches!(b.words.as_str(), "my" | "with" | "wide" | "our" | "of")
+                // "an ordinary crossing"
+                || matches!(b.tag, Tag::Is(Sense::Attribute(_) | Sense::Size(_)))
+                    && matches!(out.as_slice(), [.., a, _] if matches!(a.tag, Tag::Is(Sense::Article(_))))
         });
         match (item.words.as_str(), item.tag) {
             ("crossing", _) => {
@@ -233,7 +236,10 @@ fn settle(items: Vec<Item>) -> Vec<Item> {
             // "is walking back to it": towards it
             ("back to", Tag::Is(Sense::Rel(_)))
                 if before.is_some_and(|b| {
-                    matches!(b.tag, Tag::Is(Sense::State(crate::scene::graph::ObjectState::Moving, _)))
+                    matches!(
+                        b.tag,
+                        Tag::Is(Sense::State(crate::scene::graph::ObjectState::Moving, _))
+                    )
                 }) =>
             {
                 out.push(Item {

@@ -93,8 +93,30 @@ fn plain(word: &str) -> Option<&'static str> {
 fn shortened(word: &str) -> bool {
     matches!(
         word,
-        "ped" | "peds" | "veh" | "approx" | "appr" | "ca" | "min" | "max" | "incl" | "excl" | "opp" | "dist"
-            | "mtr" | "mtrs" | "nos" | "resp" | "eg" | "ie" | "vs" | "pcs" | "pc" | "nr" | "cyc" | "constr"
+        "ped"
+            | "peds"
+            | "veh"
+            | "approx"
+            | "appr"
+            | "ca"
+            | "min"
+            | "max"
+            | "incl"
+            | "excl"
+            | "opp"
+            | "dist"
+            | "mtr"
+            | "mtrs"
+            | "nos"
+            | "resp"
+            | "eg"
+            | "ie"
+            | "vs"
+            | "pcs"
+            | "pc"
+            | "nr"
+            | "cyc"
+            | "constr"
     )
 }
 

@@ -76,6 +76,9 @@ pub fn stated(rest: &[Token]) -> Option<Vec<Token>> {
     // "one cyclist is enough"
     let last = rest.last()?;
     if number(first).is_some()
+        && !rest
+            .iter()
+            .any(|t| matches!(t.text.as_str(), "not" | "isnt" | "arent" | "hardly" | "never"))
         && matches!(
             last.text.as_str(),
             "enough" | "suffices" | "suffice" | "plenty" | "do" | "sufficient" | "only"

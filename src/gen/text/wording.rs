@@ -1,5 +1,11 @@
 //! Turns of speech put into plain words before a text is read: what only says how a group is ordered, what a text is for.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
+use std::rc::Rc;
+
+use super::fnv::Fnv;
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
 
@@ -12,10 +18,35 @@ pub fn word(text: &str, at: &Token) -> Token {
     }
 }
 
+/// Phrases by their first word.
+type Phrases = HashMap<&'static str, Vec<&'static str>, BuildHasherDefault<Fnv>>;
+/// Lists by where they stand in memory.
+type Lists = HashMap<(usize, usize), Rc<Phrases>, BuildHasherDefault<Fnv>>;
+
+thread_local! {
+    // every word of a text is looked for in every list: going through them took seconds for a long text
+    static LISTS: RefCell<Lists> = RefCell::default();
+}
+
+fn by_first_word(phrases: &'static str) -> Phrases {
+    let mut out = Phrases::default();
+    for phrase in phrases.split('|') {
+        let first = phrase.split(' ').next().unwrap_or(phrase);
+        out.entry(first).or_default().push(phrase);
+    }
+    out
+}
+
 /// Length of the longest of these phrases (joined by bars) that begins the tokens.
-pub fn begins(tokens: &[Token], phrases: &str) -> Option<usize> {
-    phrases
-        .split('|')
+pub fn begins(tokens: &[Token], phrases: &'static str) -> Option<usize> {
+    let first = tokens.first()?.text.as_str();
+    let at = (phrases.as_ptr() as usize, phrases.len());
+    let list = LISTS.with(|lists| {
+        let mut lists = lists.borrow_mut();
+        Rc::clone(lists.entry(at).or_insert_with(|| Rc::new(by_first_word(phrases))))
+    });
+    list.get(first)?
+        .iter()
         .filter_map(|phrase| {
             let n = phrase.split(' ').count();
             let same = tokens.len() >= n && phrase.split(' ').zip(tokens).all(|(w, t)| w == t.text);
@@ -25,7 +56,7 @@ pub fn begins(tokens: &[Token], phrases: &str) -> Option<usize> {
 }
 
 /// Puts a phrase in the place of every one of these (joined by bars); nothing, if it is empty.
-pub fn replaced(tokens: &[Token], phrases: &str, by: &str) -> Vec<Token> {
+pub fn replaced(tokens: &[Token], phrases: &'static str, by: &str) -> Vec<Token> {
     let mut out = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -106,12 +137,19 @@ const FRAMES: &str = "a scene in which|the scene in which|a scene where|a scene 
 /// A prompt in plain words.
 pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
-    let tokens = &super::common::plain(tokens)[..];
+    let tokens = super::answers::in_full(&super::common::plain(tokens));
+    let tokens = super::choices::made(&super::reports::plain(&tokens));
+    let tokens = &super::turned::round(&super::people::seen(&tokens))[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         out.extend(without_aim(&without_purpose(&super::titles::without(sentence))));
     }
     let out = super::inverted::ordered(&super::ellipsis::filled(&super::shares::counted(&out)));
     let out = replaced(&out, FRAMES, "");
+    let out = replaced(
+        &out,
+        ", left and right ,|, on the left and on the right ,|, on the left and the right ,|, to the left and to the right ,",
+        ",",
+    );
     let out = replaced(&out, "all in all|in sum|in all", "altogether");
     let out = replaced(&out, super::order::NEAR_FIRST, "nearfirst");
     let out = replaced(&out, super::order::FAR_FIRST, "farfirst");

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::draw::Draw;
 use super::template::offset_line;
 use crate::scene::raster::box_cells;
-use crate::scene::{BoxLabel, BevLayer, BevLayout, BoxId, Class, GridSpec, PolylineKind, SceneBox};
+use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, PolylineKind, SceneBox};
 
 /// How much of everything, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]

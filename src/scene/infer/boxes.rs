@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxLabel, BoxId, Class, GridSpec, SceneBox, VoxelGrid};
+use crate::scene::{BoxId, BoxLabel, Class, GridSpec, SceneBox, VoxelGrid};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;

@@ -87,6 +87,22 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/strangers_13.jsonl"),
     ),
     (
+        "strangers_16.jsonl",
+        include_str!("../../../../tests/data/strangers_16.jsonl"),
+    ),
+    (
+        "causes_words_l.jsonl",
+        include_str!("../../../../tests/data/causes_words_l.jsonl"),
+    ),
+    (
+        "strangers_15.jsonl",
+        include_str!("../../../../tests/data/strangers_15.jsonl"),
+    ),
+    (
+        "causes_words_m.jsonl",
+        include_str!("../../../../tests/data/causes_words_m.jsonl"),
+    ),
+    (
         "exam_5.jsonl",
         include_str!("../../../../tests/data/exam_5.jsonl"),
     ),

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use crate::scene::graph::{LaneRole, Locked, Node, NodeKind, SceneGraph, SizeHint};
 use crate::scene::road_map::{RoadMap, resampled};
-use crate::scene::{BoxLabel, BoxId, Class, SceneBox};
+use crate::scene::{BoxId, BoxLabel, Class, SceneBox};
 
 /// Points of a lane.
 pub const POINTS: usize = 8;

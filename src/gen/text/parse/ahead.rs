@@ -165,7 +165,7 @@ impl Parser<'_> {
         };
         // "a tram-replacement bus"
         let joined = self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Unknown)
-            && self.pre.article.is_some()
+            && (self.pre.article.is_some() || self.pre.count.is_some())
             && noun(self.at + 2);
         noun(self.at + 1) || joined
     }

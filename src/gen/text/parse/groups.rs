@@ -107,6 +107,18 @@ impl Parser<'_> {
         ) {
             self.at += 1; // "the first one"
         }
+        // "three barriers ... A worker stands on the left, another one on the right": another worker
+        let lone = self.head.first().or(self.before.first()).copied().filter(|s| {
+            let m = &self.mentions[*s];
+            said.starts_with("another")
+                && self.whole.is_none()
+                && m.spec.count.n == 1
+                && !m.gone
+                && !m.is_anchor
+                && !m.definite
+                && !m.spec.relations.is_empty()
+        });
+        let parent = parent.filter(|p| !self.edits && lone.is_none_or(|s| s < *p) || self.edits);
         let Some(parent) = parent else {
             let single = self.last.first().or(self.before.first()).copied();
             if self.pending.is_none()
@@ -164,8 +176,8 @@ impl Parser<'_> {
         if !all
             && !of_them
             && !self.edits
-            && self.mentions[parent].uncounted
-            && self.mentions[parent].bare
+            && (self.mentions[parent].uncounted && self.mentions[parent].bare
+                || !left.is_exact() && count.n > 1)
             && (self.mentions[parent].spec.relations.is_empty() || self.after_mark())
         {
             // "People: two on the left, ...", "cars flank me: one on my left, ..." counts them one after another
@@ -268,7 +280,11 @@ impl Parser<'_> {
 
     pub(super) fn pronoun(&mut self, item: &Item) -> bool {
         if matches!(item.words.as_str(), "that" | "this" | "those" | "these")
-            && matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+            && (matches!(self.sense(self.at + 1), Some(Sense::Noun(..)))
+                // "at this intersection"
+                || matches!(item.words.as_str(), "this" | "these")
+                    && !self.edits
+                    && matches!(self.sense(self.at + 1), Some(Sense::Place(..) | Sense::RoadKind(..) | Sense::Environment(_))))
         {
             self.pre.article = Some(true); // "that car"
             self.pre.cover(item.span);
@@ -276,6 +292,7 @@ impl Parser<'_> {
         }
         if matches!(item.words.as_str(), "that") {
             self.relative = true;
+            self.relates_to_front();
         }
         // "on her bike", "behind his van": whose it is, the noun says what
         let whose = matches!(item.words.as_str(), "his" | "her" | "their" | "its");

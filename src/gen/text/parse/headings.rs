@@ -15,7 +15,10 @@ impl Parser<'_> {
             Some(Tag::Number(_) | Tag::Is(Sense::Article(_) | Sense::Count(_)))
         );
         let plain = |m: &Mention| m.uncounted && m.bare && !m.plural;
-        if listed && self.mentions.iter().all(plain) {
+        // (what a sentence before says the place of is no heading)
+        let own = self.sentence.min(self.mentions.len());
+        let placed = self.mentions[..own].iter().any(|m| !m.spec.relations.is_empty());
+        if listed && !placed && self.mentions.iter().all(plain) {
             for m in &mut self.mentions {
                 m.gone = true;
             }
@@ -63,13 +66,15 @@ impl Parser<'_> {
             && !matches!(anchor, Anchor::Lane(crate::scene::graph::LaneRole::Road))
         {
             self.topic = None;
-            self.fronted.push(super::super::mention::Frag {
+            let frag = super::super::mention::Frag {
                 prep: Prep::In,
                 anchor,
                 and: None,
                 distance_m: None,
                 span,
-            });
+            };
+            self.headed = vec![frag.clone()];
+            self.fronted.push(frag);
             self.chain = true;
         }
     }

@@ -5,6 +5,7 @@ use super::super::mention::{Mention, Pre};
 use super::super::tag::Tag;
 use super::super::words::objects::Noun;
 use super::Parser;
+use crate::scene::Class;
 
 impl Parser<'_> {
     /// "Vehicle 1": the number is a name, if it stands after a noun in the singular and no noun or unit follows. True if
@@ -71,5 +72,47 @@ impl Parser<'_> {
         m.spec.noun = word.to_string();
         m.spec.size_m = noun.size_m;
         true
+    }
+
+    /// "witnesses counted five cones": who tells of the scene is not in it. True if it was that.
+    pub(in super::super) fn tells(&mut self, noun: &'static Noun) -> bool {
+        static SAYING: std::sync::LazyLock<std::collections::HashSet<String>> =
+            std::sync::LazyLock::new(|| {
+                use super::super::words::verbs::{SAYING, forms};
+                let all = SAYING.split('|').map(forms);
+                all.flat_map(|f| [f.base, f.s, f.past, f.participle]).collect()
+            });
+        if noun.classes[0] != Class::Pedestrian {
+            return false;
+        }
+        let mut j = self.at + 1;
+        while self
+            .item(j)
+            .is_some_and(|n| matches!(n.words.as_str(), "has" | "have" | "had"))
+        {
+            j += 1;
+        }
+        let items = self.items;
+        let words = |k: usize| items.get(k).map_or("", |n| n.words.as_str());
+        let one = words(j)
+            .trim_start_matches("has ")
+            .trim_start_matches("have ")
+            .trim_start_matches("had ");
+        let two = format!("{one} {}", words(j + 1));
+        let said = SAYING.contains(one)
+            && self
+                .item(j)
+                .is_some_and(|n| !matches!(n.tag, Tag::Is(Sense::Noun(..))))
+            || SAYING.contains(&two);
+        if said {
+            // past the verb, and a "that" after it
+            self.at = j + usize::from(SAYING.contains(&two));
+            if words(self.at + 1) == "that" {
+                self.at += 1;
+            }
+            self.new_clause();
+            self.fresh = true;
+        }
+        said
     }
 }

@@ -53,7 +53,8 @@ pub(super) struct Parser<'a> {
     pub(super) last: Vec<usize>,
     pub(super) before: Vec<usize>, // subject of the clause before
     pub(super) fronted: Vec<Frag>,
-    fronted_state: Option<ObjectState>,
+    pub(super) headed: Vec<Frag>, // "our lane: a van at 10 m, another at 25 m": of all of the list
+    pub(super) fronted_state: Option<ObjectState>,
     fronted_both: Option<bool>,  // "on both sides stand ..."
     pub(super) chain: bool,      // only nouns so far in this clause
     pub(super) list: Vec<usize>, // those nouns
@@ -74,10 +75,11 @@ pub(super) struct Parser<'a> {
     pub(super) last_place: Option<Anchor>, // the same of any place but the road
     pub(super) whole: Option<usize>,       // the group that the last part was taken from
     sentence: usize,                       // the first mention of the sentence
-    pub(super) alike: Option<usize>, // "so is the bus": what the next noun is like
+    sentence_before: usize,                // of the last one that named something
+    pub(super) alike: Option<usize>,       // "so is the bus": what the next noun is like
     pub(super) enumerated: Option<usize>, // "People: two on the left, ..." counts this group one after another
-    front: Option<Anchor>,                 // what a place at the head of a clause was of
-    pair: Vec<usize>,                      // the two of "between a van and a lorry"
+    front: Option<Anchor>,                // what a place at the head of a clause was of
+    pair: Vec<usize>,                     // the two of "between a van and a lorry"
     with: bool,
     pub(super) edits: bool,
     pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
@@ -117,6 +119,7 @@ impl<'a> Parser<'a> {
             last: Vec::new(),
             before: Vec::new(),
             fronted: Vec::new(),
+            headed: Vec::new(),
             fronted_state: None,
             fronted_both: None,
             chain: true,
@@ -138,6 +141,7 @@ impl<'a> Parser<'a> {
             last_place: None,
             whole: None,
             sentence: 0,
+            sentence_before: 0,
             alike: None,
             enumerated: None,
             front: None,
@@ -193,6 +197,10 @@ impl<'a> Parser<'a> {
             Tag::Stop => {
                 self.ego_topic = false;
                 self.enumerated = None;
+                self.headed.clear();
+                if self.sentence < self.mentions.len() {
+                    self.sentence_before = self.sentence;
+                }
                 self.sentence = self.mentions.len();
                 self.order = None;
                 self.end_clause();
@@ -223,7 +231,8 @@ impl<'a> Parser<'a> {
                 }
                 if item.words == ":" {
                     // "we would like this: ..." is not about us
-                    self.ego_subject &= !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
+                    self.ego_subject &=
+                        !self.head.is_empty() || !self.last.is_empty() || self.pending.is_some();
                     self.heading();
                 }
                 self.flush();
@@ -269,6 +278,24 @@ impl<'a> Parser<'a> {
                 }
                 if led && fresh && !self.edits {
                     self.pending = None;
+                }
+                // "a grader is levelling the oncoming lane": where it does that
+                let the = usize::from(matches!(self.sense(self.at + 1), Some(Sense::Article(true))));
+                let place = matches!(
+                    self.sense(self.at + 1 + the),
+                    Some(Sense::Place(Anchor::Lane(_), _))
+                );
+                let mine = self
+                    .item(self.at + 1)
+                    .is_some_and(|n| n.words.starts_with("our ") || n.words.starts_with("my "));
+                let does = item.words.ends_with("ing") && self.after_is()
+                    // "a snow plough clears our lane"
+                    || item.words.ends_with('s')
+                        && the + usize::from(mine) > 0
+                        && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Noun(_, false)));
+                if place && does && self.pending.is_none() && !self.last.is_empty() && !self.edits {
+                    self.begin(Prep::In, span);
+                    return true;
                 }
                 self.unread(span, None);
                 return true;

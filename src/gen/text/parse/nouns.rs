@@ -109,10 +109,14 @@ impl Parser<'_> {
         }
         // "two vans, and their drivers stand behind them": one each
         // "a couple with a pushchair": theirs, and nobody more
-        let carried = noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
+        let carried =
+            noun.nearest && noun.classes[0] == Class::Pedestrian && self.with && self.pending.is_none();
         if carried
             && !self.edits
-            && self.last.first().is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
+            && self
+                .last
+                .first()
+                .is_some_and(|i| self.mentions[*i].spec.class == Class::Pedestrian)
         {
             self.with = false;
             return;
@@ -120,12 +124,28 @@ impl Parser<'_> {
         let theirs = self
             .item(self.at.wrapping_sub(1))
             .is_some_and(|b| matches!(b.words.as_str(), "their" | "whose"));
-        if theirs && plural && pre.count.is_none() && matches!(word, "drivers" | "owners" | "operators") && !self.edits {
-            let hosts = if self.head.is_empty() { &self.before } else { &self.head };
+        if theirs
+            && plural
+            && pre.count.is_none()
+            && matches!(word, "drivers" | "owners" | "operators")
+            && !self.edits
+        {
+            let hosts = if self.head.is_empty() {
+                &self.before
+            } else {
+                &self.head
+            };
             let vehicles = hosts.iter().map(|i| &self.mentions[*i].spec);
             let driven = vehicles.filter(|s| s.class.is_vehicle() && s.count.is_exact());
             let many: u32 = driven.map(|s| s.count.n).sum();
             pre.count = (many > 0).then(|| Count::exactly(many));
+        }
+        // "two children and their parents"
+        let whose = self
+            .item(self.at.wrapping_sub(1))
+            .is_some_and(|b| matches!(b.words.as_str(), "their" | "his" | "her"));
+        if whose && matches!(word, "parents" | "grandparents") && pre.count.is_none() && !self.edits {
+            pre.count = Some(Count::exactly(2));
         }
         let some_one = !plural
             && noun.several == 1
@@ -288,7 +308,12 @@ impl Parser<'_> {
         self.last = self.head.clone();
         if let (Some(each), false) = (self.fronted_both, old) {
             let m = &mut self.mentions[index];
-            m.both = Some(each || m.spec.count.n == 1);
+            // "on both sides a row of three cones": a row on each
+            let row = (1..=2).any(|k| {
+                let word = self.at.checked_sub(k).and_then(|i| self.items.get(i));
+                word.is_some_and(|w| w.words.starts_with("a ") && w.words.ends_with(" of"))
+            });
+            m.both = Some(each || row || m.spec.count.n == 1);
         }
         if let Some(state) = self.fronted_state
             && self.mentions[index].spec.state.is_none()
@@ -300,6 +325,11 @@ impl Parser<'_> {
                 apply(&mut self.mentions[index].spec, &frag);
             }
         }
+        if !old && self.fronted.is_empty() && self.mentions[index].spec.relations.is_empty() {
+            for frag in self.headed.clone() {
+                apply(&mut self.mentions[index].spec, &frag);
+            }
+        }
         if !old && self.mentions[index].spec.relations.is_empty() {
             self.mentions[index].spec.relations = self.listed.clone();
         }
@@ -307,7 +337,10 @@ impl Parser<'_> {
             let other = self.mentions[like].spec.clone();
             let spec = &mut self.mentions[index].spec;
             spec.state = spec.state.or(other.state);
-            let theirs = other.relations.into_iter().filter(|r| r.anchor != Anchor::Object(index));
+            let theirs = other
+                .relations
+                .into_iter()
+                .filter(|r| r.anchor != Anchor::Object(index));
             spec.relations.extend(theirs);
         }
         if !old {
@@ -398,7 +431,18 @@ impl Parser<'_> {
             let counts = new.uncounted || m.spec.count.n == new.spec.count.n;
             !m.gone && nouns && colors && states && counts
         };
-        (0..self.mentions.len()).rev().find(|&i| fits(&self.mentions[i]))
+        // "the excavator and the bulldozer": those of one list are as many as are named; so are those of two kinds
+        let listed = |i: usize| {
+            self.pending.is_none()
+                && self.linked
+                && self.list.contains(&i)
+                && self.mentions[i].spec.noun != new.spec.noun
+        };
+        let other =
+            |i: usize| super::super::names::are_of_two_kinds(&self.mentions[i].spec.noun, &new.spec.noun);
+        (0..self.mentions.len())
+            .rev()
+            .find(|&i| fits(&self.mentions[i]) && !listed(i) && !other(i))
     }
 
     pub(super) fn works(&mut self, span: Span) {

@@ -2,7 +2,7 @@
 
 use super::super::description::{Anchor, Became, Count, Stated};
 use super::super::lexicon::Sense;
-use super::super::mention::{Pre, Prep};
+use super::super::mention::{Frag, Pre, Prep};
 use super::super::tag::Tag;
 use super::super::tokens::Span;
 use super::super::words::objects::NOUNS;
@@ -239,6 +239,35 @@ impl Parser<'_> {
             && !matches!(p.prep, Prep::In | Prep::At)
         {
             p.distance_m = Some(metres);
+            return;
+        }
+        // "12 m ahead a car, 24 m a bus": on the same side
+        let fresh = matches!(
+            next.map(|n| n.tag),
+            Some(Tag::Number(_) | Tag::Is(Sense::Article(false) | Sense::Count(_)))
+        );
+        if self.fresh && fresh && !self.edits && !self.head.is_empty() && self.noun_ahead(self.at + 1) {
+            let theirs = &self.mentions[self.head[0]].spec.relations;
+            let side = theirs.iter().find(|r| {
+                r.anchor == Anchor::Ego
+                    && matches!(
+                        r.relation,
+                        RelationKind::InFrontOf
+                            | RelationKind::Behind
+                            | RelationKind::LeftOf
+                            | RelationKind::RightOf
+                    )
+            });
+            let side = side.map_or(RelationKind::Near, |r| r.relation);
+            self.pending = None;
+            self.new_clause();
+            self.fronted.push(Frag {
+                prep: Prep::Rels(vec![side]),
+                anchor: Anchor::Ego,
+                and: None,
+                distance_m: Some(metres),
+                span,
+            });
             return;
         }
         // "at 20 m", "at a distance of 20 m": of the relation before

@@ -118,7 +118,9 @@ impl Parser<'_> {
         let of = self
             .item(self.at + 1)
             .is_some_and(|n| n.words.starts_with("of them") || n.words == "of");
-        if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() || of {
+        // "between the two a child stands"
+        let another = matches!(self.sense(self.at + 1), Some(Sense::Article(false)));
+        if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() && !another || of {
             return false;
         }
         self.between_them("two", span)
@@ -126,26 +128,40 @@ impl Parser<'_> {
 
     /// ", all in our lane": of all that the sentence named so far. True if it was that.
     pub(super) fn all_named(&mut self) -> bool {
-        let comma = self
-            .item(self.at.wrapping_sub(1))
-            .is_some_and(|b| b.tag == super::super::tag::Tag::Comma);
+        use super::super::tag::Tag;
+        let before = self.at.checked_sub(1).and_then(|i| self.item(i)).map(|b| b.tag);
+        let apart = matches!(before, Some(Tag::Comma | Tag::Mark | Tag::Is(Sense::And)));
+        // "A bus and two cars. All of them come towards us."
+        let stop = before == Some(Tag::Stop);
         let mut next = self.at + 1;
-        while self.item(next).is_some_and(|n| {
-            matches!(
+        let mut pointed = false;
+        while let Some(n) = self.item(next)
+            && matches!(
                 n.words.as_str(),
-                "of them" | "of which" | "of whom" | "are" | "is"
+                "of them"
+                    | "of which"
+                    | "of whom"
+                    | "are"
+                    | "is"
+                    | "them"
+                    | "these"
+                    | "those"
+                    | "which"
+                    | "whom"
             )
-        }) {
+        {
+            pointed |= !matches!(n.words.as_str(), "are" | "is");
             next += 1;
         }
         let placed = matches!(
             self.sense(next),
             Some(Sense::In | Sense::At | Sense::Rel(_) | Sense::EgoRel(_) | Sense::State(_, false))
-        );
-        let all: Vec<usize> = (self.sentence..self.mentions.len())
+        ) || pointed && matches!(self.sense(next), Some(Sense::State(_, true)));
+        let from = if stop { self.sentence_before } else { self.sentence };
+        let all: Vec<usize> = (from..self.mentions.len())
             .filter(|i| !self.mentions[*i].gone && !self.mentions[*i].is_anchor)
             .collect();
-        if self.edits || !comma || !placed || self.pending.is_some() || all.len() < 2 {
+        if self.edits || !(apart || stop && pointed) || !placed || self.pending.is_some() || all.len() < 2 {
             return false;
         }
         self.last = all;
@@ -202,6 +218,23 @@ impl Parser<'_> {
         self.last = self.head.clone();
         self.list = self.head.clone();
         self.chain = false;
+        true
+    }
+
+    /// "we are following a third one": one more of what was named last. True if it was that.
+    pub(super) fn ego_has_another(&mut self, item: &super::super::tag::Item) -> bool {
+        let ego = self.pending.as_ref().is_some_and(|p| p.ego);
+        let more = item.words.starts_with("a ") || item.words.starts_with("another");
+        let last = (0..self.mentions.len()).rev().find(|i| !self.mentions[*i].gone);
+        let Some(last) = last.filter(|_| ego && more && !self.edits) else {
+            return false;
+        };
+        let mut twin = self.mentions[last].clone();
+        twin.spec.relations.clear();
+        twin.spec.count = super::super::description::Count::exactly(1);
+        twin.spec.span = item.span;
+        self.mentions.push(twin);
+        self.anchor(Anchor::Object(self.mentions.len() - 1), item.span);
         true
     }
 

@@ -1,8 +1,8 @@
 //! Prepositions: where a relation begins, what it ends in, of whom it speaks.
 
 use super::super::description::Anchor;
-use super::super::mention::{Frag, Pre, Prep, apply};
 use super::super::lexicon::Sense;
+use super::super::mention::{Frag, Pre, Prep, apply};
 use super::super::tag::Tag;
 use super::super::tokens::Span;
 use super::{Parser, Pending};
@@ -21,6 +21,7 @@ impl Parser<'_> {
         }
         self.pre = Pre::default();
         let distance_m = self.distance.take().map(|d| d.0);
+        let of_last = prep == Prep::Rels(vec![RelationKind::Following]);
         self.pending = Some(Pending {
             prep,
             span,
@@ -29,7 +30,8 @@ impl Parser<'_> {
             anded: self.anded || self.after_and(),
             not,
             finite: self.after_is() && !self.relative,
-            ego: self.ego_subject && self.head.is_empty(),
+            // ("we are behind a trailer pulled by a car": the trailer is)
+            ego: self.ego_subject && self.head.is_empty() && (self.last.is_empty() || self.fresh || !of_last),
             distance_m,
         });
     }
@@ -135,13 +137,18 @@ impl Parser<'_> {
         // "20 m in front of me a car, 20 m behind me another one"
         let another = !self.edits
             && self.item(self.at + 1).is_some_and(|n| {
-                n.tag == Tag::Is(Sense::Part(false)) && (n.words.starts_with("another") || n.words.starts_with("a "))
+                n.tag == Tag::Is(Sense::Part(false))
+                    && (n.words.starts_with("another") || n.words.starts_with("a "))
             })
             && self.ends(self.at + 2);
         let new_noun = set_off
             || another
             || self.noun_ahead(self.at + 1)
             || self.bare_number(self.at + 1)
+            // "to the right stand three"
+            || self.bare_number(self.at + 2)
+                && (matches!(self.sense(self.at + 1), Some(Sense::State(_, true)))
+                    || self.item(self.at + 1).is_some_and(|n| matches!(n.words.as_str(), "is" | "are")))
             || self.inverted_ahead(self.at + 1);
         // "the host trails a truck in its lane"
         let of_last = self.ego_subject && !p.fresh && self.head.is_empty() && !self.last.is_empty();
@@ -183,6 +190,37 @@ impl Parser<'_> {
         } else {
             targets
         };
+        // "a jogger passes a parked bus on the right pavement": the jogger is there
+        let read = &self.items[..self.items.len().min(self.at + 1)];
+        let prep = read.iter().rposition(|i| i.span.start == frag.span.start);
+        let at_noun = prep
+            .and_then(|k| self.sense(k.checked_sub(1)?))
+            .is_some_and(|s| matches!(s, Sense::Noun(..)));
+        let pavement = matches!(
+            frag.anchor,
+            Anchor::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)
+        );
+        let drives = targets.iter().all(|t| self.mentions[*t].spec.class.is_vehicle());
+        let walkers: Vec<usize> = self
+            .head
+            .iter()
+            .copied()
+            .filter(|h| {
+                let m = &self.mentions[*h];
+                m.spec.class == Class::Pedestrian
+                    && !m
+                        .spec
+                        .relations
+                        .iter()
+                        .any(|r| matches!(r.anchor, Anchor::Lane(_)))
+            })
+            .collect();
+        let targets =
+            if pavement && at_noun && drives && !self.edits && !targets.is_empty() && !walkers.is_empty() {
+                walkers
+            } else {
+                targets
+            };
         // "two oncoming cars and a man on the pavement": the man is
         let walk = matches!(
             frag.anchor,
@@ -287,7 +325,7 @@ impl Parser<'_> {
     }
 
     /// Who a relation or a participle right here speaks of.
-    pub(super) fn targets(&self) -> Vec<usize> {
+    pub(in super::super) fn targets(&self) -> Vec<usize> {
         if self.fresh && !self.relative {
             return self.head.clone();
         }

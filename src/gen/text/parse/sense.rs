@@ -60,7 +60,9 @@ impl<'a> Parser<'a> {
                         return false;
                     }
                     // "one car 10 m ahead and one 20 m ahead, all in our lane"
-                    Pick::All if item.words == "all" && self.all_named() => return false,
+                    Pick::All if matches!(item.words.as_str(), "all" | "all of") && self.all_named() => {
+                        return false;
+                    }
                     _ => self.pre.pick = Some(pick),
                 }
                 self.pre.cover(span);
@@ -69,7 +71,9 @@ impl<'a> Parser<'a> {
             Sense::Verb(Verb::Move)
                 if !self.edits
                     && !self.head.is_empty()
-                    && self.item(self.at.wrapping_sub(1)).is_some_and(|b| b.words == "to") =>
+                    && self
+                        .item(self.at.wrapping_sub(1))
+                        .is_some_and(|b| b.words == "to") =>
             {
                 return true;
             }
@@ -234,11 +238,18 @@ impl<'a> Parser<'a> {
             Sense::Rel(_)
                 if matches!(
                     item.words.as_str(),
-                    "lead" | "leading" | "preceding" | "following" | "trailing"
+                    "lead"
+                        | "leading"
+                        | "preceding"
+                        | "following"
+                        | "trailing"
+                        | "tailgating"
+                        | "pursuing"
+                        | "chasing"
                 ) && (self.pre.article.is_some() || item.words == "lead" && self.fresh)
                     && self.noun_directly(self.at + 1) =>
             {
-                let ahead = !matches!(item.words.as_str(), "following" | "trailing");
+                let ahead = matches!(item.words.as_str(), "lead" | "leading" | "preceding");
                 let kind = if ahead {
                     RelationKind::InFrontOf
                 } else {
@@ -312,6 +323,7 @@ impl<'a> Parser<'a> {
                             )
                         });
                     self.anchor(host.or(by_other).map_or(Anchor::Ego, Anchor::Object), span);
+                    self.farther_on(item, span);
                 }
             }
             Sense::Reversed(kind) => {
@@ -404,6 +416,9 @@ impl<'a> Parser<'a> {
                 // "one in front of the other"
                 let targets = self.targets();
                 let noun = targets.first().map(|t| self.mentions[*t].spec.noun.clone());
+                if self.ego_has_another(item) {
+                    return false;
+                }
                 let other = (0..self.mentions.len())
                     .rev()
                     .find(|i| !targets.contains(i) && Some(&self.mentions[*i].spec.noun) == noun.as_ref());
@@ -469,7 +484,17 @@ impl<'a> Parser<'a> {
                 }
                 return true;
             }
+            // "two deer-watchers", "a dog owner"
+            Sense::Cannot(_)
+                if !self.edits
+                    && self.noun_directly(self.at + 1)
+                    && item.span.end + 1 == self.items[self.at + 1].span.start
+                    && !item.words.ends_with('s') =>
+            {
+                return true;
+            }
             Sense::Background => {
+                self.with = false;
                 let lead = self.pending.take();
                 if let Some(p) = lead.filter(|p| matches!(p.prep, Prep::Rels(_))) {
                     let span = p.span.to(span);
@@ -488,6 +513,7 @@ impl<'a> Parser<'a> {
                 self.pre = Pre::default();
             }
             Sense::Cannot(why) => {
+                self.with = false;
                 let span = self.pre.span.map_or(span, |s| s.to(span));
                 let span = self.pending.take().map_or(span, |p| p.span.to(span));
                 self.pre = Pre::default();

@@ -64,7 +64,9 @@ impl Parser<'_> {
         let twice = |i: &usize| {
             let m = &self.mentions[*i];
             let each = matches!(self.sense(self.at + 1), Some(Sense::BothSides(true)));
-            each && count.is_exact() && !m.gone && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
+            each && count.is_exact()
+                && !m.gone
+                && (m.uncounted || m.spec.count == Count::exactly(2 * count.n))
         };
         let last = (0..self.mentions.len())
             .rev()
@@ -170,6 +172,19 @@ impl Parser<'_> {
         false
     }
 
+    /// "Across the street from a bus that is parked there, ...": "that" is the bus.
+    pub(super) fn relates_to_front(&mut self) {
+        let front = match self.fronted.last() {
+            Some(f) if f.and.is_none() => f.anchor,
+            _ => return,
+        };
+        if let (Anchor::Object(i), true, false) =
+            (front, self.last.is_empty() && self.head.is_empty(), self.edits)
+        {
+            self.last = vec![i];
+        }
+    }
+
     /// True if the place right here says without a preposition where something stands: "cone ego lane", "car left lane".
     pub(super) fn bare_place(&self, anchor: Anchor) -> bool {
         let place = matches!(anchor, Anchor::Lane(role) if role != L::Road) || anchor == Anchor::Crossing;
@@ -194,6 +209,11 @@ impl Parser<'_> {
                 )
             )
         });
+        // "a fire engine, 25 m, same lane as ours"
+        let alone = before.is_some_and(|b| b.tag == Tag::Comma)
+            && self.ends(self.at + 1)
+            && self.item(self.at + 1).is_none_or(|n| n.words != ":");
+        let led = led || alone && !self.edits && self.head.len() == 1;
         // "a bus lane bus", "pedestrians crosswalk sign"
         let one_word = self.items[self.at].words.contains(' ') || !matches!(anchor, Anchor::Lane(L::Ego));
         place && led && one_word && !self.last.is_empty() && !self.noun_directly(self.at + 1)
@@ -207,11 +227,14 @@ impl Parser<'_> {
             targets.truncate(1); // "flanked by two cones on each side"
         }
         // "and on both sides stand two cars"
-        if self.fresh && self.noun_ahead(self.at + 1) && self.reversed.is_none() {
+        // ("on both sides of the street, a row of cones stands")
+        let comma = targets.is_empty() && self.item(self.at + 1).is_some_and(|n| n.tag == Tag::Comma);
+        let next = self.at + 1 + usize::from(comma);
+        if self.fresh && self.noun_ahead(next) && self.reversed.is_none() {
             self.new_clause();
             targets.clear();
         }
-        if targets.is_empty() && self.noun_ahead(self.at + 1) {
+        if targets.is_empty() && self.noun_ahead(next) {
             self.fronted_both = Some(each);
         } else if targets.is_empty() {
             self.unread(span, Some("nothing stands before it".into()));

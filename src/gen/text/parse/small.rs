@@ -99,6 +99,7 @@ impl Parser<'_> {
             "which" | "who" | "that is" | "that are" | "who is" | "who are" | "which is" | "which are"
             | "thats" | "whos" => {
                 self.relative = true;
+                self.relates_to_front();
                 // "between a van and a lorry that are parked"
                 let several = item.words.ends_with("are");
                 if several && self.pair.len() == 2 && self.last.last() == self.pair.last() {
@@ -131,7 +132,9 @@ impl Parser<'_> {
                 self.end_list();
             }
             // "... obstructs the crossing; four people wait there"
-            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there" if self.ends(self.past_too(self.at + 1)) && !self.edits => {
+            "there" | "over there" | "are there" | "is there" | "stand there" | "wait there"
+                if self.ends(self.past_too(self.at + 1)) && !self.edits =>
+            {
                 self.there(span)
             }
             // "on both pavements stand three people each"
@@ -162,9 +165,10 @@ impl Parser<'_> {
             "so" | "because" | "since" | "therefore" | "hence"
                 if !self.edits
                     && self.noun_ahead(self.at + 1)
-                    && self
-                        .item(self.at.wrapping_sub(1))
-                        .is_some_and(|b| matches!(b.tag, Tag::Comma | Tag::Mark)) =>
+                    && (item.words == "because"
+                        || self
+                            .item(self.at.wrapping_sub(1))
+                            .is_some_and(|b| matches!(b.tag, Tag::Comma | Tag::Mark))) =>
             {
                 self.soft_end();
             }

@@ -153,7 +153,11 @@ impl Parser<'_> {
             || self
                 .item(self.at.wrapping_sub(1))
                 .is_some_and(|i| matches!(i.words.as_str(), "not" | "isnt" | "arent"));
-        let denied = if denied { format!("not {color}") } else { String::new() };
+        let denied = if denied {
+            format!("not {color}")
+        } else {
+            String::new()
+        };
         let color = if denied.is_empty() { color } else { denied.as_str() };
         let targets = if self.after_is() {
             self.subjects(true)

@@ -1,8 +1,8 @@
 //! Places, kinds of road, time and weather.
 
 use super::super::description::{Anchor, Became, Environment, Road, TimeOfDay, Weather};
-use super::super::mention::{Pre, Prep};
 use super::super::lexicon::Sense;
+use super::super::mention::{Pre, Prep};
 use super::super::tag::{Item, Tag};
 use super::super::tokens::Span;
 use super::Parser;
@@ -109,10 +109,21 @@ impl Parser<'_> {
             }
         }
         if self.pending.is_some() {
-            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty());
+            // "stopped by a pedestrian who is on the crosswalk" says where that one is
+            let of_one = self.relative
+                && self
+                    .fronted
+                    .last()
+                    .is_some_and(|f| matches!(f.anchor, Anchor::Object(_)));
+            let fronts = self.head.is_empty() && (!self.ego_subject || self.last.is_empty())
+                && !of_one
+                // "waiting at the right kerb for a gap: an old man"
+                && (self.fronted_state.is_none() || anchor == Anchor::Lane(LaneRole::Road));
             let next_noun = self.noun_ahead(self.at + 1)
                 // "in our lane ahead of us is a truck"
                 || self.inverted_ahead(self.at + 1)
+                // "at the zebra ahead four people are waiting"
+                || matches!(self.sense(self.at + 1), Some(Sense::EgoRel(_))) && self.noun_ahead(self.at + 2)
                 || matches!(
                     self.item(self.at + 1).map(|i| i.tag),
                     Some(Tag::Comma | Tag::Mark)
@@ -159,7 +170,10 @@ impl Parser<'_> {
             Some(Tag::Number(_) | Tag::Is(Sense::Article(false) | Sense::Count(_)))
         ) && !matches!(self.sense(self.at + 2), Some(Sense::Unit(_)));
         let told = !matches!(anchor, Anchor::Lane(LaneRole::Road) | Anchor::Junction);
-        if (opened || self.item(self.at.wrapping_sub(1)).is_none_or(|b| b.tag == Tag::Stop))
+        if (opened
+            || self
+                .item(self.at.wrapping_sub(1))
+                .is_none_or(|b| b.tag == Tag::Stop))
             && !self.edits
             && fresh
             && told

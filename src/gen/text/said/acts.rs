@@ -39,8 +39,16 @@ fn about(verb: Verb, s: &Subject, clause: &[Token], talk: &Talk<'_>) -> Command 
 
 /// "the nurse and the child": two that are known.
 fn joins(np: &[Token]) -> bool {
-    let the = |t: Option<&Token>| is(t, &["the", "my", "that", "both", "this", "all", "our", "those", "these"]);
-    (1..np.len()).any(|i| is(np.get(i), &["and"]) && the(np.first()) && has_noun(&np[..i]) && has_noun(&np[i + 1..]))
+    let the = |t: Option<&Token>| {
+        is(
+            t,
+            &[
+                "the", "my", "that", "both", "this", "all", "our", "those", "these",
+            ],
+        )
+    };
+    (1..np.len())
+        .any(|i| is(np.get(i), &["and"]) && the(np.first()) && has_noun(&np[..i]) && has_noun(&np[i + 1..]))
 }
 
 /// "the second truck": the ordinal is taken out.
@@ -74,6 +82,7 @@ pub fn acts(
             !p.not
                 && !p.main.is_empty()
                 && !only_points(&p.main)
+                && !only_faces(&p.main)
                 && (super::predicate::places(&p.main) || p.is_gone())
         })
     };
@@ -157,7 +166,10 @@ pub fn acts(
         let new = &first.main[*n..];
         // "changes to our lane behind the bus"
         let the = usize::from(is(new.first(), &["the", "our", "my", "their", "its"]));
-        if matches!(new.get(the..).and_then(super::words::longest), Some((Sense::Place(..), _))) {
+        if matches!(
+            new.get(the..).and_then(super::words::longest),
+            Some((Sense::Place(..), _))
+        ) {
             return false;
         }
         let fresh = is(new.first(), &["a", "an", "another", "one"])
@@ -235,6 +247,13 @@ pub fn acts(
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "faces us", "looks at me": how someone is turned says not where he is.
+fn only_faces(main: &[Token]) -> bool {
+    super::words::leads(main, &super::lists::TURNS).is_some()
+        && main.len() < 4
+        && is(main.last(), &["us", "me"])
 }
 
 /// "blocks it": a verb of something that was named before.

@@ -95,9 +95,22 @@ pub fn painted(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         Some(n) if clause.get(n).is_some_and(is_colour) => super::words::trimmed(&clause[n + 1..]),
         _ => clause,
     };
+    let (wished, mood) = super::frame::unwrapped(clause);
     made(clause, talk)
+        .or_else(|| mood.framed.then(|| wished_in(wished, talk)).flatten())
         .or_else(|| given(clause, talk))
         .or_else(|| becomes(clause, talk))
+}
+
+/// "(I would like) the car behind me in red"
+fn wished_in(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let [np @ .., within, colour] = clause else {
+        return None;
+    };
+    let known = is_colour(colour)
+        && is(Some(within), &["in"])
+        && is(np.first(), &["the", "that", "my", "both", "all"]);
+    (known && has_noun(np) && talk.fits(np) > 0).then(|| paints(np, std::slice::from_ref(colour)))
 }
 
 /// "make the car behind me red", "have both cars painted white"

@@ -6,7 +6,9 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::replaced;
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{command_of, find, first_noun, has_noun, is, is_place, leads, led, longest, number, text, trimmed};
+use super::words::{
+    command_of, find, first_noun, has_noun, is, is_place, leads, led, longest, number, text, trimmed,
+};
 use crate::scene::Class;
 
 const BIGGER: &str = "anything bigger than a car|anything larger than a car|everything bigger than a car|everything larger than a car|whatever is bigger than a car|whatever is larger than a car|everything that is bigger than a car|everything that is larger than a car|anything that is bigger than a car|anything that is larger than a car|all vehicles bigger than a car|all vehicles larger than a car|every vehicle bigger than a car|every vehicle larger than a car|anything heavier than a car|everything heavier than a car|all heavy vehicles|every heavy vehicle|all the heavy vehicles|the heavy vehicles";
@@ -37,7 +39,11 @@ fn closes(t: Option<&Token>) -> bool {
 fn bus_stops(mut tokens: Vec<Token>) -> Vec<Token> {
     for i in 3..tokens.len() {
         let bus = is(tokens.get(i - 1), &["bus"]) && is(tokens.get(i), &["stop", "stand"]);
-        let let_ = is(tokens.get(i - 2), &["the", "that", "our", "my"]) && is(tokens.get(i - 3), &["let", "have", "make", "want", "need", "see", "should"]);
+        let let_ = is(tokens.get(i - 2), &["the", "that", "our", "my"])
+            && is(
+                tokens.get(i - 3),
+                &["let", "have", "make", "want", "need", "see", "should"],
+            );
         if bus && let_ && tokens.get(i + 1).is_none_or(|t| !HELPERS.contains(&text(t))) {
             tokens[i].text = "wait".into();
         }
@@ -55,7 +61,17 @@ fn carried_things(mut tokens: Vec<Token>) -> Vec<Token> {
         person
             && is(tokens.get(*i), &["with", "carrying", "holding"])
             && is(tokens.get(i + 1), &["a", "an", "his", "her", "their", "two"])
-            && !matches!(look_up(text(&tokens[i + 2])), Some(Sense::Noun(..) | Sense::Place(..) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_) | Sense::State(..)))
+            && !matches!(
+                look_up(text(&tokens[i + 2])),
+                Some(
+                    Sense::Noun(..)
+                        | Sense::Place(..)
+                        | Sense::Color(_)
+                        | Sense::Size(_)
+                        | Sense::Attribute(_)
+                        | Sense::State(..)
+                )
+            )
             && tokens[i + 2].kind == TokenKind::Word
             && !is_place(&tokens[i + 2..])
     });
@@ -74,7 +90,15 @@ fn ours(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }) else {
         return tokens;
     };
-    let lane = led(if text(&tokens[i]) == "ours" { "our lane" } else { "my lane" }, &tokens[i], &[]);
+    let lane = led(
+        if text(&tokens[i]) == "ours" {
+            "our lane"
+        } else {
+            "my lane"
+        },
+        &tokens[i],
+        &[],
+    );
     [&tokens[..i], &lane, &tokens[i + 1..]].concat()
 }
 
@@ -87,18 +111,46 @@ fn by_doing(tokens: Vec<Token>) -> Vec<Token> {
         let np = tokens.get(i + 2..)?;
         let known = is(
             np.first(),
-            &["the", "all", "both", "every", "a", "an", "another", "it", "them", "him", "her", "my", "our", "that", "those", "these", "one", "two", "three", "everyone", "everybody", "everything"],
+            &[
+                "the",
+                "all",
+                "both",
+                "every",
+                "a",
+                "an",
+                "another",
+                "it",
+                "them",
+                "him",
+                "her",
+                "my",
+                "our",
+                "that",
+                "those",
+                "these",
+                "one",
+                "two",
+                "three",
+                "everyone",
+                "everybody",
+                "everything",
+            ],
         ) || np.first().is_some_and(|t| number(t).is_some());
         known.then_some((i, verb))
     });
     let Some((i, verb)) = found else {
         return tokens;
     };
-    let from = tokens[..i].iter().rposition(|t| matches!(t.kind, TokenKind::Mark | TokenKind::Stop)).map_or(0, |k| k + 1);
+    let from = tokens[..i]
+        .iter()
+        .rposition(|t| matches!(t.kind, TokenKind::Mark | TokenKind::Stop))
+        .map_or(0, |k| k + 1);
     let before = trimmed(&tokens[from..i]);
     // ("replace the bus by moving ..." and what names a thing that the doing does not is left alone)
     let same = match first_noun(before) {
-        Some((a, b)) => tokens[i..].iter().any(|t| before[a..b].iter().any(|n| stem(text(n)) == stem(text(t)))),
+        Some((a, b)) => tokens[i..]
+            .iter()
+            .any(|t| before[a..b].iter().any(|n| stem(text(n)) == stem(text(t)))),
         None => true,
     };
     let pronoun = is(tokens.get(i + 2), &["it", "them", "him", "her"]);
@@ -115,18 +167,60 @@ fn stem(word: &str) -> &str {
 /// "the plan calls for nine cones", "my list says two vans": so many there shall be.
 fn called_for(tokens: Vec<Token>) -> Vec<Token> {
     const PAPERS: &[&str] = &[
-        "plan", "script", "report", "invoice", "list", "form", "protocol", "drawing", "sketch", "specification", "spec", "order",
-        "permit", "statement", "file", "record", "records", "notes", "test case", "scenario", "ticket", "regulations", "rules", "sheet",
+        "plan",
+        "script",
+        "report",
+        "invoice",
+        "list",
+        "form",
+        "protocol",
+        "drawing",
+        "sketch",
+        "specification",
+        "spec",
+        "order",
+        "permit",
+        "statement",
+        "file",
+        "record",
+        "records",
+        "notes",
+        "test case",
+        "scenario",
+        "ticket",
+        "regulations",
+        "rules",
+        "sheet",
     ];
     const SAYS: &[&str] = &[
-        "calls for", "asks for", "says", "requires", "demands", "prescribes", "specifies", "lists", "states", "shows", "mentions",
-        "provides for", "speaks of", "says there are", "says there should be", "says there must be", "foresees", "call for", "require",
+        "calls for",
+        "asks for",
+        "says",
+        "requires",
+        "demands",
+        "prescribes",
+        "specifies",
+        "lists",
+        "states",
+        "shows",
+        "mentions",
+        "provides for",
+        "speaks of",
+        "says there are",
+        "says there should be",
+        "says there must be",
+        "foresees",
+        "call for",
+        "require",
     ];
     let Some((k, n)) = find(&tokens, SAYS).filter(|x| x.0 > 0 && x.0 < 5) else {
         return tokens;
     };
     let paper = is(tokens.get(k - 1), PAPERS) || k > 1 && leads(&tokens[k - 2..k], PAPERS) == Some(2);
-    let Some(many) = tokens.get(k + n).filter(|t| number(t).is_some() && !matches!(text(t), "a" | "an")) else {
+    let Some(many) = tokens
+        .get(k + n)
+        .filter(|t| number(t).is_some() && !matches!(text(t), "a" | "an"))
+    else {
         return tokens;
     };
     let Some((_, b)) = first_noun(&tokens[k + n..]).filter(|x| x.0 < 4) else {
@@ -149,7 +243,17 @@ fn called_for(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "fill the left lane until there are four cars in it": so many there.
 fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["fill up", "fill in", "fill", "stock up", "top up", "fill the scene so"]) else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "fill up",
+            "fill in",
+            "fill",
+            "stock up",
+            "top up",
+            "fill the scene so",
+        ],
+    ) else {
         return tokens;
     };
     let the = usize::from(is(tokens.get(n), &["the", "our", "my"]));
@@ -158,7 +262,10 @@ fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let place = &tokens[n..n + the + m];
     let mut rest = &tokens[n + the + m..];
-    while is(rest.first(), &["up", "so", "that", "until", "till", "with", "to", ","]) {
+    while is(
+        rest.first(),
+        &["up", "so", "that", "until", "till", "with", "to", ","],
+    ) {
         rest = &rest[1..];
     }
     let until = rest.len() + n + the + m < tokens.len();
@@ -168,34 +275,86 @@ fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let tail = trimmed(&rest[b..]);
-    let there = leads(tail, &["in it", "on it", "there", "in there", "standing there", "parked there", "in all", "in total"]).unwrap_or(0);
+    let there = leads(
+        tail,
+        &[
+            "in it",
+            "on it",
+            "there",
+            "in there",
+            "standing there",
+            "parked there",
+            "in all",
+            "in total",
+        ],
+    )
+    .unwrap_or(0);
     if !until || !tail[there..].is_empty() {
         return tokens;
     }
-    let lane = place.iter().any(|t| matches!(text(t), "lane" | "lanes" | "junction" | "intersection" | "carpark" | "roundabout"));
+    let lane = place.iter().any(|t| {
+        matches!(
+            text(t),
+            "lane" | "lanes" | "junction" | "intersection" | "carpark" | "roundabout"
+        )
+    });
     let at = led(if lane { "in" } else { "on" }, &tokens[0], &[place]);
     let there_are = talk.fits(&[&rest[1..b], &at].concat()) > 0 || more > 0;
-    led(if there_are { "keep exactly" } else { "add" }, &tokens[0], &[&rest[..b], &at])
+    led(
+        if there_are { "keep exactly" } else { "add" },
+        &tokens[0],
+        &[&rest[..b], &at],
+    )
 }
 
 /// "split the four walkers evenly between the two sidewalks": half of them on either.
 fn dealt_out(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const STRIPS: &[&str] = &["sidewalk", "pavement", "footpath", "roadside", "kerb", "curb", "shoulder", "verge"];
-    let Some(n) = leads(&tokens, &["split up", "split", "divide", "distribute", "spread out", "spread", "share out", "deal out"]) else {
+    const STRIPS: &[&str] = &[
+        "sidewalk", "pavement", "footpath", "roadside", "kerb", "curb", "shoulder", "verge",
+    ];
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "split up",
+            "split",
+            "divide",
+            "distribute",
+            "spread out",
+            "spread",
+            "share out",
+            "deal out",
+        ],
+    ) else {
         return tokens;
     };
-    let Some((a, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 5).map(|x| (n + x.0, n + x.1)) else {
+    let Some((a, b)) = first_noun(&tokens[n..])
+        .filter(|x| x.0 < 5)
+        .map(|x| (n + x.0, n + x.1))
+    else {
         return tokens;
     };
     let known = is(tokens.get(n), &["the", "all", "those", "these", "our", "my"]);
-    let strip = tokens[b..].iter().find_map(|t| STRIPS.iter().find(|s| stem(text(t)) == **s));
-    let side = find(&tokens[b..], &["sides of the road", "sides of the street", "side of the road", "side of the street", "edges of the road"]);
+    let strip = tokens[b..]
+        .iter()
+        .find_map(|t| STRIPS.iter().find(|s| stem(text(t)) == **s));
+    let side = find(
+        &tokens[b..],
+        &[
+            "sides of the road",
+            "sides of the street",
+            "side of the road",
+            "side of the street",
+            "edges of the road",
+        ],
+    );
     let strip = match (strip, side) {
         (Some(s), _) => *s,
         (None, Some(_)) => "roadside",
         _ => return tokens,
     };
-    let both = tokens[b..].iter().any(|t| matches!(text(t), "both" | "two" | "each" | "either" | "every"));
+    let both = tokens[b..]
+        .iter()
+        .any(|t| matches!(text(t), "both" | "two" | "each" | "either" | "every"));
     let many = talk.fits(&tokens[a..b]);
     // what more is said must only say that it is even
     let other = first_noun(&tokens[b..]).is_some();
@@ -210,7 +369,11 @@ fn dealt_out(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let at = &tokens[0];
     let mut out = led("move", at, &[&[half]]);
     out.extend(led("of the", at, &[&tokens[a..b]]));
-    out.extend(led(&format!("to the left {strip} and move the others to the right {strip}"), at, &[]));
+    out.extend(led(
+        &format!("to the left {strip} and move the others to the right {strip}"),
+        at,
+        &[],
+    ));
     out
 }
 
@@ -219,8 +382,16 @@ fn placed_there(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, t)) = tokens.iter().enumerate().find(|(i, t)| {
         text(t) == "there"
             && *i > 3
-            && !tokens.get(i + 1).is_some_and(|t| HELPERS.contains(&text(t)) || matches!(text(t), "stand" | "stands" | "isnt" | "arent"))
-            && !is(tokens.get(i.wrapping_sub(1)), &["is", "are", "not", "still", "already", "it", "them", "him", "her", "over", "up", "down", "out", "from", "who", "that"])
+            && !tokens.get(i + 1).is_some_and(|t| {
+                HELPERS.contains(&text(t)) || matches!(text(t), "stand" | "stands" | "isnt" | "arent")
+            })
+            && !is(
+                tokens.get(i.wrapping_sub(1)),
+                &[
+                    "is", "are", "not", "still", "already", "it", "them", "him", "her", "over", "up", "down",
+                    "out", "from", "who", "that",
+                ],
+            )
     }) else {
         return tokens;
     };
@@ -229,23 +400,50 @@ fn placed_there(tokens: Vec<Token>) -> Vec<Token> {
     let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest).filter(|_| the == 1) else {
         return tokens;
     };
-    let side = leads(&body[the + n..], &["to our right", "to our left", "to my right", "to my left", "on our right", "on our left", "on the right", "on the left", "to the right", "to the left"]).unwrap_or(0);
+    let side = leads(
+        &body[the + n..],
+        &[
+            "to our right",
+            "to our left",
+            "to my right",
+            "to my left",
+            "on our right",
+            "on our left",
+            "on the right",
+            "on the left",
+            "to the right",
+            "to the left",
+        ],
+    )
+    .unwrap_or(0);
     let place = &body[..the + n + side];
-    let state = body.get(the + n + side).is_some_and(|t| HELPERS.contains(&text(t)));
-    let Some(mark) = tokens[..i].iter().position(|t| t.kind == TokenKind::Mark && matches!(text(t), ":" | "-")) else {
+    let state = body
+        .get(the + n + side)
+        .is_some_and(|t| HELPERS.contains(&text(t)));
+    let Some(mark) = tokens[..i]
+        .iter()
+        .position(|t| t.kind == TokenKind::Mark && matches!(text(t), ":" | "-"))
+    else {
         return tokens;
     };
     if !state || mark < place.len() || has_noun(&tokens[..mark]) {
         return tokens;
     }
-    let lane = place.iter().any(|t| matches!(text(t), "lane" | "lanes" | "junction" | "intersection" | "carpark" | "roundabout"));
+    let lane = place.iter().any(|t| {
+        matches!(
+            text(t),
+            "lane" | "lanes" | "junction" | "intersection" | "carpark" | "roundabout"
+        )
+    });
     let at = led(if lane { "in" } else { "on" }, t, &[place]);
     // "no motorcycle there any longer, but five cones"
     let late = leads(&tokens[i + 1..], &["any longer", "any more", "anymore", "now"]).unwrap_or(0);
     let rest = &tokens[i + 1 + late..];
     let head = trimmed(&tokens[mark + 1..i]);
     let gone = leads(head, &["no", "not a", "no more"]);
-    let but = (0..rest.len()).find(|k| is(rest.get(*k), &["but", "instead"])).filter(|k| *k < 2);
+    let but = (0..rest.len())
+        .find(|k| is(rest.get(*k), &["but", "instead"]))
+        .filter(|k| *k < 2);
     match (gone, but) {
         (Some(g), Some(k)) => {
             let mut np = head[g..].to_vec();
@@ -259,7 +457,9 @@ fn placed_there(tokens: Vec<Token>) -> Vec<Token> {
             [remove, add].concat()
         }
         (Some(g), None) if rest.is_empty() => led("remove all the", t, &[&head[g..], &at]),
-        (None, _) if closes(rest.first()) && is_fresh(head.first()) => [&led("add", t, &[head]), &at[..], rest].concat(),
+        (None, _) if closes(rest.first()) && is_fresh(head.first()) => {
+            [&led("add", t, &[head]), &at[..], rest].concat()
+        }
         _ => tokens,
     }
 }

@@ -9,7 +9,21 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 /// "every vehicle apart from the one that follows us": the vehicle that does.
 pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["but", "except for", "except", "apart from", "save for", "other than", "save", "besides", "aside from", "bar"])?;
+        let n = leads(
+            &tokens[i..],
+            &[
+                "but",
+                "except for",
+                "except",
+                "apart from",
+                "save for",
+                "other than",
+                "save",
+                "besides",
+                "aside from",
+                "bar",
+            ],
+        )?;
         let m = leads(&tokens[i + n..], &["the one", "the ones", "those"])?;
         let next = &tokens[i + n + m..];
         (is(next.first(), &["that", "which", "who"]) || is_place(next)).then_some((i, i + n, m))
@@ -17,12 +31,18 @@ pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, from, m)) = found else {
         return tokens;
     };
-    let all = tokens[..i].iter().rposition(|t| matches!(text(t), "all" | "every" | "each" | "any" | "both"));
+    let all = tokens[..i]
+        .iter()
+        .rposition(|t| matches!(text(t), "all" | "every" | "each" | "any" | "both"));
     let Some((a, b)) = all.and_then(|all| first_noun(&tokens[all..i]).map(|x| (all + x.0, all + x.1))) else {
         return tokens;
     };
     let many = is(tokens.get(from + m - 1), &["ones", "those"]);
-    let noun = if many { tokens[a..b].to_vec() } else { super::topics::singular_of(&tokens[a..b]) };
+    let noun = if many {
+        tokens[a..b].to_vec()
+    } else {
+        super::topics::singular_of(&tokens[a..b])
+    };
     let the = led("the", &tokens[from], &[&noun]);
     [&tokens[..from], &the, &tokens[from + m..]].concat()
 }
@@ -56,7 +76,10 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let plain = is(
         tokens.get(all + group.0),
         &["everything", "everyone", "everybody", "objects", "things"],
-    ) && !is_place(&tokens[all + group.1..i]);
+    ) && !is_place(&tokens[all + group.1..i])
+        && !tokens[all..all + group.0]
+            .iter()
+            .any(|t| matches!(look_up(text(t)), Some(Sense::State(..))));
     let from = i + n;
     let definite = is(tokens.get(from), &["the", "my", "that", "those", "these"]);
     if plain || !definite || leads(&tokens[from..], &["the one", "the ones", "the following"]).is_some() {
@@ -105,25 +128,52 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
     let Some(whole) = before
         .iter()
         .position(|t| matches!(text(t), "everything" | "everyone" | "everybody"))
-        .or_else(|| find(before, &["all objects", "all the objects", "all things", "all else"]).map(|x| x.0))
+        .or_else(|| {
+            find(
+                before,
+                &["all objects", "all the objects", "all things", "all else"],
+            )
+            .map(|x| x.0)
+        })
     else {
         return tokens;
     };
-    let many = is(tokens.get(from), &["the", "my", "that", "those", "these", "both", "our"])
-        || tokens.get(from).is_some_and(|t| number(t).is_some());
-    if is(tokens.get(from), &["that"]) && is(tokens.get(from + 1), &["the", "a", "an", "it", "my", "all", "both"]) {
+    let many = is(
+        tokens.get(from),
+        &["the", "my", "that", "those", "these", "both", "our"],
+    ) || tokens.get(from).is_some_and(|t| number(t).is_some());
+    if is(tokens.get(from), &["that"])
+        && is(
+            tokens.get(from + 1),
+            &["the", "a", "an", "it", "my", "all", "both"],
+        )
+    {
         return tokens;
     }
     let others = first_noun(&before[..whole]).is_some()
-        || before[whole + 1..]
-            .iter()
-            .any(|t| matches!(look_up(text(t)), Some(Sense::Noun(..))) && !is(Some(t), &["objects", "things"]));
+        || before[whole + 1..].iter().any(|t| {
+            matches!(look_up(text(t)), Some(Sense::Noun(..))) && !is(Some(t), &["objects", "things"])
+        });
     let goes = |t: &Token| {
         is(
             Some(t),
             &[
-                "go", "goes", "gone", "disappear", "disappears", "vanish", "vanishes", "leave", "leaves", "removed",
-                "deleted", "erased", "away", "out", "off", "cleared",
+                "go",
+                "goes",
+                "gone",
+                "disappear",
+                "disappears",
+                "vanish",
+                "vanishes",
+                "leave",
+                "leaves",
+                "removed",
+                "deleted",
+                "erased",
+                "away",
+                "out",
+                "off",
+                "cleared",
             ],
         )
     };
@@ -137,19 +187,31 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
         })
         .unwrap_or(tokens.len());
     let np = super::words::trimmed(&tokens[from..close]);
-    let gone = (close..tokens.len().min(close + 5)).rev().find(|k| goes(&tokens[*k]));
+    let gone = (close..tokens.len().min(close + 5))
+        .rev()
+        .find(|k| goes(&tokens[*k]));
     let removing = before[..whole].iter().any(super::super::rephrase::is_verb)
         && (before.iter().any(goes)
             || super::some_of::removes(before.first())
-            || before[..whole].iter().any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
+            || before[..whole]
+                .iter()
+                .any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
     // everybody but the child speaks of people alone
     let people = is(tokens.get(whole), &["everyone", "everybody"]) && only_people(np);
     // "everything on the road goes except the bulldozer": what is elsewhere stays
     let told = &before[whole + 1..];
     let told = &told[usize::from(is(told.first(), &["else", "objects"]))..];
-    let stop = told.iter().position(|t| HELPERS.contains(&text(t)) || goes(t) || t.kind != TokenKind::Word).unwrap_or(told.len());
+    let stop = told
+        .iter()
+        .position(|t| HELPERS.contains(&text(t)) || goes(t) || t.kind != TokenKind::Word)
+        .unwrap_or(told.len());
     let there = is_place(&told[..stop]) && is(told.first(), &["on", "in", "at", "behind", "ahead"]);
-    if many && there && !others && first_noun(np).is_some() && (gone.is_some() || removing || told[stop..].iter().any(goes)) {
+    if many
+        && there
+        && !others
+        && first_noun(np).is_some()
+        && (gone.is_some() || removing || told[stop..].iter().any(goes))
+    {
         let objects = led("remove all the objects", &tokens[0], &[&told[..stop]]);
         let end = gone.map_or(close, |g| g + 1);
         return [&objects, &led("except", &tokens[0], &[np]), &tokens[end..]].concat();

@@ -31,6 +31,10 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
             .collect()
     };
     let parts = parts(pred, true);
+    // "a bulldozer alone can't do it" is a remark
+    if !parts.is_empty() && parts.iter().all(|p| p.not) {
+        return Some(Vec::new());
+    }
     let helped = parts.iter().any(|p| p.helped);
     if parts.iter().any(|p| {
         p.begins(&[
@@ -94,8 +98,16 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         let many = is(main.get(i + n - 1), &["two", "three", "four", "others"]);
         let one = if let (true, [noun]) = (many, s.noun.as_slice()) {
             let many = matches!(look_up(text(noun)), Some(Sense::Noun(_, true)));
-            vec![if many { noun.clone() } else { words::word(&super::super::lexicon::plural(text(noun)), noun) }]
-        } else if is(main.get(i + n - 1), &["first", "one", "other"]) { super::topics::singular_of(&s.noun) } else { s.noun.clone() };
+            vec![if many {
+                noun.clone()
+            } else {
+                words::word(&super::super::lexicon::plural(text(noun)), noun)
+            }]
+        } else if is(main.get(i + n - 1), &["first", "one", "other"]) {
+            super::topics::singular_of(&s.noun)
+        } else {
+            s.noun.clone()
+        };
         let the = led("the", first, &[&one]);
         main.splice(i..i + n, the);
     }
@@ -234,7 +246,9 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
         );
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
-    let been = predicate::parts(&inner[end..], true).iter().any(predicate::Part::is_gone);
+    let been = predicate::parts(&inner[end..], true)
+        .iter()
+        .any(predicate::Part::is_gone);
     let keeps = is(inner.first(), &["only", "just", "keep", "leave", "retain"]) && i <= 2;
     let goes = keeps
         || i == 0 && been

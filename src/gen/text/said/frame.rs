@@ -302,7 +302,9 @@ fn causative(tokens: &[Token]) -> Option<usize> {
                 | "every"
                 | "each"
         ) || matches!(look_up(text(t)), Some(Sense::Noun(..)))
-            || super::words::number(t).is_some() && is(tokens.get(2), &["of"]) && is(tokens.get(3), &["the", "my", "these", "those", "our"])
+            || super::words::number(t).is_some()
+                && is(tokens.get(2), &["of"])
+                && is(tokens.get(3), &["the", "my", "these", "those", "our"])
     });
     if !known {
         return None;

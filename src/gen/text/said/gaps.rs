@@ -105,11 +105,28 @@ fn people(mut tokens: Vec<Token>) -> Vec<Token> {
         let drives = is(
             tokens.get(i + n),
             &[
-                "tailing", "following", "driving", "chasing", "tailgating", "overtaking", "pursuing", "parked", "parking",
-                "riding", "trailing", "coming", "oncoming",
+                "tailing",
+                "following",
+                "driving",
+                "chasing",
+                "tailgating",
+                "overtaking",
+                "pursuing",
+                "parked",
+                "parking",
+                "riding",
+                "trailing",
+                "coming",
+                "oncoming",
             ],
-        ) || tokens[i + n..].iter().any(|t| matches!(text(t), "lane" | "lanes"));
-        let all = led(if drives { "all vehicles" } else { "all people" }, &tokens[i], &[]);
+        ) || tokens[i + n..]
+            .iter()
+            .any(|t| matches!(text(t), "lane" | "lanes"));
+        let all = led(
+            if drives { "all vehicles" } else { "all people" },
+            &tokens[i],
+            &[],
+        );
         tokens.splice(i..i + n, all);
     }
     tokens

@@ -6,7 +6,9 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::replaced;
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{find, first_noun, has_noun, is, is_place, is_unit, leads, led, longest, number, text, trimmed};
+use super::words::{
+    find, first_noun, has_noun, is, is_place, is_unit, leads, led, longest, number, text, trimmed,
+};
 
 const MAKE_DO: &str = "can do with just|could do with just|get by with|get along with|make do with|manage with|settle for|be content with|make do with just";
 const IN_TRUTH: &str = "in reality|in truth|as a matter of fact|in actual fact|strictly speaking";
@@ -24,14 +26,30 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = without(out, talk);
     let out = distance_to(out, talk);
     let out = emptied(out);
-    let out = every_second(out);
+    let out = every_second(by_half(out));
     as_many_as(out, talk)
+}
+
+/// What is only spoken of.
+pub(super) fn remark(np: &[Token]) -> Vec<Token> {
+    let the = if is(
+        np.first(),
+        &["the", "both", "all", "that", "this", "my", "those", "these"],
+    ) {
+        "leave"
+    } else {
+        "leave the"
+    };
+    led(the, &np[0], &[np, &led("alone", &np[0], &[])])
 }
 
 fn begins_at(tokens: &[Token], i: usize) -> bool {
     i == 0
         || !matches!(tokens[i - 1].kind, TokenKind::Word | TokenKind::Number(_))
-        || is(tokens.get(i - 1), &["and", "then", "but", "so", "please", "now", "also", "just"])
+        || is(
+            tokens.get(i - 1),
+            &["and", "then", "but", "so", "please", "now", "also", "just"],
+        )
 }
 
 fn is_fresh(t: Option<&Token>) -> bool {
@@ -40,7 +58,23 @@ fn is_fresh(t: Option<&Token>) -> bool {
 
 /// "I see four pedestrians, ...", where there are four: a remark.
 fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["i see", "we see", "i can see", "we can see", "i count", "right now there are", "currently there are", "at the moment there are", "i have", "we have"]) else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "i see",
+            "we see",
+            "i can see",
+            "we can see",
+            "i count",
+            "right now there are",
+            "currently there are",
+            "at the moment there are",
+            "i have",
+            "we have",
+            "there are",
+            "there is",
+        ],
+    ) else {
         return tokens;
     };
     let Some(many) = tokens.get(n).and_then(number) else {
@@ -49,9 +83,16 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 4) else {
         return tokens;
     };
-    let close = (n + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"]));
+    let close = (n + b..tokens.len())
+        .find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["but", "and"]));
+    // (alone it says only what is meant next)
     let Some(close) = close.filter(|c| c + 2 < tokens.len()) else {
-        return tokens;
+        let np = &tokens[n + 1..];
+        let now = np
+            .iter()
+            .any(|t| matches!(text(t), "now" | "more" | "only" | "just"));
+        let same = close.is_none() && !now && many > 1 && talk.fits(np) == many.max(0) as usize;
+        return if same { remark(np) } else { tokens };
     };
     let np = &tokens[n + 1..close];
     if talk.fits(np) != many.max(0) as usize {
@@ -59,10 +100,24 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let rest = trimmed(&tokens[close..]);
     // what follows speaks of them
-    let it = rest.iter().position(|t| matches!(text(t), "them" | "they" | "those"));
+    let it = rest
+        .iter()
+        .position(|t| matches!(text(t), "them" | "they" | "those"));
     match it {
         Some(k) => [&rest[..k], &led("the", &rest[k], &[np]), &rest[k + 1..]].concat(),
-        None => tokens,
+        None => {
+            // "I count four cars but I need seven"
+            let k = rest.iter().take(5).position(|t| number(t).is_some());
+            let ends = k.is_some_and(|k| {
+                rest.get(k + 1)
+                    .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "instead", "of"]))
+            });
+            match k.filter(|_| ends && !has_noun(rest)) {
+                Some(k) => led("keep exactly", &tokens[0], &[&rest[k..=k], np]),
+                None if has_noun(rest) => rest.to_vec(),
+                None => tokens,
+            }
+        }
     }
 }
 
@@ -71,7 +126,9 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(i) = (0..tokens.len()).find(|i| {
         is(tokens.get(*i), &["give", "get", "bring", "lend", "assign"])
             && (is(tokens.get(i + 1), &["the", "both", "that", "my", "each"])
-                || is(tokens.get(i + 1), &["him", "her", "them"]) && talk.last.is_some() && is_fresh(tokens.get(i + 2)))
+                || is(tokens.get(i + 1), &["him", "her", "them"])
+                    && talk.last.is_some()
+                    && is_fresh(tokens.get(i + 2)))
             && begins_at(&tokens, *i)
     }) else {
         return tokens;
@@ -95,12 +152,39 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let rest = &tokens[to..];
-    let company = leads(rest, &["some company", "company", "a bit of company", "some support", "some help", "a hand", "a helping hand"]);
+    let company = leads(
+        rest,
+        &[
+            "some company",
+            "company",
+            "a bit of company",
+            "some support",
+            "some help",
+            "a hand",
+            "a helping hand",
+        ],
+    );
     if let Some(n) = company {
         let more = trimmed(&rest[n..]);
-        let more = if is(more.first(), &[":"]) { trimmed(&more[1..]) } else { more };
-        if has_noun(more) || more.iter().any(|t| number(t).is_some()) {
+        let more = if is(more.first(), &[":"]) {
+            trimmed(&more[1..])
+        } else {
+            more
+        };
+        if has_noun(more) {
             return [&tokens[..i], more].concat();
+        }
+        // "add three more": of those
+        if let Some(k) = more
+            .iter()
+            .position(|t| number(t).is_some() || is(Some(t), &["another"]))
+        {
+            let k = k + 1 + usize::from(is(more.get(k + 1), &["more", "one"]));
+            let mut noun = super::some_of::bare_np(np);
+            if let Some(last) = noun.last_mut() {
+                last.text = plural(&last.text);
+            }
+            return [&tokens[..i], &more[..k], &noun, &more[k..]].concat();
         }
         return tokens;
     }
@@ -109,7 +193,13 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let new = &rest[..e];
     let tail = &rest[e..];
-    if is_place(tail) || tail.first().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"])) {
+    let told = is(trimmed(tail).first(), &["who", "that", "which"]);
+    if told
+        || is_place(tail)
+        || tail
+            .first()
+            .is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and", "too", "please"]))
+    {
         return tokens;
     }
     let trailer = is(new.last(), &["trailer", "caravan"]);
@@ -122,8 +212,13 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(i) = (0..tokens.len()).find(|i| {
         is(tokens.get(*i), &["without", "minus", "sans"])
-            && is(tokens.get(i + 1), &["the", "that", "those", "these", "any", "all", "both", "my", "our"])
-            && (*i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["but", "and", "only", "just"]))
+            && is(
+                tokens.get(i + 1),
+                &["the", "that", "those", "these", "any", "all", "both", "my", "our"],
+            )
+            && (*i == 0
+                || tokens[i - 1].kind != TokenKind::Word
+                || is(tokens.get(i - 1), &["but", "and", "only", "just"]))
     }) else {
         return tokens;
     };
@@ -135,8 +230,19 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .find(|k| {
             tokens[*k].kind != TokenKind::Word
                 || is(tokens.get(*k), &["it", "this", "id", "i", "we", "and", "would"])
-                || leads(&tokens[*k..], &["the scene", "the picture", "the street", "the whole", "the situation", "the road", "the view"])
-                    .is_some_and(|n| tokens.get(k + n).is_some_and(|t| HELPERS.contains(&text(t))))
+                || leads(
+                    &tokens[*k..],
+                    &[
+                        "the scene",
+                        "the picture",
+                        "the street",
+                        "the whole",
+                        "the situation",
+                        "the road",
+                        "the view",
+                    ],
+                )
+                .is_some_and(|n| tokens.get(k + n).is_some_and(|t| HELPERS.contains(&text(t))))
         })
         .unwrap_or(tokens.len());
     let any = usize::from(is(tokens.get(i + 1), &["any"]));
@@ -144,15 +250,35 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if talk.fits(np) == 0 {
         return tokens;
     }
-    let remove = led(if any == 1 { "remove all the" } else { "remove" }, &tokens[i], &[np]);
+    let remove = led(
+        if any == 1 { "remove all the" } else { "remove" },
+        &tokens[i],
+        &[np],
+    );
     let before = trimmed(&tokens[..i]);
     let after = trimmed(&tokens[close..]);
     // what follows only says that it is better so
-    let praise = !has_noun(after) || after.iter().any(|t| matches!(text(t), "better" | "nicer" | "prefer" | "perfect" | "cleaner"));
+    let praise = after.is_empty()
+        || after.iter().any(|t| {
+            matches!(
+                text(t),
+                "better" | "nicer" | "prefer" | "perfect" | "cleaner" | "best" | "simpler"
+            )
+        });
     if i == 0 {
-        return if praise && after.iter().all(|t| number(t).is_none()) { remove } else { tokens };
+        return match (
+            praise,
+            is(tokens.get(close), &["and"]) || tokens[close..].iter().any(|t| text(t) == "and"),
+        ) {
+            (true, _) => remove,
+            (false, true) => [&remove[..], &led("and", &tokens[0], &[after])].concat(),
+            _ => tokens,
+        };
     }
-    if !after.is_empty() && !is(tokens.get(close), &["and"]) && tokens.get(close).is_some_and(|t| t.kind == TokenKind::Word) {
+    if !after.is_empty()
+        && !is(tokens.get(close), &["and"])
+        && tokens.get(close).is_some_and(|t| t.kind == TokenKind::Word)
+    {
         return tokens;
     }
     let and = led("and", &tokens[i], &[&remove]);
@@ -164,9 +290,22 @@ fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((i, n)) = find(
         &tokens,
         &[
-            "the distance to", "the gap to", "the distance from us to", "the gap between us and", "the distance between us and",
-            "the spacing to", "the distance from me to", "the gap between me and", "the distance between me and", "our distance to",
-            "our distance from", "the distance from", "the headway to", "my distance to", "my distance from", "the distance of",
+            "the distance to",
+            "the gap to",
+            "the distance from us to",
+            "the gap between us and",
+            "the distance between us and",
+            "the spacing to",
+            "the distance from me to",
+            "the gap between me and",
+            "the distance between me and",
+            "our distance to",
+            "our distance from",
+            "the distance from",
+            "the headway to",
+            "my distance to",
+            "my distance from",
+            "the distance of",
         ],
     )
     .filter(|x| x.0 > 0) else {
@@ -177,24 +316,41 @@ fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let step = (from + b..tokens.len()).find(|k| {
-        is(tokens.get(*k), &["to", "by", "at", "is", "of", "down", "up"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(k + 2))
+        is(tokens.get(*k), &["to", "by", "at", "is", "of", "down", "up"])
+            && tokens.get(k + 1).is_some_and(|t| number(t).is_some())
+            && is_unit(tokens.get(k + 2))
             || is(tokens.get(*k), &["should", "must"])
     });
     let Some(step) = step else {
         return tokens;
     };
-    let Some(metres) = (step..tokens.len()).find(|k| number(&tokens[*k]).is_some() && is_unit(tokens.get(k + 1))) else {
+    let Some(metres) =
+        (step..tokens.len()).find(|k| number(&tokens[*k]).is_some() && is_unit(tokens.get(k + 1)))
+    else {
         return tokens;
     };
     let mut np = tokens[from..step].to_vec();
     if is(np.last(), &["behind", "ahead"]) {
-        np.extend(led(if text(&np[np.len() - 1]) == "ahead" { "of us" } else { "us" }, &tokens[i], &[]));
+        np.extend(led(
+            if text(&np[np.len() - 1]) == "ahead" {
+                "of us"
+            } else {
+                "us"
+            },
+            &tokens[i],
+            &[],
+        ));
     }
     if talk.fits(&np) == 0 {
         return tokens;
     }
     let lead = &tokens[..i];
-    let wider = lead.iter().any(|t| matches!(text(t), "increase" | "raise" | "widen" | "lengthen" | "extend" | "enlarge" | "grow"));
+    let wider = lead.iter().any(|t| {
+        matches!(
+            text(t),
+            "increase" | "raise" | "widen" | "lengthen" | "extend" | "enlarge" | "grow"
+        )
+    });
     let start = (0..i).rev().find(|k| begins_at(&tokens, *k)).unwrap_or(0);
     let far = &tokens[metres..metres + 2];
     let out = if is(tokens.get(step), &["by"]) {
@@ -215,39 +371,152 @@ fn emptied(tokens: Vec<Token>) -> Vec<Token> {
     };
     let place = &body[..the + n];
     let mut k = the + n;
-    while is(body.get(k), &["is", "are", "should", "must", "has", "have", "needs", "need", "ought", "shall", "to", "be", "now", "also", "completely", "totally", "entirely", "all", "absolutely", "again", "will", "stay", "remain", "kept"]) {
+    while is(
+        body.get(k),
+        &[
+            "is",
+            "are",
+            "should",
+            "must",
+            "has",
+            "have",
+            "needs",
+            "need",
+            "ought",
+            "shall",
+            "to",
+            "be",
+            "now",
+            "also",
+            "completely",
+            "totally",
+            "entirely",
+            "all",
+            "absolutely",
+            "again",
+            "will",
+            "stay",
+            "remain",
+            "kept",
+        ],
+    ) {
         k += 1;
     }
-    if k == the + n || !is(body.get(k), &["empty", "deserted", "vacant", "unoccupied", "clear", "free", "cleared", "emptied"]) {
+    if k == the + n
+        || !is(
+            body.get(k),
+            &[
+                "empty",
+                "deserted",
+                "vacant",
+                "unoccupied",
+                "clear",
+                "free",
+                "cleared",
+                "emptied",
+            ],
+        )
+    {
         return tokens;
     }
     let mut rest = &body[k + 1..];
     let of = leads(rest, &["of all", "of any", "of", "from"]);
     rest = &rest[of.unwrap_or(0)..];
-    let late = find(rest, &["now", "again", "any more", "please", "at last"]).map_or(rest.len(), |x| x.0);
-    let what = trimmed(&rest[..late]);
-    // what more is asked for in the sentence is read, too
-    let cut = what.iter().position(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)));
-    let more = cut.map_or_else(|| find(&rest[late..], &[","]).map_or(&[][..], |x| &rest[late + x.0..]), |c| &what[c..]);
-    let what = trimmed(&what[..cut.unwrap_or(what.len())]);
+    let late = find(rest, &["now", "again", "any more", "please", "at last"]);
+    let what = trimmed(&rest[..late.map_or(rest.len(), |x| x.0)]);
+    // (what is to be done for it is said)
+    if late.is_some_and(|(k, n)| !trimmed(&rest[k + n..]).is_empty())
+        || what.iter().any(|t| t.kind == TokenKind::Comma)
+    {
+        return tokens;
+    }
     // ("my lane is free" is a remark)
-    let wish = body[the + n..k].iter().any(|t| matches!(text(t), "should" | "must" | "to" | "be" | "shall" | "needs" | "now"))
-        || is(body.get(k), &["empty", "deserted", "vacant"]);
+    let wish = body[the + n..k].iter().any(|t| {
+        matches!(
+            text(t),
+            "should" | "must" | "to" | "be" | "shall" | "needs" | "now"
+        )
+    }) || is(body.get(k), &["empty", "deserted", "vacant"]);
     let whole = of.is_some() == has_noun(what) && (of.is_some() || what.is_empty());
     if !wish || !whole {
         return tokens;
     }
-    let lane = place.iter().any(|t| matches!(text(t), "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"));
+    let lane = place.iter().any(|t| {
+        matches!(
+            text(t),
+            "lane" | "lanes" | "junction" | "intersection" | "roundabout" | "carpark"
+        )
+    });
     let at = led(if lane { "in" } else { "on" }, &body[0], &[place]);
     match of {
-        Some(_) => led("remove all the", &body[0], &[what, &at, more]),
-        None => led("remove all the objects", &body[0], &[&at, more]),
+        Some(_) => led("remove all the", &body[0], &[what, &at]),
+        None => led("remove all the objects", &body[0], &[&at]),
     }
+}
+
+/// "reduce the cones by half": halve them.
+fn by_half(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["half"])
+            && is(tokens.get(i - 1), &["by", "to", "in"])
+            && tokens
+                .get(i + 1)
+                .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please"]))
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let Some(v) = (0..i - 1).rev().find(|k| {
+        is(
+            tokens.get(*k),
+            &[
+                "reduce", "cut", "decrease", "lower", "bring", "shrink", "trim", "thin",
+            ],
+        ) && begins_at(&tokens, *k)
+    }) else {
+        return tokens;
+    };
+    let end = if is(tokens.get(i - 2), &["down", "back"]) {
+        i - 2
+    } else {
+        i - 1
+    };
+    let skip = leads(
+        &tokens[v + 1..end],
+        &[
+            "down the number of",
+            "the number of",
+            "down",
+            "the amount of",
+            "out",
+        ],
+    )
+    .unwrap_or(0);
+    let np = &tokens[v + 1 + skip..end];
+    if first_noun(np).is_none_or(|x| x.0 > 3) {
+        return tokens;
+    }
+    let the = usize::from(is(np.first(), &["the"]));
+    [
+        &tokens[..v],
+        &led("half the number of", &tokens[v], &[&np[the..]]),
+        &tokens[i + 1..],
+    ]
+    .concat()
 }
 
 /// "every second cone": half of the cones.
 fn every_second(tokens: Vec<Token>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["every second one of the", "every other one of the", "every second", "every other", "each second"]) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "every second one of the",
+            "every other one of the",
+            "every second",
+            "every other",
+            "each second",
+        ],
+    ) else {
         return tokens;
     };
     let Some((a, b)) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3) else {
@@ -267,11 +536,18 @@ fn every_second(tokens: Vec<Token>) -> Vec<Token> {
 /// "as many barriers as there are cones": so many.
 fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
-        let n = leads(&tokens[i..], &["as many", "just as many", "exactly as many", "the same number of"])?;
+        let n = leads(
+            &tokens[i..],
+            &["as many", "just as many", "exactly as many", "the same number of"],
+        )?;
         let times = i > 0 && is(tokens.get(i - 1), &["twice", "times", "half", "double", "thrice"]);
         let (_, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3 && !times)?;
         let as_ = i + n + b;
-        let (k, m) = find(&tokens[as_..], &["as there are", "as we have", "as there is", "as"]).filter(|x| x.0 < 6)?;
+        let (k, m) = find(
+            &tokens[as_..],
+            &["as there are", "as we have", "as there is", "as"],
+        )
+        .filter(|x| x.0 < 6)?;
         let from = as_ + k + m;
         let (c, d) = first_noun(&tokens[from..]).filter(|x| x.0 < 4)?;
         Some((i, n, as_ + k, from, c, from + d))
@@ -289,9 +565,26 @@ fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         span: tokens[i].span,
     };
     // "I want as many motorcycles as cars": so many in all
-    let wish = ["i want", "we want", "i need", "we need", "there should be", "there must be", "let there be", "i would like", "id like", "make it", "there are", "there shall be"];
+    let wish = [
+        "i want",
+        "we want",
+        "i need",
+        "we need",
+        "there should be",
+        "there must be",
+        "let there be",
+        "i would like",
+        "id like",
+        "make it",
+        "there are",
+        "there shall be",
+    ];
     if leads(&tokens[..i], &wish) == Some(i) {
-        return led("keep exactly", &tokens[0], &[&[digit], &tokens[i + n..as_], &tokens[end..]]);
+        return led(
+            "keep exactly",
+            &tokens[0],
+            &[&[digit], &tokens[i + n..as_], &tokens[end..]],
+        );
     }
     [&tokens[..i], &[digit], &tokens[i + n..as_], &tokens[end..]].concat()
 }

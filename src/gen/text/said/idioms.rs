@@ -216,7 +216,10 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
     // "are about to board the bus: bring them near it"
     let other = first_noun(aim).map(|n| led("the", &tokens[0], &[&aim[n.0..n.1]]));
     // several are no "it": "the people want to board the bus, so bring it back and let them wait"
-    let several = matches!(who.last().and_then(|t| look_up(text(t))), Some(Sense::Noun(_, true)));
+    let several = matches!(
+        who.last().and_then(|t| look_up(text(t))),
+        Some(Sense::Noun(_, true))
+    );
     if several && is(rest.get(at), &["it", "its"]) {
         let other = other.filter(|_| is(rest.get(at), &["it"]))?;
         let mut out = [&rest[..at], &other[..]].concat();

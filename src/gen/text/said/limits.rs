@@ -130,6 +130,7 @@ pub(super) fn so_many_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "put one cone behind each of the parked cars": as many as there are cars.
 pub(super) fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let tokens = each_gets(tokens);
     if !tokens.first().is_some_and(is_verb) {
         return tokens;
     }
@@ -194,6 +195,63 @@ pub(super) fn for_each(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     out.extend(many_noun);
     out.extend_from_slice(&tokens[i + n + b..]);
     out
+}
+
+/// "each worker gets a cone beside him": put a cone beside each worker.
+fn each_gets(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["each of the", "every one of the", "each", "every"]) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 3) else {
+        return tokens;
+    };
+    let end = n + b;
+    let Some(v) = leads(
+        &tokens[end..],
+        &[
+            "gets",
+            "should get",
+            "receives",
+            "should have",
+            "must have",
+            "needs",
+            "has",
+            "is given",
+            "should be given",
+            "must get",
+            "shall have",
+            "shall get",
+            "ought to have",
+        ],
+    ) else {
+        return tokens;
+    };
+    let new = &tokens[end + v..];
+    let Some((_, e)) =
+        first_noun(new).filter(|x| x.0 < 4 && is(new.first(), &["a", "an", "one", "another", "its", "his"]))
+    else {
+        return tokens;
+    };
+    let place = &new[e..];
+    let it = place
+        .iter()
+        .position(|t| matches!(text(t), "it" | "him" | "her" | "them"));
+    let at = match it {
+        Some(k) if is_place(place) && k < 5 => place[..k].to_vec(),
+        None if trimmed(place).is_empty() => led("next to", &tokens[0], &[]),
+        _ => return tokens,
+    };
+    let after = it.map_or(&[][..], |k| &place[k + 1..]);
+    led(
+        "put a",
+        &tokens[0],
+        &[
+            &new[1..e],
+            &at,
+            &led("each of the", &tokens[0], &[&tokens[n..end]]),
+            after,
+        ],
+    )
 }
 
 /// "1 worker to the ego lane": so many of those that are there go.

@@ -9,11 +9,13 @@ mod colours;
 mod dealt;
 mod doers;
 mod exception;
+mod exchanges;
 mod forms;
 mod frame;
 mod gaps;
 mod gifts;
 mod idioms;
+mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
@@ -22,8 +24,11 @@ mod orders;
 mod parting;
 mod passive;
 mod predicate;
+mod presence;
+mod reasons;
 mod recast;
 mod remaining;
+mod remarks;
 mod skies;
 mod some_of;
 mod spoken;
@@ -39,6 +44,7 @@ mod turns;
 mod untouched;
 mod ways;
 mod which;
+mod wider;
 mod worded;
 pub(super) mod words;
 
@@ -57,10 +63,12 @@ use forms::{
     takes_place,
 };
 use frame::unwrapped;
+pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 use predicate::{in_place, parts};
+pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
@@ -127,9 +135,15 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         Some((last, body)) if last.kind == TokenKind::Stop => (body, std::slice::from_ref(last)),
         _ => (sentence, &[][..]),
     };
-    let out = doers::plain(dealt::plain(body.to_vec(), talk), talk);
+    let out = remarks::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = exchanges::plain(presence::plain(wider::plain(out, talk), talk), talk);
+    let out = reasons::plain(out, talk);
+    let out = doers::plain(dealt::plain(out, talk), talk);
     let out = likewise::plain(out, talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
     let out = exception::the_one_spared(out);
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
@@ -235,7 +249,11 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     }
     // who is gone and then is elsewhere has only left where he was
     for i in 0..out.len() {
-        let elsewhere = out[i + 1..].iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
+        // ("it" is he as long as nobody else is named)
+        let still = out[i + 1..]
+            .iter()
+            .take_while(|p| matches!(p, Piece::Meant(c, _) if c.targets.is_empty()));
+        let elsewhere = still.into_iter().any(|p| matches!(p, Piece::Meant(c, _) if c.back.is_some_and(|b| b != Back::Others) && matches!(c.verb, Verb::Move | Verb::Turn | Verb::Make | Verb::Replace)));
         if let (true, Piece::Meant(c, _)) = (elsewhere, &mut out[i])
             && c.verb == Verb::Remove
         {
@@ -243,7 +261,10 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
     }
     // ("whatever is behind us, make it a coach" is one)
-    let topic = is(body.first(), &["whatever", "whoever", "whichever", "what", "anything"]);
+    let topic = is(
+        body.first(),
+        &["whatever", "whoever", "whichever", "what", "anything"],
+    );
     if understood || out.len() > 1 && !topic {
         out
     } else {
@@ -282,8 +303,13 @@ fn question(body: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     );
     // "how would the street look at midday?": so it shall
     let looks = (text(first) == "how" || text(first) == "what")
-        && body.iter().any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
-    if looks && let Some(at) = (1..body.len()).find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_)))) {
+        && body
+            .iter()
+            .any(|t| matches!(text(t), "look" | "looks" | "like" | "appear" | "be"));
+    if looks
+        && let Some(at) = (1..body.len())
+            .find(|i| matches!(look_up(text(&body[*i])), Some(Sense::Weather(_) | Sense::Time(_))))
+    {
         let from = (0..at)
             .rev()
             .find(|i| is(body.get(*i), &["at", "in", "by", "with", "during", "on", "under"]))
@@ -349,14 +375,18 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     // "the cones, please set them up ..."
-    if is(inner.first(), &["the", "those", "these", "both", "that", "my"])
+    if !mood.denied
+        && is(inner.first(), &["the", "those", "these", "both", "that", "my"])
         && first_noun(inner).is_some_and(|n| n.1 == inner.len() && n.0 < 4)
         && talk.fits(inner) > 0
     {
         return Some(vec![remembered(inner, talk)]);
     }
     // "leave the car behind me as it is"
-    if let Some(np) = untouched::stays(inner).or_else(|| untouched::stays(trimmed(clause))).filter(|np| talk.fits(np) > 0) {
+    if let Some(np) = untouched::stays(inner)
+        .or_else(|| untouched::stays(trimmed(clause)))
+        .filter(|np| talk.fits(np) > 0)
+    {
         return Some(vec![remembered(np, talk)]);
     }
     // "I can't see the pedestrian"
@@ -376,6 +406,12 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(vec![remembered(&inner[i + n..], talk)]);
     }
+    // "and no bus"
+    if is(inner.first(), &["no"])
+        && let Some(gone) = remaining::plain(inner)
+    {
+        return Some(vec![Piece::Plain(gone)]);
+    }
     if let Some(found) = half(inner) {
         return Some(found);
     }
@@ -388,6 +424,14 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             "there is too much",
             "there are far too many",
             "there are way too many",
+            "we have too many",
+            "we have too few",
+            "i see too many",
+            "i see too few",
+            "i have too many",
+            "i have too few",
+            "too many",
+            "too few",
         ],
     ) && has_noun(&inner[n..])
     {
@@ -505,8 +549,18 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     // "the fourth is still crossing": as before
-    let still = pred.iter().take(3).any(|t| text(t) == "still") || leads(pred, &["is about to", "are about to", "was about to", "were about to"]).is_some();
-    if still && !pred.iter().any(|t| is(Some(t), &["should", "must", "shall", "needs", "not"])) && !pred.iter().any(|t| matches!(text(t), "and" | "but")) {
+    let still = pred.iter().take(3).any(|t| text(t) == "still")
+        || leads(
+            pred,
+            &["is about to", "are about to", "was about to", "were about to"],
+        )
+        .is_some();
+    if still
+        && !pred
+            .iter()
+            .any(|t| is(Some(t), &["should", "must", "shall", "needs", "not"]))
+        && !pred.iter().any(|t| matches!(text(t), "and" | "but"))
+    {
         return Some(vec![remembered(&s.np, talk)]);
     }
     let parts = parts(pred, s.plural || mood.caused);

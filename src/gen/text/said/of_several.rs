@@ -33,7 +33,15 @@ const PICKS: &[&str] = &[
     "smallest",
     "oncoming",
 ];
-const GROUPS: &[&str] = &["of the", "of these", "of those", "of my", "of our", "of all the", "of all"];
+const GROUPS: &[&str] = &[
+    "of the",
+    "of these",
+    "of those",
+    "of my",
+    "of our",
+    "of all the",
+    "of all",
+];
 const STAYS: &[&str] = &["remain", "remains", "stay", "stays", "survive", "survives"];
 
 /// The sentence with such a choice as one noun phrase.
@@ -63,7 +71,10 @@ fn pick_of(tokens: Vec<Token>) -> Vec<Token> {
         is(tokens.get(i - 1), &["the", "that"]).then_some(())?;
         let pick = pick_at(&tokens[i..])?;
         let mut k = i + pick;
-        let many = tokens.get(k).filter(|t| number(t).is_some() && text(t) != "one").cloned();
+        let many = tokens
+            .get(k)
+            .filter(|t| number(t).is_some() && text(t) != "one")
+            .cloned();
         k += usize::from(many.is_some() || is(tokens.get(k), &["one", "ones"]));
         let of = k + leads(&tokens[k..], GROUPS)?;
         let np = counted(&tokens, of);
@@ -94,7 +105,10 @@ fn pick_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         is(tokens.get(i - 1), &["the"]).then_some(())?;
         let k = i + pick_at(&tokens[i..])?;
         let k = k + usize::from(is(tokens.get(k), &["one"]));
-        let n = leads(&tokens[k..], &["of them", "of these", "of those", "of the group", "of the lot"])?;
+        let n = leads(
+            &tokens[k..],
+            &["of them", "of these", "of those", "of the group", "of the lot"],
+        )?;
         (tokens.get(k + n).is_none_or(|t| t.kind != TokenKind::Word) || is_place(&tokens[k + n..]))
             .then_some((i, k, n))
     });
@@ -117,7 +131,20 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     let rest = trimmed(&tokens[end..]);
     let Some(n) = leads(
         rest,
-        &["only the one", "just the one", "only the ones", "just the ones", "keep only the one", "leave only the one", "keep only the ones", "leave only the ones", "keep the one", "leave the one", "spare the one", "spare only the one"],
+        &[
+            "only the one",
+            "just the one",
+            "only the ones",
+            "just the ones",
+            "keep only the one",
+            "leave only the one",
+            "keep only the ones",
+            "leave only the ones",
+            "keep the one",
+            "leave the one",
+            "spare the one",
+            "spare only the one",
+        ],
     ) else {
         return tokens;
     };
@@ -125,11 +152,15 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     let close = rest
         .iter()
         .position(|t| {
-            STAYS.contains(&text(t)) || is(Some(t), &["should", "may", "must", "is", "are", "shall", "can"])
+            STAYS.contains(&text(t))
+                || is(Some(t), &["should", "may", "must", "is", "are", "shall", "can"])
                 || t.kind != TokenKind::Word
         })
         .unwrap_or(rest.len());
-    let stays = verb || rest[close..].iter().any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
+    let stays = verb
+        || rest[close..]
+            .iter()
+            .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
     let skip = usize::from(is(rest.get(n), &["that", "which", "who"])) * 2;
     let place = rest.get(n + skip..close).unwrap_or(&[]);
     if !stays || !is_place(place) {

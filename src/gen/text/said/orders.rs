@@ -251,10 +251,9 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
                 "our",
                 "every",
             ],
-        ) || tokens
-            .first()
-            .is_some_and(|t| words::noun_at(std::slice::from_ref(t)).is_some())
-            && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
+        ) || tokens.first().is_some_and(|t| {
+            words::noun_at(std::slice::from_ref(t)).is_some() && !is(Some(t), &["somebody", "someone"])
+        }) && talk.fits(&tokens[..first_noun(tokens)?.1]) > 0
             || number(tokens.first()?).is_some() && is(tokens.get(1), &["of"])
             || one_of;
         if !known {
@@ -267,9 +266,14 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         let two = is(tokens.get(noun.1), &["and"]);
         // "move the bus and the van to the right lane"
         let second = noun.1 + 1;
-        let both = two
-            && is(tokens.get(second), &["the", "my", "that", "both", "our", "those", "these"])
-            && tokens.get(second..).and_then(first_noun).is_some_and(|n| n.0 < 5 && !is(tokens.get(second + n.1), &["and"]));
+        let both =
+            two && is(
+                tokens.get(second),
+                &["the", "my", "that", "both", "our", "those", "these"],
+            ) && tokens
+                .get(second..)
+                .and_then(first_noun)
+                .is_some_and(|n| n.0 < 5 && !is(tokens.get(second + n.1), &["and"]));
         if !clean || two && !both {
             return None;
         }

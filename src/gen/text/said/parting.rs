@@ -81,6 +81,7 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 || body[i..next].iter().any(|t| text(t) == "so") && opens_order(rest)
                 // "make room: the bus goes to the right edge"
                 || text(t) == ":" && !(from..i).any(|k| is_place(&body[k..i]))
+                || super::some_of::removes_it(&body[from..i])
                 || body[from..i].iter().any(|t| HELPERS.contains(&text(t)));
             // "take the barrier and put it behind me" is one
             let lifts = is(body.get(from), &["take", "grab", "pick", "lift", "get"])
@@ -103,13 +104,25 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                     .iter()
                     .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
             let therefore = is(rest.first(), &PRONOUNS) && body[i..next].iter().any(|t| text(t) == "so");
+            // "undo the barriers, and instead of the digger put a truck there"
+            let instead = is(body.get(next - 1), &["and", "but", "then"])
+                && leads(rest, &["instead of the", "in place of the", "rather than the"]).is_some()
+                && super::super::rephrase::is_verb(&body[from]);
             // "the van and the truck are to disappear": two subjects of one verb
             let let_ = usize::from(is(body.get(from), &["let", "have", "should", "may"]));
             let joined = text(t) == "and"
-                && is(body.get(from + let_), &["the", "both", "my", "that", "those", "these"])
+                && is(
+                    body.get(from + let_),
+                    &["the", "both", "my", "that", "those", "these"],
+                )
                 && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 + let_ && from + n.1 == i)
                 && is(body.get(next), &["the", "my", "that", "those", "these"]);
-            if joined {
+            // "only the cones and barriers are left"
+            let only = text(t) == "and"
+                && is(body.get(from), &["only", "just"])
+                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
+                && first_noun(&body[next.min(body.len())..]).is_some_and(|n| n.0 < 3);
+            if joined || only {
                 i += 1;
                 continue;
             }
@@ -132,14 +145,15 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !named
                 && !therefore
                 && spoken
-                && opens(
-                    rest,
-                    &Talk {
-                        carried: text(t) == "and" && carries(&body[from..i]),
-                        last: None,
-                        ..*talk
-                    },
-                )
+                && (instead
+                    || opens(
+                        rest,
+                        &Talk {
+                            carried: text(t) == "and" && carries(&body[from..i]),
+                            last: None,
+                            ..*talk
+                        },
+                    ))
                 && !starts_where(&body[from..i])
             {
                 out.push(&body[from..i]);
@@ -215,7 +229,13 @@ pub(super) fn carries(clause: &[Token]) -> bool {
 /// "so let the bus stand there": what stands before only says why.
 fn opens_order(rest: &[Token]) -> bool {
     (is(rest.first(), &MOVES) || rest.first().is_some_and(super::super::rephrase::is_verb))
-        && is(rest.get(1), &["the", "both", "all", "every", "my", "our", "that", "those", "these", "a", "an", "another", "it", "them", "him", "her"])
+        && is(
+            rest.get(1),
+            &[
+                "the", "both", "all", "every", "my", "our", "that", "those", "these", "a", "an", "another",
+                "it", "them", "him", "her",
+            ],
+        )
 }
 
 /// True if a clause of its own begins here.
@@ -240,9 +260,26 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 "i want",
                 "i need",
                 "we need",
+                "away with",
+                "off with",
+                "out with",
+                "down with",
+                "no more",
+                "enough of",
             ],
         )
         .is_some()
+    {
+        return true;
+    }
+    // "and no bus"
+    if is(rest.first(), &["no"])
+        && first_noun(rest).is_some_and(|n| {
+            n.0 < 3
+                && rest
+                    .get(n.1)
+                    .is_none_or(|t| t.kind != TokenKind::Word || matches!(text(t), "and" | "any" | "either"))
+        })
     {
         return true;
     }
@@ -256,7 +293,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     if orders
         && is(
             inner.get(1),
-            &["the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these"],
+            &[
+                "the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these",
+            ],
         )
     {
         return true;
@@ -272,9 +311,10 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
                 HELPERS.contains(&text(&near[s.pred]))
                     || find(near, &["in"]).is_some() && text(&near[s.pred]) == "in"
                     || is(near.first(), &["a", "an", "another"])
-                        && near[s.pred..].iter().find(|t| !super::lists::ADVERBS.contains(&text(t))).is_some_and(|t| {
-                            words::is_finite(text(t), false) && !text(t).ends_with("ed")
-                        })
+                        && near[s.pred..]
+                            .iter()
+                            .find(|t| !super::lists::ADVERBS.contains(&text(t)))
+                            .is_some_and(|t| words::is_finite(text(t), false) && !text(t).ends_with("ed"))
                     || in_place(near).is_some()
             }
             Kind::Known => {
@@ -309,6 +349,20 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     }
     // "and now only one worker is there"
     if is(inner.first(), &["only", "just"]) && inner.get(1).is_some_and(|t| number(t).is_some()) {
+        return true;
+    }
+    // "and double the barriers"
+    if is(
+        inner.first(),
+        &["double", "halve", "triple", "treble", "quadruple"],
+    ) && is(inner.get(1), &["the", "all", "my"])
+    {
+        return true;
+    }
+    // "one car fewer"
+    if number(first).is_some()
+        && first_noun(inner).is_some_and(|n| n.0 < 4 && is(inner.get(n.1), &["fewer", "less"]))
+    {
         return true;
     }
     // "two would do"

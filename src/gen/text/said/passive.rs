@@ -83,13 +83,31 @@ fn gets(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             "is given",
             "should have",
             "needs",
+            "could do with",
+            "could use",
+            "would benefit from",
+            "deserves",
         ],
     )
     .filter(|x| x.0 > 1)?;
     let new = &tokens[i + n..];
     let (_, end) = first_noun(new).filter(|x| x.0 < 4)?;
     let it = (end + 1..new.len()).find(|k| is(new.get(*k), &["it", "him", "her", "them"]))?;
-    let placed = it <= end + 4 && super::words::is_place(&new[end..]);
+    let follows = is(
+        new.get(end),
+        &[
+            "following",
+            "tailing",
+            "trailing",
+            "behind",
+            "beside",
+            "riding",
+            "driving",
+            "walking",
+            "standing",
+        ],
+    );
+    let placed = it <= end + 4 && (follows || super::words::is_place(&new[end..]));
     let np = known(&tokens[..i], talk).filter(|_| placed && is_fresh(new.first()))?;
     Some(led("add", &tokens[0], &[&new[..it], np, &new[it + 1..]]))
 }

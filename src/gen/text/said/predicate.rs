@@ -2,7 +2,9 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
-use super::lists::{ADVERBS, AFTERWARDS, GONE, HELPERS, IN_PLACE, NEGATED, OFF_SITE, PRONOUNS, REASONS, THERE};
+use super::lists::{
+    ADVERBS, AFTERWARDS, GONE, HELPERS, IN_PLACE, NEGATED, OFF_SITE, PRONOUNS, REASONS, THERE,
+};
 use super::words::{find, has_noun, is, is_finite, is_place, leads, longest, number, text};
 
 /// One verb phrase without its helpers.
@@ -31,7 +33,19 @@ impl Part {
             let there = self.main.is_empty() || self.begins(&THERE).is_some();
             return there;
         }
-        if gone_off(&self.main) || is(self.main.first(), &["vanished", "vanishes", "vanish", "disappeared", "disappears", "disappear"]) {
+        if gone_off(&self.main)
+            || is(
+                self.main.first(),
+                &[
+                    "vanished",
+                    "vanishes",
+                    "vanish",
+                    "disappeared",
+                    "disappears",
+                    "disappear",
+                ],
+            )
+        {
             return true;
         }
         let Some(n) = self.begins(&GONE) else {
@@ -39,16 +53,48 @@ impl Part {
         };
         let rest = &self.main[n..];
         // "goes at a distance of 25 m", "gone 5 m to the left"
-        if leads(rest, &["at a distance", "by a distance"]).is_some() || is(rest.first(), &["at", "by"]) && rest.get(1).is_some_and(|t| number(t).is_some()) {
+        if leads(rest, &["at a distance", "by a distance"]).is_some()
+            || is(rest.first(), &["at", "by"]) && rest.get(1).is_some_and(|t| number(t).is_some())
+        {
             return false;
         }
         // "has dropped off its passenger"
-        let object = |t: Option<&Token>| is(t, &["the", "a", "an", "its", "his", "her", "their", "all", "both", "my", "our"]);
+        let object = |t: Option<&Token>| {
+            is(
+                t,
+                &[
+                    "the", "a", "an", "its", "his", "her", "their", "all", "both", "my", "our",
+                ],
+            )
+        };
         if is(rest.first(), &["off", "out", "away", "up", "down"]) && object(rest.get(1)) {
             return false;
         }
         // "was driven off on a trailer"
-        if n > 1 && is(self.main.get(n - 1), &["off", "away", "home"]) && is(rest.first(), &["on", "in", "together", "along", "under", "into", "without", "before", "this", "last", "yesterday", "today", "tonight"]) && !super::words::is_goal(rest) && !super::super::lexicon::look_up(rest.get(2).map_or("", text)).is_some_and(|s| matches!(s, Sense::Place(..))) {
+        if n > 1
+            && is(self.main.get(n - 1), &["off", "away", "home"])
+            && is(
+                rest.first(),
+                &[
+                    "on",
+                    "in",
+                    "together",
+                    "along",
+                    "under",
+                    "into",
+                    "without",
+                    "before",
+                    "this",
+                    "last",
+                    "yesterday",
+                    "today",
+                    "tonight",
+                ],
+            )
+            && !super::words::is_goal(rest)
+            && !super::super::lexicon::look_up(rest.get(2).map_or("", text))
+                .is_some_and(|s| matches!(s, Sense::Place(..)))
+        {
             return true;
         }
         // "has left the sidewalk", "go to the left", "goes over to", "left of me"
@@ -81,17 +127,56 @@ fn boarded(main: &[Token]) -> bool {
     let n = leads(
         main,
         &[
-            "got on", "got onto", "got in", "got into", "gotten on", "gotten into", "gotten in", "got aboard", "climbed into", "climbed aboard", "climbed onto", "climbed on",
-            "sat down in", "sitting in", "seated in", "hopped on", "hopped into", "hopped onto", "stepped into", "stepped onto", "stepped aboard",
-            "jumped into", "boarded", "entered", "been picked up by", "picked up by", "been taken in by", "gets on", "gets into", "climbs into",
-            "boards", "get on", "get into", "climb into", "board", "inside", "taken their seats in", "taken a seat in", "taken seats in",
+            "got on",
+            "got onto",
+            "got in",
+            "got into",
+            "gotten on",
+            "gotten into",
+            "gotten in",
+            "got aboard",
+            "climbed into",
+            "climbed aboard",
+            "climbed onto",
+            "climbed on",
+            "sat down in",
+            "sitting in",
+            "seated in",
+            "hopped on",
+            "hopped into",
+            "hopped onto",
+            "stepped into",
+            "stepped onto",
+            "stepped aboard",
+            "jumped into",
+            "boarded",
+            "entered",
+            "been picked up by",
+            "picked up by",
+            "been taken in by",
+            "gets on",
+            "gets into",
+            "climbs into",
+            "boards",
+            "get on",
+            "get into",
+            "climb into",
+            "board",
+            "inside",
+            "taken their seats in",
+            "taken a seat in",
+            "taken seats in",
         ],
     );
-    let Some(np) = n.map(|n| &main[n..]).filter(|np| is(np.first(), &["the", "a", "an", "our", "my", "that", "one"])) else {
+    let Some(np) = n
+        .map(|n| &main[n..])
+        .filter(|np| is(np.first(), &["the", "a", "an", "our", "my", "that", "one"]))
+    else {
         return false;
     };
     super::words::first_noun(np).is_some_and(|(a, b)| {
-        a < 4 && matches!(longest(&np[a..b]).map(|l| l.0), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
+        a < 4
+            && matches!(longest(&np[a..b]).map(|l| l.0), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
     })
 }
 
@@ -100,14 +185,40 @@ fn gone_off(main: &[Token]) -> bool {
     if boarded(main) {
         return true;
     }
-    let went = is(main.first(), &["gone", "driven", "walked", "returned", "headed", "ridden", "cycled", "moved", "went", "goes", "drives", "returns", "heads", "go", "return", "head", "drive", "taken", "sent", "brought", "called", "towed", "back", "at", "in", "inside"]);
+    let went = is(
+        main.first(),
+        &[
+            "gone", "driven", "walked", "returned", "headed", "ridden", "cycled", "moved", "went", "goes",
+            "drives", "returns", "heads", "go", "return", "head", "drive", "taken", "sent", "brought",
+            "called", "towed", "back", "at", "in", "inside",
+        ],
+    );
     let at = (1..main.len().min(4)).find(|i| is(main.get(*i), &OFF_SITE));
     let between = |i: usize| {
-        main[1..i].iter().all(|t| is(Some(t), &["back", "to", "at", "in", "into", "inside", "the", "a", "his", "her", "their", "its", "off", "home", "for", "our", "away", "now"]))
+        main[1..i].iter().all(|t| {
+            is(
+                Some(t),
+                &[
+                    "back", "to", "at", "in", "into", "inside", "the", "a", "his", "her", "their", "its",
+                    "off", "home", "for", "our", "away", "now",
+                ],
+            )
+        })
     };
     // ("in", "at" and "back" say it only with such a place)
     let found = at.or_else(|| (4..main.len().min(6)).find(|i| is(main.get(*i), &OFF_SITE)));
-    went && found.is_some_and(|i| between(i) && main.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "already", "now", "again", "for", "by", "long", "with", "because", "where"])))
+    went && found.is_some_and(|i| {
+        between(i)
+            && main.get(i + 1).is_none_or(|t| {
+                t.kind != TokenKind::Word
+                    || is(
+                        Some(t),
+                        &[
+                            "and", "already", "now", "again", "for", "by", "long", "with", "because", "where",
+                        ],
+                    )
+            })
+    })
 }
 
 /// Takes the helpers off one verb phrase.
@@ -222,7 +333,9 @@ fn goes_on(tokens: &[Token], plural: bool, before: &[Token]) -> bool {
     // "has finished its round and left"
     let leaves = w == "left"
         && before.iter().any(|t| matches!(text(t), "has" | "have" | "had"))
-        && (tokens.len() == k + 1 || leads(&tokens[k + 1..], &AFTERWARDS).is_some() || tokens[k + 1].kind != TokenKind::Word);
+        && (tokens.len() == k + 1
+            || leads(&tokens[k + 1..], &AFTERWARDS).is_some()
+            || tokens[k + 1].kind != TokenKind::Word);
     if leaves {
         return true;
     }

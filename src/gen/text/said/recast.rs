@@ -250,7 +250,13 @@ fn instead(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .iter()
         .all(|t| matches!(look_up(text(t)), Some(Sense::State(..) | Sense::Color(_))));
     let leaves = is(tokens.get(b), &["away", "out", "off", "gone"]);
-    if !bare || leaves || b > i || !is_place(&tokens[b..]) || talk.fits(&tokens[..b]) != 1 || has_noun(&tokens[b..i]) {
+    if !bare
+        || leaves
+        || b > i
+        || !is_place(&tokens[b..])
+        || talk.fits(&tokens[..b]) != 1
+        || has_noun(&tokens[b..i])
+    {
         return tokens;
     }
     let mut rest = [&tokens[b..i], &tokens[i + 1..]].concat();

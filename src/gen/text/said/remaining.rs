@@ -128,15 +128,24 @@ pub(super) fn plain(tokens: &[Token]) -> Option<Vec<Token>> {
 pub(super) fn nobody_on_foot(tokens: Vec<Token>) -> Vec<Token> {
     let begin = (0..tokens.len()).find(|i| {
         is(tokens.get(*i), &["nobody", "noone", "no"])
-            && (*i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["and", "but", "so"]))
+            && (*i == 0
+                || tokens[i - 1].kind != TokenKind::Word
+                || is(tokens.get(i - 1), &["and", "but", "so"]))
     });
     if let Some(i) = begin
-        && let Some(n) = leads(&tokens[i..], &["nobody", "noone", "no one", "no pedestrian", "no person"])
+        && let Some(n) = leads(
+            &tokens[i..],
+            &["nobody", "noone", "no one", "no pedestrian", "no person"],
+        )
         && let Some((k, m)) = find(&tokens[i + n..], &["on foot"])
         && tokens[i + n..i + n + k].iter().all(stays)
     {
         let end = i + n + k + m;
-        let late = leads(&tokens[end..], &["any more", "anymore", "any longer", "at all", "now"]).unwrap_or(0);
+        let late = leads(
+            &tokens[end..],
+            &["any more", "anymore", "any longer", "at all", "now"],
+        )
+        .unwrap_or(0);
         let all = led("remove all the pedestrians", &tokens[i], &[&tokens[end + late..]]);
         return [&tokens[..i], &all].concat();
     }
@@ -169,18 +178,28 @@ fn nothing_there(tokens: &[Token]) -> Option<Vec<Token>> {
             is(
                 Some(t),
                 &[
-                    "should", "must", "shall", "may", "is", "be", "to", "left", "standing", "parked", "driving", "can", "will",
-                    "there", "stand", "stands", "stay", "stays", "remain", "remains", "stopped", "blocks", "moving",
+                    "should", "must", "shall", "may", "is", "be", "to", "left", "standing", "parked",
+                    "driving", "can", "will", "there", "stand", "stands", "stay", "stays", "remain",
+                    "remains", "stopped", "blocks", "moving",
                 ],
             )
         })
         .count();
     let place = trimmed(&tokens[n + said..]);
-    let late = ["any more", "anymore", "any longer", "at all", "now", "no more", "please"];
+    let late = [
+        "any more",
+        "anymore",
+        "any longer",
+        "at all",
+        "now",
+        "no more",
+        "please",
+    ];
     let end = find(place, &late).map_or(place.len(), |x| x.0);
     let place = trimmed(&place[..end]);
     let one = !place.iter().any(|t| t.kind != TokenKind::Word) && find(place, BUT).is_none();
-    (one && super::words::is_place(place) && !has_noun(place)).then(|| led("remove all the objects", &tokens[0], &[place]))
+    (one && super::words::is_place(place) && !has_noun(place))
+        .then(|| led("remove all the objects", &tokens[0], &[place]))
 }
 
 /// "leave nothing but the truck", "nothing should be left except for the truck".
@@ -207,7 +226,11 @@ fn alone(tokens: &[Token]) -> Option<Vec<Token>> {
 fn none(tokens: &[Token]) -> Option<Vec<Token>> {
     let n = leads(tokens, NONE)?;
     let of = &tokens[n..];
-    let of = if of.first().is_some_and(|t| t.kind != TokenKind::Word) { &[] } else { trimmed(of) };
+    let of = if of.first().is_some_and(|t| t.kind != TokenKind::Word) {
+        &[]
+    } else {
+        trimmed(of)
+    };
     let (_, b) = first_noun(of).filter(|x| x.0 < 3)?;
     of[b..]
         .iter()

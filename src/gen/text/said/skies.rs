@@ -41,14 +41,58 @@ const SKIES: &[&str] = &[
 ];
 
 const CLOUDLESS: &str = "not a cloud in the sky|not a single cloud in the sky|not one cloud in the sky|without a cloud in the sky|without a single cloud in the sky|no cloud in the sky|no clouds in the sky|not a cloud|without clouds|without a cloud|no clouds|cloudless sky|a cloudless sky";
+const SUN: &str = "have the sun out|the sun out|the sun comes out|the sun has come out|let the sun come out|let the sun shine|bring out the sun|bring the sun out|the sun should shine|the sun shines again|get the sun out";
+const SUNSET: &str = "let the sun set|the sun sets|the sun is setting|the sun goes down|the sun is going down|the sun should set|let the sun go down";
 const CLOUDED: &str = "cover the sky with clouds|cover the sky in clouds|fill the sky with clouds|clouds cover the sky|clouds fill the sky|clouds covering the sky|cloud the sky over|a sky full of clouds|the sky is full of clouds|let clouds gather|let clouds cover the sky|the sky clouds over|the sky has clouded over";
 const SET: &str = "set the time of day to|set the time to|change the time of day to|change the time to|switch the time to|move the time to|put the time at|turn the clock to|set the clock to|set the weather to|change the weather to|switch the weather to|turn the weather to|set the lighting to|change the lighting to|set the light to|change the light to|darken everything to|darken the scene to|darken the whole scene to|plunge everything into|plunge the scene into|brighten everything to|brighten the scene to|turn everything to|turn everything into|turn the scene into|bathe everything in|bathe the scene in|drown everything in|wrap everything in|wrap the scene in|cover everything in|shroud everything in|shroud the scene in";
+
+/// "fog where there was rain": fog.
+fn where_was(tokens: Vec<Token>) -> Vec<Token> {
+    let mut out = tokens;
+    let found = (0..out.len()).find_map(|i| {
+        is_style(&out[i]).then_some(())?;
+        let n = leads(
+            &out[i + 1..],
+            &[
+                "where there was",
+                "where there is",
+                "where there had been",
+                "where we had",
+                "where we have",
+                "where it was",
+                "where it is",
+                "where before there was",
+                "where once there was",
+            ],
+        )?;
+        let the = i + 1 + n + usize::from(is(out.get(i + 1 + n), &["the", "this", "only"]));
+        out.get(the).is_some_and(is_style).then_some((i, the))
+    });
+    if let Some((i, old)) = found {
+        out.drain(i + 1..=old);
+        return where_was(out);
+    }
+    out
+}
 
 /// "fog replaces the rain": fog.
 fn taken_over(tokens: Vec<Token>) -> Vec<Token> {
     const OVER: &[&str] = &[
-        "replaces", "replace", "takes over from", "takes the place of", "has replaced", "should replace", "is to replace",
-        "supersedes", "drives out", "drives away", "displaces", "must replace", "shall replace", "instead of", "follows",
+        "replaces",
+        "replace",
+        "takes over from",
+        "takes the place of",
+        "has replaced",
+        "should replace",
+        "is to replace",
+        "supersedes",
+        "drives out",
+        "drives away",
+        "displaces",
+        "must replace",
+        "shall replace",
+        "instead of",
+        "follows",
     ];
     let found = (0..tokens.len()).find_map(|i| {
         is_style(&tokens[i]).then_some(())?;
@@ -69,6 +113,9 @@ fn is_style(t: &Token) -> bool {
 /// The sentence with its weather in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let mut out = replaced(tokens, CLOUDLESS, "clear weather");
+    out = replaced(&out, SUN, "clear weather");
+    out = replaced(&out, SUNSET, "make it dusk");
+    out = where_was(out);
     out = replaced(&out, CLOUDED, "overcast weather");
     out = replaced(&out, SET, "make it");
     out = taken_over(out);

@@ -80,12 +80,23 @@ pub fn removes(t: Option<&Token>) -> bool {
 pub fn removes_it(clause: &[Token]) -> bool {
     let verb = leads(
         clause,
-        &["remove", "delete", "erase", "leave out", "take out", "take away", "get rid of", "do away with"],
+        &[
+            "remove",
+            "delete",
+            "erase",
+            "leave out",
+            "take out",
+            "take away",
+            "get rid of",
+            "do away with",
+        ],
     )
     .or_else(|| removes(clause.first()).then_some(1));
     verb.is_some_and(|n| {
         is(clause.get(n), &["it", "them", "him", "her"])
-            && clause[n + 1..].iter().all(|t| is(Some(t), &["out", "away", "too", "please", "off", "now"]))
+            && clause[n + 1..]
+                .iter()
+                .all(|t| is(Some(t), &["out", "away", "too", "please", "off", "now"]))
     })
 }
 
@@ -127,6 +138,12 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
                 .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep", "only", "just"]))
                 .map(|k| k - 1)
                 .filter(|k| first_noun(&tokens[n..=*k]).is_some())
+        })
+        // "of the four barriers one can go"
+        .or_else(|| {
+            let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
+            tokens.get(n + b).filter(|t| number(t).is_some())?;
+            Some(n + b - 1)
         })?;
     let end = comma + usize::from(tokens[comma].kind != TokenKind::Comma);
     let np = tokens.get(n..end).filter(|np| first_noun(np).is_some())?;
@@ -280,9 +297,25 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     let (a, b) = first_noun(&tokens[n..]).map(|x| (n + x.0, n + x.1))?;
     let counted = tokens[n..a].iter().any(|t| number(t).is_some());
     let rest = trimmed(&tokens[b..]);
+    let suffices = number(rest.first()?).is_some()
+        && (rest.len() == 1
+            || rest[1..].iter().all(|t| {
+                is(
+                    Some(t),
+                    &[
+                        "will", "would", "should", "do", "suffice", "suffices", "be", "enough", "are", "is",
+                        "please", "fine",
+                    ],
+                )
+            }));
+    if suffices && counted && a < n + 5 {
+        return Some(led("keep exactly", &tokens[0], &[&rest[..1], &tokens[a..b]]));
+    }
     // "instead of one car, three are waiting at the crossing"
     let w = leads(rest, WISHES).or_else(|| {
-        let verb = rest.get(1).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
+        let verb = rest
+            .get(1)
+            .is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
         (verb && rest.first().is_some_and(|t| number(t).is_some())).then_some(0)
     })?;
     let k = w + usize::from(is(rest.get(w), &["just", "only"]));
@@ -291,13 +324,46 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
         rest.len() == k + 1 || leads(&rest[k + 1..], &["of them", "please", "instead", "of those"]).is_some();
     // "three, all of them ahead of us"
     let tail = trimmed(&rest[k + 1..]);
-    let all = leads(tail, &["all of them", "all", "each of them", "every one of them", "all three", "of them", "both", "both of them"])
-        .unwrap_or(0);
+    let all = leads(
+        tail,
+        &[
+            "all of them",
+            "all",
+            "each of them",
+            "every one of them",
+            "all three",
+            "of them",
+            "both",
+            "both of them",
+        ],
+    )
+    .unwrap_or(0);
     let place = trimmed(&tail[all..]);
-    let place = &place[if w == 0 { place.iter().take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["now", "to"])).count() } else { 0 }..];
-    let stands = usize::from(w == 0 && is(place.first(), &["waiting", "standing", "wait", "stand", "drive", "driving", "walking", "walk", "parked"]));
-    let placed = w == 0 && place.len() > stands && super::words::is_place(&place[stands..]) && first_noun(place).is_none();
-    let placed = placed || super::words::is_place(place) && first_noun(place).is_none() && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let place = &place[if w == 0 {
+        place
+            .iter()
+            .take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["now", "to"]))
+            .count()
+    } else {
+        0
+    }..];
+    let stands = usize::from(
+        w == 0
+            && is(
+                place.first(),
+                &[
+                    "waiting", "standing", "wait", "stand", "drive", "driving", "walking", "walk", "parked",
+                ],
+            ),
+    );
+    let placed = w == 0
+        && place.len() > stands
+        && super::words::is_place(&place[stands..])
+        && first_noun(place).is_none();
+    let placed = placed
+        || super::words::is_place(place)
+            && first_noun(place).is_none()
+            && !place.iter().any(|t| t.kind == TokenKind::Comma);
     let place = if placed { place } else { &[] };
     (counted && (ends || placed) && a < n + 5).then(|| {
         led(

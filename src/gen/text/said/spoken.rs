@@ -7,7 +7,7 @@ use super::words::{self, find, is, is_place, led, text};
 
 /// "the one behind me", "what's behind me" as "the object behind me".
 pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
-    let mut out = body.to_vec();
+    let mut out = sides_named(body.to_vec());
     // "the driver of the bus", "the bus driver": the bus
     if let Some((i, n)) = find(
         &out,
@@ -27,20 +27,6 @@ pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
             matches!(look_up(text(&out[i - 1])), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle());
         if vehicle && is(out.get(i), &["driver", "drivers"]) {
             out.remove(i);
-        }
-        // "the car in the right one": lane
-        let side = is(
-            out.get(i - 1),
-            &["left", "right", "other", "oncoming", "opposite", "hand"],
-        );
-        let place = out[..i].iter().rev().find(|t| {
-            matches!(
-                text(t),
-                "lane" | "sidewalk" | "pavement" | "side" | "kerb" | "curb" | "roadside" | "shoulder"
-            )
-        });
-        if let (true, true, Some(place)) = (side, is(out.get(i), &["one"]), place.cloned()) {
-            out[i] = words::word(text(&place), &out[i].clone());
         }
         i += 1;
     }
@@ -66,6 +52,28 @@ pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
             }
         }
         i += 1;
+    }
+    out
+}
+
+/// "from the right lane to the left one": the left lane.
+pub(super) fn sides_named(tokens: Vec<Token>) -> Vec<Token> {
+    let mut out = tokens;
+    for i in 1..out.len() {
+        // "the car in the right one": lane
+        let side = is(
+            out.get(i - 1),
+            &["left", "right", "other", "oncoming", "opposite", "hand"],
+        );
+        let place = out[..i].iter().rev().find(|t| {
+            matches!(
+                text(t),
+                "lane" | "sidewalk" | "pavement" | "side" | "kerb" | "curb" | "roadside" | "shoulder"
+            )
+        });
+        if let (true, true, Some(place)) = (side, is(out.get(i), &["one"]), place.cloned()) {
+            out[i] = words::word(text(&place), &out[i].clone());
+        }
     }
     out
 }

@@ -60,9 +60,15 @@ pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
         return Some((Back::Others, n));
     }
     // "the fourth is still crossing"
-    let nth = super::words::leads(tokens, &["the second", "the third", "the fourth", "the fifth", "the last"]);
+    let nth = super::words::leads(
+        tokens,
+        &["the second", "the third", "the fourth", "the fifth", "the last"],
+    );
     if let Some(n) = nth
-        && tokens.get(n).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) && super::words::noun_at(&tokens[n..]).is_none())
+        && tokens.get(n).is_some_and(|t| {
+            HELPERS.contains(&text(t))
+                || is_finite(text(t), false) && super::words::noun_at(&tokens[n..]).is_none()
+        })
     {
         return Some((Back::Others, n));
     }
@@ -253,9 +259,15 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
             predicate_at(tokens, n, plural || caused).filter(|p| *p == n || *p == n + 1)
         };
         // "I want her riding 9 m in front of us"
-        let doing = |t: &Token| matches!(super::super::lexicon::look_up(text(t)), Some(super::super::lexicon::Sense::State(..)));
-        let pred = pred
-            .or_else(|| (caused && (is_place(&tokens[n..]) || tokens.get(n).is_some_and(doing))).then_some(n))?;
+        let doing = |t: &Token| {
+            matches!(
+                super::super::lexicon::look_up(text(t)),
+                Some(super::super::lexicon::Sense::State(..))
+            )
+        };
+        let pred = pred.or_else(|| {
+            (caused && (is_place(&tokens[n..]) || tokens.get(n).is_some_and(doing))).then_some(n)
+        })?;
         return Some(Subject {
             kind: Kind::Back(back),
             np: tokens[..n].to_vec(),
@@ -353,12 +365,32 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
             && is(tokens.get(k + 1), &["the", "these", "those", "my", "our"])
     });
     // "one pedestrian crosses, the other one stays": one of those that are there
-    let one_of = talk.others
+    let leaves = is(
+        tokens.get(end),
+        &[
+            "leave",
+            "leaves",
+            "disappear",
+            "disappears",
+            "vanish",
+            "vanishes",
+            "depart",
+            "departs",
+            "goes",
+            "left",
+            "walks",
+            "drives",
+        ],
+    ) && (!is(tokens.get(end), &["goes", "walks", "drives"])
+        || is(tokens.get(end + 1), &["away", "off", "home"]));
+    let one_of = (talk.others || leaves)
         && !part
         && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) > n as usize)
         && !described_fresh;
     // "two cars have driven home": of those that are there
-    let leave = !part && !described_fresh && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) >= n as usize);
+    let leave = !part
+        && !described_fresh
+        && number(first).is_some_and(|n| n >= 1 && talk.fits(&tokens[noun..end]) >= n as usize);
     let definite = matches!(
         text(first),
         "the"
@@ -394,7 +426,12 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         Some(p) => p,
         // "I'd like to see the bus waiting at the crossing"
         None if caused
-            && is(tokens.get(from), &["waiting", "standing", "driving", "walking", "riding", "crossing", "facing"])
+            && is(
+                tokens.get(from),
+                &[
+                    "waiting", "standing", "driving", "walking", "riding", "crossing", "facing",
+                ],
+            )
             && definite
             && talk.fits(&tokens[..end]) == 1 =>
         {
@@ -404,8 +441,14 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
         None if caused => (from..tokens.len()).find(|i| is_place(&tokens[*i..]))?,
         None => return None,
     };
-    let one_of = one_of || leave && !tokens[pred..].iter().any(|t| matches!(text(t), "missing" | "absent"))
-            && super::predicate::parts(&tokens[pred..], true).iter().any(super::predicate::Part::is_gone);
+    let one_of = one_of
+        || leave
+            && !tokens[pred..]
+                .iter()
+                .any(|t| matches!(text(t), "missing" | "absent"))
+            && super::predicate::parts(&tokens[pred..], true)
+                .iter()
+                .any(super::predicate::Part::is_gone);
     let known = definite || bare && talk.fits(&tokens[..end]) > 0;
     let kind = if part || one_of {
         Kind::Part

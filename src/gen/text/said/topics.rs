@@ -22,13 +22,37 @@ pub(super) fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     // "trucks: no more than one, the closer one"
     let most = leads(
         rest,
-        &["no more than", "not more than", "at most", "only", "just", "exactly", "max", "maximum", "down to", "up to", "reduce to", "make it", "should be"],
+        &[
+            "no more than",
+            "not more than",
+            "at most",
+            "only",
+            "just",
+            "exactly",
+            "max",
+            "maximum",
+            "down to",
+            "up to",
+            "reduce to",
+            "make it",
+            "should be",
+        ],
     )
     .unwrap_or(0);
     let closer = rest.iter().position(|t| t.kind == TokenKind::Comma);
-    let nearest = closer.is_some_and(|c| leads(&rest[c + 1..], &["the closer", "the nearer", "the closest", "the nearest"]).is_some());
+    let nearest = closer.is_some_and(|c| {
+        leads(
+            &rest[c + 1..],
+            &["the closer", "the nearer", "the closest", "the nearest"],
+        )
+        .is_some()
+    });
     let rest = if rest.get(most).is_some_and(|t| number(t).is_some()) {
-        &rest[most..if nearest { closer.unwrap_or(rest.len()) } else { rest.len() }]
+        &rest[most..if nearest {
+            closer.unwrap_or(rest.len())
+        } else {
+            rest.len()
+        }]
     } else {
         rest
     };

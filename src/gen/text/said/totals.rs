@@ -10,23 +10,76 @@ use super::some_of::WISHES;
 use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
 
 const TIMES: &[&str] = &["twice", "double", "thrice", "triple", "half"];
-const IN_ALL: &[&str] = &["in all", "in total", "altogether", "all told", "overall", "all in all", "in sum", "all together"];
+const IN_ALL: &[&str] = &[
+    "in all",
+    "in total",
+    "altogether",
+    "all told",
+    "overall",
+    "all in all",
+    "in sum",
+    "all together",
+];
 const UNTIL: &[&str] = &[
-    "until there are", "until there is", "till there are", "till there is", "until we have", "till we have",
-    "until", "till", "leaving", "so that there are", "so that there is", "so that", "so there are", "so there is",
-    "such that there are", "so we have", "so that we have", "making it", "to make it", "to make", "for a total of",
-    "to a total of", "which makes", "which leaves", "making",
+    "until there are",
+    "until there is",
+    "till there are",
+    "till there is",
+    "until we have",
+    "till we have",
+    "until",
+    "till",
+    "leaving",
+    "so that there are",
+    "so that there is",
+    "so that",
+    "so there are",
+    "so there is",
+    "such that there are",
+    "so we have",
+    "so that we have",
+    "making it",
+    "to make it",
+    "to make",
+    "for a total of",
+    "to a total of",
+    "which makes",
+    "which leaves",
+    "making",
 ];
 const LEFT: &[&str] = &[
-    "remain", "remains", "are left", "is left", "left", "stay", "stays", "are left over", "is left over", "remaining",
-    "are there", "is there", "are still there", "is still there",
+    "remain",
+    "remains",
+    "are left",
+    "is left",
+    "left",
+    "stay",
+    "stays",
+    "are left over",
+    "is left over",
+    "remaining",
+    "are there",
+    "is there",
+    "are still there",
+    "is still there",
 ];
 const SAME_PLACE: &[&str] = &[
-    "all on the same sidewalk as before", "on the same sidewalk as before", "on the same sidewalk as now",
-    "all in the same place as before", "in the same place as before", "in the same lane as before",
-    "all in the same lane as before", "all on the same sidewalk", "all in the same lane", "where the others are",
-    "on the same side as before", "all on the same side as before", "on the same side as the others",
-    "in the same lane as the others", "on the same sidewalk as the others", "in the same place as the others",
+    "all on the same sidewalk as before",
+    "on the same sidewalk as before",
+    "on the same sidewalk as now",
+    "all in the same place as before",
+    "in the same place as before",
+    "in the same lane as before",
+    "all in the same lane as before",
+    "all on the same sidewalk",
+    "all in the same lane",
+    "where the others are",
+    "on the same side as before",
+    "all on the same side as before",
+    "on the same side as the others",
+    "in the same lane as the others",
+    "on the same sidewalk as the others",
+    "in the same place as the others",
 ];
 
 /// The sentence with such a number as a command.
@@ -36,7 +89,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = until(out, talk);
     let out = so_many_of_them(in_all(out, talk));
     let out = not_but(out);
-    rather_than(out)
+    from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
 
 fn links(t: &Token) -> bool {
@@ -59,27 +112,41 @@ fn same_place(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "we need twice the firefighters": double them.
 fn doubled(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(i) = (0..tokens.len()).find(|i| is(tokens.get(*i), &["twice", "double", "triple", "thrice"]) && is(tokens.get(i + 1), &["the"])) else {
+    let Some(i) = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["twice", "double", "triple", "thrice"]) && is(tokens.get(i + 1), &["the"])
+    }) else {
         return tokens;
     };
     let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
     let wish = &tokens[from..i];
-    let wished = !wish.is_empty() && (leads(wish, WISHES) == Some(wish.len()) || unwrapped(wish).0.is_empty() || unwrapped(&tokens[from..]).0.len() + wish.len() == tokens.len() - from);
-    let many = first_noun(&tokens[i + 2..]).is_some_and(|x| x.0 < 3 && matches!(look_up(text(&tokens[i + 1 + x.1])), Some(Sense::Noun(_, true))));
+    let wished = !wish.is_empty()
+        && (leads(wish, WISHES) == Some(wish.len())
+            || unwrapped(wish).0.is_empty()
+            || unwrapped(&tokens[from..]).0.len() + wish.len() == tokens.len() - from);
+    let many = first_noun(&tokens[i + 2..]).is_some_and(|x| {
+        x.0 < 3 && matches!(look_up(text(&tokens[i + 1 + x.1])), Some(Sense::Noun(_, true)))
+    });
     if !wished || !many {
         return tokens;
     }
-    let times = if is(tokens.get(i), &["triple", "thrice"]) { "triple" } else { "double" };
+    let times = if is(tokens.get(i), &["triple", "thrice"]) {
+        "triple"
+    } else {
+        "double"
+    };
     [&tokens[..from], &led(times, &tokens[i], &[&tokens[i + 1..]])].concat()
 }
 
 /// "I need twice as many cones as there are now": twice as many cones.
 fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
-        let times = is(tokens.get(i), TIMES).then_some(1).or_else(|| {
-            (number(&tokens[i]).is_some() && is(tokens.get(i + 1), &["times"])).then_some(2)
-        })?;
-        let n = leads(&tokens[i + times..], &["as many", "the number of", "the amount of", "as much"])?;
+        let times = is(tokens.get(i), TIMES)
+            .then_some(1)
+            .or_else(|| (number(&tokens[i]).is_some() && is(tokens.get(i + 1), &["times"])).then_some(2))?;
+        let n = leads(
+            &tokens[i + times..],
+            &["as many", "the number of", "the amount of", "as much"],
+        )?;
         let (_, b) = first_noun(&tokens[i + times + n..]).filter(|x| x.0 < 4)?;
         Some((i, i + times + n + b))
     });
@@ -94,7 +161,11 @@ fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
         || wish.iter().all(|t| {
             is(
                 Some(t),
-                &["i", "we", "need", "want", "would", "like", "to", "see", "have", "there", "should", "be", "must", "id", "please", "could", "id", "make", "it", "add", "put", "us", "me", "give", "now", "shall", "lets", "show", "exactly"],
+                &[
+                    "i", "we", "need", "want", "would", "like", "to", "see", "have", "there", "should", "be",
+                    "must", "id", "please", "could", "id", "make", "it", "add", "put", "us", "me", "give",
+                    "now", "shall", "lets", "show", "exactly",
+                ],
             )
         });
     if !wished {
@@ -104,14 +175,29 @@ fn times_as_many(tokens: Vec<Token>) -> Vec<Token> {
     if let Some((k, n)) = find(
         rest,
         &[
-            "as there are", "as we have", "as are there", "as now", "as before", "as you have", "as at present",
-            "as currently", "as today", "that there are", "as there were", "as i have", "as are", "as it has",
-            "as the scene has", "as they are",
+            "as there are",
+            "as we have",
+            "as are there",
+            "as now",
+            "as before",
+            "as you have",
+            "as at present",
+            "as currently",
+            "as today",
+            "that there are",
+            "as there were",
+            "as i have",
+            "as are",
+            "as it has",
+            "as the scene has",
+            "as they are",
         ],
     ) && k < 6
     {
         let place = &rest[..k];
-        let close = (k + n..rest.len()).find(|j| links(&rest[*j])).unwrap_or(rest.len());
+        let close = (k + n..rest.len())
+            .find(|j| links(&rest[*j]))
+            .unwrap_or(rest.len());
         let mut out = tokens[..from].to_vec();
         out.extend_from_slice(&tokens[i..end]);
         out.extend_from_slice(place);
@@ -139,7 +225,10 @@ fn bare(np: &[Token]) -> &[Token] {
     let skip = |t: &Token| {
         is(
             Some(t),
-            &["the", "my", "these", "those", "all", "our", "of", "both", "some", "more", "a", "an", "few", "any", "enough", "other", "further", "up", "out", "down", "in", "away", "number", "another"],
+            &[
+                "the", "my", "these", "those", "all", "our", "of", "both", "some", "more", "a", "an", "few",
+                "any", "enough", "other", "further", "up", "out", "down", "in", "away", "number", "another",
+            ],
         ) || number(t).is_some()
     };
     &np[np.iter().position(|t| !skip(t)).unwrap_or(0)..]
@@ -151,7 +240,12 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let mut k = i + n;
-    while is(tokens.get(k), &["only", "just", "exactly", "there", "are", "is", "no", "more", "than", "them"]) {
+    while is(
+        tokens.get(k),
+        &[
+            "only", "just", "exactly", "there", "are", "is", "no", "more", "than", "them",
+        ],
+    ) {
         k += 1;
     }
     let Some(many) = tokens.get(k).filter(|t| number(t).is_some()).cloned() else {
@@ -160,7 +254,9 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if super::words::is_unit(tokens.get(k + 1)) {
         return tokens;
     }
-    let close = (k + 1..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
+    let close = (k + 1..tokens.len())
+        .find(|j| links(&tokens[*j]))
+        .unwrap_or(tokens.len());
     let after = &tokens[k + 1..close];
     let left = find(after, LEFT).or_else(|| find(after, IN_ALL));
     let sure = left.is_some()
@@ -169,7 +265,10 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         || n > 2 && text(&tokens[i]) == "so";
     let of = left.map_or(after, |x| &after[..x.0]);
     let own = first_noun(of).map(|x| &of[..x.1]);
-    let start = tokens[..i].iter().rposition(|t| text(t) == "and" || t.kind == TokenKind::Mark).map_or(0, |s| s + 1);
+    let start = tokens[..i]
+        .iter()
+        .rposition(|t| text(t) == "and" || t.kind == TokenKind::Mark)
+        .map_or(0, |s| s + 1);
     let before = trimmed(&tokens[start..i]);
     let Some((a, b)) = first_noun(before).filter(|x| x.0 < 8) else {
         return tokens;
@@ -181,7 +280,10 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let from = before[..a]
         .iter()
-        .rposition(|t| super::super::rephrase::is_verb(t) && look_up(text(t)).is_none_or(|s| !matches!(s, Sense::State(..))))
+        .rposition(|t| {
+            super::super::rephrase::is_verb(t)
+                && look_up(text(t)).is_none_or(|s| !matches!(s, Sense::State(..)))
+        })
         .map_or(0, |v| v + 1);
     let np = bare(&before[from..]);
     let np = match talk.fits(np) {
@@ -189,13 +291,17 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         _ => np,
     };
     let mut out = tokens[..start].to_vec();
-    out.extend(led("keep exactly", &tokens[start], &[&[many], np, &tokens[close..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[start],
+        &[&[many], np, &tokens[close..]],
+    ));
     out
 }
 
 /// "fill the place up a bit, to eight parked cars in all", "double the cars, so there are four altogether".
 fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, IN_ALL).filter(|x| x.0 > 1) else {
+    let Some((i, n)) = find(&tokens, IN_ALL).filter(|x| x.0 > 0) else {
         return tokens;
     };
     let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
@@ -213,14 +319,35 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let tail = &tokens[i + n..];
     // whose number it is: named here, or in what is said before
     let np = match (own, lead_noun) {
-        (Some(_), _) => clause[k + 1..].iter().filter(|t| !plain_verb(t)).cloned().collect(),
+        (Some(_), _) => clause[k + 1..]
+            .iter()
+            .filter(|t| !plain_verb(t))
+            .cloned()
+            .collect(),
         (None, Some(_)) => return tokens,
         (None, None) => {
             let before = &tokens[..from];
             let Some((a, b)) = first_noun(before) else {
-                return tokens;
+                // "More cars! Six altogether."
+                return match &talk.last {
+                    Some(last) if from == 0 => led(
+                        "keep exactly",
+                        &tokens[0],
+                        &[many, &led(last, &tokens[0], &[]), tail],
+                    ),
+                    _ => tokens,
+                };
             };
-            let lead = (0..a).rev().take_while(|j| matches!(look_up(text(&before[*j])), Some(Sense::State(_, false) | Sense::Size(_))) || is(before.get(*j), &["oncoming", "parked"])).last().unwrap_or(a);
+            let lead = (0..a)
+                .rev()
+                .take_while(|j| {
+                    matches!(
+                        look_up(text(&before[*j])),
+                        Some(Sense::State(_, false) | Sense::Size(_))
+                    ) || is(before.get(*j), &["oncoming", "parked"])
+                })
+                .last()
+                .unwrap_or(a);
             let place = &before[b..];
             let close = place.iter().position(links).unwrap_or(place.len());
             let told = is_place(place) && talk.fits(&before[lead..b + close]) > 0;
@@ -252,14 +379,26 @@ fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let plural = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
-    let adds = tokens[from..a].iter().any(|t| super::super::rephrase::is_verb(t) || is(Some(t), &["the", "more"]) || number(t).is_some());
+    let adds = tokens[from..a].iter().any(|t| {
+        super::super::rephrase::is_verb(t) && !is(Some(t), &["i", "we"])
+            || is(Some(t), &["the", "more"])
+            || number(t).is_some()
+    });
     if !plural || adds {
         return tokens;
     }
     let place = &tokens[b..i - 1];
-    let place = if is_place(place) && !is(place.first(), &["in"]) { place } else { &[] };
+    let place = if is_place(place) && !is(place.first(), &["in"]) {
+        place
+    } else {
+        &[]
+    };
     let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[from],
+        &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]],
+    ));
     out
 }
 
@@ -283,7 +422,9 @@ fn not_but(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let close = (many..tokens.len()).find(|j| links(&tokens[*j])).unwrap_or(tokens.len());
+    let close = (many..tokens.len())
+        .find(|j| links(&tokens[*j]))
+        .unwrap_or(tokens.len());
     let own = first_noun(&tokens[many..close]).filter(|x| x.0 < 4);
     let old = first_noun(&tokens[i..but]);
     let mut np: Vec<Token> = match (own, old) {
@@ -293,20 +434,248 @@ fn not_but(tokens: Vec<Token>) -> Vec<Token> {
     };
     np.retain(|t| !plain_verb(t));
     let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[close..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[from],
+        &[&tokens[many..=many], &np, &tokens[close..]],
+    ));
     out
+}
+
+/// "five children would be nicer": five.
+fn nicer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let counted = tokens
+        .first()
+        .is_some_and(|t| number(t).is_some_and(|n| n > 1) || text(t) == "one");
+    // "three pedestrians fewer would be good"
+    if counted
+        && tokens
+            .iter()
+            .any(|t| matches!(text(t), "fewer" | "less" | "more"))
+        && let Some((i, n)) = find(
+            &tokens,
+            &[
+                "would be good",
+                "would be nice",
+                "would be better",
+                "would be fine",
+                "would be great",
+                "would be welcome",
+                "would be nicer",
+                "would do",
+            ],
+        )
+        && i + n == tokens.len()
+    {
+        return tokens[..i].to_vec();
+    }
+    let Some((_, b)) = first_noun(&tokens).filter(|x| counted && x.0 < 4) else {
+        return tokens;
+    };
+    let Some((i, n)) = find(
+        &tokens[b..],
+        &[
+            "would be nicer",
+            "would be better",
+            "would be preferable",
+            "would be nice",
+            "would be fine",
+            "would be ideal",
+            "would be right",
+            "would be perfect",
+            "would be more realistic",
+            "would look better",
+            "would be good",
+        ],
+    ) else {
+        return tokens;
+    };
+    let place = &tokens[b..b + i];
+    let ends = tokens.get(b + i + n).is_none_or(links);
+    if !ends || !(place.is_empty() || is_place(place)) || talk.fits(&tokens[1..b]) == 0 {
+        return tokens;
+    }
+    led(
+        "keep exactly",
+        &tokens[0],
+        &[&tokens[..b + i], &tokens[b + i + n..]],
+    )
+}
+
+/// "three cones is not enough, we need at least six": six.
+fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "is not enough",
+            "are not enough",
+            "isnt enough",
+            "arent enough",
+            "is too few",
+            "are too few",
+            "is insufficient",
+            "are insufficient",
+            "will not do",
+            "wont do",
+            "are too many",
+            "is too many",
+            "is too much",
+            "are too much",
+            "does not suffice",
+            "do not suffice",
+            "is a lot",
+            "are a lot",
+        ],
+    ) else {
+        return tokens;
+    };
+    let np = &tokens[..i];
+    let known = is(np.first(), &["the", "these", "those", "only", "just", "my"])
+        || np.first().is_some_and(|t| number(t).is_some());
+    let rest = trimmed(&tokens[i + n..]);
+    // ("there should be eight" may follow in a sentence of its own)
+    if rest.is_empty()
+        && !np.iter().any(links)
+        && known
+        && first_noun(np).is_some_and(|x| x.0 < 4)
+        && talk.fits(bare(np)) > 0
+    {
+        return super::gifts::remark(bare(np));
+    }
+    let Some(k) = rest
+        .iter()
+        .take(6)
+        .position(|t| number(t).is_some() && !is(Some(t), &["a", "an"]))
+    else {
+        return tokens;
+    };
+    let lead = rest[..k].iter().all(|t| {
+        is(
+            Some(t),
+            &[
+                "we", "i", "need", "want", "at", "least", "make", "it", "there", "should", "be", "let", "id",
+                "like", "would", "use", "have", "rather", "give", "me", "please", "exactly", "a", "total",
+                "of", "must", "say", "only", "just", "keep", "leave",
+            ],
+        )
+    });
+    let own = first_noun(&rest[k..]);
+    let ends = rest.get(k + 1).is_none_or(|t| {
+        links(t)
+            || is(
+                Some(t),
+                &["would", "will", "are", "is", "instead", "please", "of", "should"],
+            )
+    });
+    if !known || !lead || first_noun(np).is_none_or(|x| x.0 > 4) || own.is_some() || !ends {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np)])
+}
+
+/// "the parked cars go from two to four", "the cones drop to three".
+fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let known = is(tokens.first(), &["the", "our", "my", "these", "those"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 7) else {
+        return tokens;
+    };
+    let grows = (b..tokens.len().min(b + 9)).find(|k| {
+        is(
+            tokens.get(*k),
+            &[
+                "go",
+                "goes",
+                "rise",
+                "rises",
+                "increase",
+                "increases",
+                "grow",
+                "grows",
+                "drop",
+                "drops",
+                "fall",
+                "falls",
+                "shrink",
+                "shrinks",
+                "climb",
+                "climbs",
+                "sink",
+                "sinks",
+                "decrease",
+                "decreases",
+                "reduced",
+                "increased",
+                "raised",
+                "lowered",
+                "cut",
+                "number",
+                "amount",
+                "come",
+                "limited",
+                "rising",
+                "went",
+                "gone",
+            ],
+        )
+    });
+    let Some(v) = grows else {
+        return tokens;
+    };
+    let mut k = v + 1;
+    k += usize::from(is(tokens.get(k), &["up", "down", "back"]));
+    let mut ranged = false;
+    if is(tokens.get(k), &["from"]) && tokens.get(k + 1).is_some_and(|t| number(t).is_some()) {
+        k += 2;
+        ranged = true;
+    }
+    let to = is(tokens.get(k), &["to"]);
+    let num = k + usize::from(to);
+    let num = num + usize::from(is(tokens.get(num), &["just", "only", "exactly"]));
+    let counts = is(tokens.get(v), &["number", "amount"]) && !to;
+    let many = tokens.get(num).filter(|t| number(t).is_some() && (to || counts));
+    let ends = tokens.get(num + 1).is_none_or(links);
+    let strays = is(
+        tokens.get(v),
+        &[
+            "go", "goes", "come", "went", "gone", "drop", "drops", "fall", "falls", "cut",
+        ],
+    ) && !ranged
+        && first_noun(&tokens[..b]).is_some_and(|_| !tokens[..v].iter().any(|t| text(t) == "number"));
+    let Some(many) = many.filter(|_| ends && !strays) else {
+        return tokens;
+    };
+    let mut np = tokens[..v].to_vec();
+    while np.last().is_some_and(plain_verb) {
+        np.pop();
+    }
+    let np = bare(&np).to_vec();
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    led(
+        "keep exactly",
+        &tokens[0],
+        &[std::slice::from_ref(many), &np, &tokens[num + 1..]],
+    )
 }
 
 /// "five parked cars would be better than three", "I'd rather have four on the right than two".
 fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
     let prefers = tokens.iter().any(|t| {
-        matches!(text(t), "better" | "rather" | "prefer" | "nicer" | "preferable" | "sooner" | "preferred")
+        matches!(
+            text(t),
+            "better" | "rather" | "prefer" | "nicer" | "preferable" | "sooner" | "preferred"
+        )
     });
     let found = (2..tokens.len()).find_map(|i| {
         let n = leads(&tokens[i..], &["rather than", "than", "to", "over", "instead of"])?;
         let n = n + usize::from(is(tokens.get(i + n), &["only", "just", "the"]));
         let few = tokens.get(i + n).filter(|t| number(t).is_some())?;
-        let of = leads(&tokens[i + n + 1..], &["of them", "of those", "as now", "as before"]).unwrap_or(0);
+        let of = leads(
+            &tokens[i + n + 1..],
+            &["of them", "of those", "as now", "as before"],
+        )
+        .unwrap_or(0);
         let end = i + n + 1 + of;
         (text(few) != "a" && tokens.get(end).is_none_or(links)).then_some((i, end))
     });
@@ -314,14 +683,24 @@ fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let from = tokens[..i].iter().rposition(links).map_or(0, |k| k + 1);
-    let Some(many) = (from..i).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1))) else {
+    let Some(many) =
+        (from..i).find(|k| number(&tokens[*k]).is_some() && !super::words::is_unit(tokens.get(k + 1)))
+    else {
         return tokens;
     };
     if first_noun(&tokens[from..many]).is_some() || first_noun(&tokens[many..i]).is_none_or(|x| x.0 > 4) {
         return tokens;
     }
-    let np: Vec<Token> = tokens[many + 1..i].iter().filter(|t| !plain_verb(t)).cloned().collect();
+    let np: Vec<Token> = tokens[many + 1..i]
+        .iter()
+        .filter(|t| !plain_verb(t))
+        .cloned()
+        .collect();
     let mut out = tokens[..from].to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[&tokens[many..=many], &np, &tokens[end..]]));
+    out.extend(led(
+        "keep exactly",
+        &tokens[from],
+        &[&tokens[many..=many], &np, &tokens[end..]],
+    ));
     out
 }

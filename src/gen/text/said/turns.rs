@@ -18,8 +18,16 @@ const WHEELS: &str = "everything on wheels|everything with wheels|anything on wh
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, ENGINE, "all motor vehicles");
     let out = replaced(&out, TWO_WHEELS, "all bicycles and all motorcycles");
-    let out = replaced(&out, WHEELS, "all vehicles");
-    let out = replaced(&out, "for the night|for tonight|for the day|for today|for the time being|for good", "");
+    let out = replaced(&out, WHEELS, "all vehicles and all bicycles");
+    let out = replaced(
+        &out,
+        "for the night|for tonight|for the day|for today|for the time being|for good",
+        "",
+    );
+    let out = there_instead(verb_last(out, talk));
+    let out = ordinals_in_row(out);
+    let out = became_with(out);
+    let out = out_and_in(out, talk);
     let out = on_each(out);
     let out = next_lane(out, talk);
     let out = meant(out, talk);
@@ -32,20 +40,51 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 fn opens(tokens: &[Token], i: usize) -> bool {
-    i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["and", "then", "but", "so", "please", "now"])
+    i == 0
+        || tokens[i - 1].kind != TokenKind::Word
+        || is(tokens.get(i - 1), &["and", "then", "but", "so", "please", "now"])
 }
 
 /// "a pedestrian on each of the two sidewalks": one on the left one and one on the right one.
 fn on_each(tokens: Vec<Token>) -> Vec<Token> {
     const STRIPS: &[&str] = &[
-        "sidewalks", "pavements", "sidewalk", "pavement", "footpaths", "footpath", "roadsides", "roadside", "kerbs", "kerb",
-        "curbs", "curb", "shoulders", "shoulder", "sides of the road", "sides of the street", "side of the road",
-        "side of the street", "verges", "verge",
+        "sidewalks",
+        "pavements",
+        "sidewalk",
+        "pavement",
+        "footpaths",
+        "footpath",
+        "roadsides",
+        "roadside",
+        "kerbs",
+        "kerb",
+        "curbs",
+        "curb",
+        "shoulders",
+        "shoulder",
+        "sides of the road",
+        "sides of the street",
+        "side of the road",
+        "side of the street",
+        "verges",
+        "verge",
     ];
     let found = (1..tokens.len()).find_map(|i| {
         let n = leads(
             &tokens[i..],
-            &["on each of the two", "on each of the", "on each of both", "on each", "on either", "on every", "at each", "on both of the", "at either", "along each", "along either"],
+            &[
+                "on each of the two",
+                "on each of the",
+                "on each of both",
+                "on each",
+                "on either",
+                "on every",
+                "at each",
+                "on both of the",
+                "at either",
+                "along each",
+                "along either",
+            ],
         )?;
         let m = leads(&tokens[i + n..], STRIPS)?;
         Some((i, n, m))
@@ -59,7 +98,10 @@ fn on_each(tokens: Vec<Token>) -> Vec<Token> {
     let lead = (0..a).rev().take_while(|k| {
         number(&tokens[*k]).is_some()
             || is(tokens.get(*k), &["a", "an", "another", "more", "parked", "new"])
-            || matches!(look_up(text(&tokens[*k])), Some(Sense::State(_, false) | Sense::Size(_) | Sense::Color(_)))
+            || matches!(
+                look_up(text(&tokens[*k])),
+                Some(Sense::State(_, false) | Sense::Size(_) | Sense::Color(_))
+            )
     });
     let Some(from) = lead.last() else {
         return tokens;
@@ -78,6 +120,218 @@ fn on_each(tokens: Vec<Token>) -> Vec<Token> {
     out
 }
 
+/// "truck delete, cars stay": the verb first.
+fn verb_last(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    // "bus and pickup out, please"
+    let body = trimmed(&tokens);
+    if let Some((last, nps)) = body.split_last()
+        && is(Some(last), &["out", "away", "off", "gone"])
+    {
+        let list: Vec<&[Token]> = nps
+            .split(|t| text(t) == "and" || t.kind == TokenKind::Comma)
+            .collect();
+        let named = list.len() > 1
+            && list.iter().all(|np| {
+                first_noun(np).is_some_and(|x| x.0 < 3 && x.1 == np.len())
+                    && !np.iter().any(|t| HELPERS.contains(&text(t)))
+                    && (np.len() == 1 || is(np.first(), &["the", "both", "all", "my"]))
+                    && talk.fits(np) > 0
+            });
+        if named {
+            let mut out = led("remove", last, &[]);
+            for (k, np) in list.iter().enumerate() {
+                if k > 0 {
+                    out.extend(led("and", last, &[]));
+                }
+                if np.len() == 1 {
+                    out.extend(led("the", last, &[]));
+                }
+                out.extend_from_slice(np);
+            }
+            return out;
+        }
+    }
+    let mut out: Vec<Token> = Vec::new();
+    let mut from = 0;
+    let mut found = false;
+    for i in 0..=tokens.len() {
+        let link = tokens
+            .get(i)
+            .is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"]));
+        if !link {
+            continue;
+        }
+        let part = &tokens[from..i];
+        let gone = is(part.last(), &["delete", "remove", "erase", "kill"]);
+        let stays = is(part.last(), &["stay", "stays", "remain", "remains"]);
+        let end = part
+            .len()
+            .saturating_sub(1 + usize::from(gone && part.len() > 2 && is(part.get(part.len() - 2), &["to"])));
+        let np = &part[..end];
+        let plain = first_noun(np).is_some_and(|x| x.0 < 4)
+            && !np.iter().any(|t| {
+                HELPERS.contains(&text(t)) || super::super::rephrase::is_verb(t) && !is(Some(t), &["box"])
+            })
+            && talk.fits(np) > 0;
+        let the = if is(np.first(), &["the", "all", "both", "my", "every", "that"]) {
+            ""
+        } else {
+            "the"
+        };
+        if gone && plain {
+            out.extend(led(format!("remove {the}").trim(), &part[0], &[np]));
+            found = true;
+        } else if stays && plain && !the.is_empty() && found {
+            out.extend(led("leave the", &part[0], &[np, &led("alone", &part[0], &[])]));
+        } else {
+            out.extend_from_slice(part);
+        }
+        out.extend(tokens.get(i).cloned());
+        from = i + 1;
+    }
+    if found { out } else { tokens }
+}
+
+/// "a third and a fourth car": two more cars.
+fn ordinals_in_row(tokens: Vec<Token>) -> Vec<Token> {
+    use super::super::foremost::ordinal;
+    let found = (0..tokens.len()).find_map(|i| {
+        let mut k = i;
+        let mut many = 0;
+        loop {
+            is(tokens.get(k), &["a", "an"]).then_some(())?;
+            ordinal(text(tokens.get(k + 1)?))?;
+            many += 1;
+            k += 2;
+            let and = usize::from(tokens.get(k).is_some_and(|t| t.kind == TokenKind::Comma));
+            let and = and + usize::from(is(tokens.get(k + and), &["and"]));
+            if and == 0 {
+                break;
+            }
+            k += and;
+        }
+        let (a, b) = first_noun(tokens.get(k..)?)?;
+        (many > 1 && a < 3).then_some((i, many, k, k + b))
+    });
+    let Some((i, many, k, end)) = found else {
+        return tokens;
+    };
+    let digit = Token {
+        kind: TokenKind::Number(f64::from(many)),
+        text: many.to_string(),
+        span: tokens[i].span,
+    };
+    let mut np = tokens[k..end].to_vec();
+    if let Some(last) = np.last_mut() {
+        last.text = super::super::lexicon::plural(&last.text);
+    }
+    let more = led("more", &tokens[i], &[&np]);
+    [&tokens[..i], &[digit], &more, &tokens[end..]].concat()
+}
+
+/// "turn her into a policeman with a second policeman next to him": and add one.
+fn became_with(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (3..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["with"])
+            && is(tokens.get(k + 1), &["a", "an", "another", "two"])
+            && tokens[..*k].iter().any(|t| {
+                matches!(
+                    text(t),
+                    "into" | "become" | "becomes" | "replace" | "swap" | "turn" | "be"
+                )
+            })
+            && first_noun(&tokens[k + 1..]).is_some_and(|x| x.0 < 4 && is_place(&tokens[k + 1 + x.1..]))
+            && (1..4).any(|n| super::words::noun_at(&tokens[k - n..*k]).is_some())
+            && tokens[..*k]
+                .iter()
+                .rev()
+                .take(5)
+                .any(|t| matches!(text(t), "a" | "an"))
+    });
+    match found {
+        Some(k) => [&tokens[..k], &led("and add", &tokens[k], &[&tokens[k + 1..]])].concat(),
+        None => tokens,
+    }
+}
+
+/// "two cars there instead": put there.
+fn there_instead(tokens: Vec<Token>) -> Vec<Token> {
+    let fresh =
+        is(tokens.first(), &["a", "an", "another"]) || tokens.first().is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(&tokens).filter(|x| fresh && x.0 < 4) else {
+        return tokens;
+    };
+    let n = leads(
+        &tokens[b..],
+        &[
+            "there instead",
+            "instead there",
+            "in their place",
+            "in its place",
+            "in there instead",
+            "in their stead",
+        ],
+    );
+    match n.filter(|n| b + n == tokens.len()) {
+        Some(_) => led(
+            "put",
+            &tokens[0],
+            &[&tokens[..b], &led("in their place", &tokens[0], &[])],
+        ),
+        None => tokens,
+    }
+}
+
+/// "bus away, instead two motorcycles in the same place": one for the other.
+fn out_and_in(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let gone = is(tokens.get(b), &["away", "out", "gone", "off"]);
+    let Some(comma) = (b + 1..tokens.len().min(b + 4))
+        .find(|k| tokens[*k].kind == TokenKind::Comma || is(tokens.get(*k), &["and"]))
+    else {
+        return tokens;
+    };
+    let verb =
+        super::super::rephrase::is_verb(&tokens[0]) || tokens[..b].iter().any(|t| HELPERS.contains(&text(t)));
+    if !gone || verb || talk.fits(&tokens[..b]) == 0 {
+        return tokens;
+    }
+    let mut rest = trimmed(&tokens[comma + 1..]);
+    // "cyclists off, mopeds on"
+    if first_noun(rest).is_some_and(|x| x.0 == 0 && x.1 + 1 == rest.len()) && is(rest.last(), &["on", "in"]) {
+        let all = if is(tokens.first(), &["the", "both", "all"]) {
+            "replace"
+        } else {
+            "replace all the"
+        };
+        let with = led("with", &tokens[b], &[&rest[..rest.len() - 1]]);
+        return led(all, &tokens[0], &[&tokens[..b], &with]);
+    }
+    let instead = is(rest.first(), &["instead"]);
+    rest = trimmed(&rest[usize::from(instead)..]);
+    rest = &rest[usize::from(is(rest.first(), &["a"]) && is(rest.get(1), &["new"]))..];
+    let fresh =
+        is(rest.first(), &["a", "an", "another", "new"]) || rest.first().is_some_and(|t| number(t).is_some());
+    let Some((_, e)) = first_noun(rest).filter(|x| fresh && x.0 < 4) else {
+        return tokens;
+    };
+    let tail = trimmed(&rest[e..]);
+    let same = super::predicate::in_place(tail).is_some_and(|p| p.0 == 0 && p.1 == tail.len())
+        || is(tail.first(), &["instead", "there", "in"]) && tail.len() == 1;
+    if !(same || instead && tail.is_empty()) {
+        return tokens;
+    }
+    let lead = if is(tokens.first(), &["the", "both", "all", "that"]) {
+        "replace"
+    } else {
+        "replace the"
+    };
+    let with = led("with", &tokens[b], &[&rest[..e]]);
+    led(lead, &tokens[0], &[&tokens[..b], &with])
+}
+
 fn led_after(np: &[Token], words: &str, at: &Token) -> Vec<Token> {
     let mut out = np.to_vec();
     out.extend(led(words, at, &[]));
@@ -87,10 +341,23 @@ fn led_after(np: &[Token], words: &str, at: &Token) -> Vec<Token> {
 /// "the lane next to mine": the left one, if there is one that goes our way, else the right one, else the oncoming one.
 fn next_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const NEXT: &[&str] = &[
-        "the lane next to mine", "the lane next to ours", "the lane beside mine", "the lane beside ours",
-        "the lane adjacent to mine", "the lane adjacent to ours", "the neighbouring lane", "the neighboring lane",
-        "the adjacent lane", "the lane alongside mine", "the lane alongside ours", "the lane next door",
-        "the lane next to my own", "the lane next to me", "the lane next to us", "the lane beside me", "the lane beside us",
+        "the lane next to mine",
+        "the lane next to ours",
+        "the lane beside mine",
+        "the lane beside ours",
+        "the lane adjacent to mine",
+        "the lane adjacent to ours",
+        "the neighbouring lane",
+        "the neighboring lane",
+        "the adjacent lane",
+        "the lane alongside mine",
+        "the lane alongside ours",
+        "the lane next door",
+        "the lane next to my own",
+        "the lane next to me",
+        "the lane next to us",
+        "the lane beside me",
+        "the lane beside us",
     ];
     let Some((i, n)) = find(&tokens, NEXT) else {
         return tokens;
@@ -116,7 +383,26 @@ fn next_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn meant(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(n) = leads(
         &tokens,
-        &["i meant", "i mean", "we meant", "i said", "it should be", "it should have been", "it was supposed to be", "it has to be", "it must be", "that should be", "that should have been", "i wanted", "i asked for", "make it", "make that", "it is", "its", "that is"],
+        &[
+            "i meant",
+            "i mean",
+            "we meant",
+            "i said",
+            "it should be",
+            "it should have been",
+            "it was supposed to be",
+            "it has to be",
+            "it must be",
+            "that should be",
+            "that should have been",
+            "i wanted",
+            "i asked for",
+            "make it",
+            "make that",
+            "it is",
+            "its",
+            "that is",
+        ],
     ) else {
         return tokens;
     };
@@ -136,7 +422,11 @@ fn meant(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((c, d)) = first_noun(old).filter(|x| x.0 < 4) else {
         return tokens;
     };
-    let rest: Vec<Token> = old[d..].iter().filter(|t| t.kind != TokenKind::Comma).cloned().collect();
+    let rest: Vec<Token> = old[d..]
+        .iter()
+        .filter(|t| t.kind != TokenKind::Comma)
+        .cloned()
+        .collect();
     if talk.fits(&old[c..d]) == 0 || has_noun(&rest) {
         return tokens;
     }
@@ -149,10 +439,28 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((i, n)) = find(
         &tokens,
         &[
-            "i dont want a", "i do not want a", "we dont want a", "we do not want a", "i dont want the", "i do not want the",
-            "i no longer want a", "i no longer want the", "we no longer want a", "i dont need a", "we dont need a",
-            "there should no longer be a", "there should not be a", "there shouldnt be a", "there must not be a",
-            "not a", "i dont want to see a", "there should be no longer a", "there should be not a", "no longer a", "no more",
+            "i dont want a",
+            "i do not want a",
+            "we dont want a",
+            "we do not want a",
+            "i dont want the",
+            "i do not want the",
+            "i no longer want a",
+            "i no longer want the",
+            "we no longer want a",
+            "i dont need a",
+            "we dont need a",
+            "there should no longer be a",
+            "there should not be a",
+            "there shouldnt be a",
+            "there must not be a",
+            "not a",
+            "no",
+            "i dont want to see a",
+            "there should be no longer a",
+            "there should be not a",
+            "no longer a",
+            "no more",
         ],
     ) else {
         return tokens;
@@ -166,6 +474,19 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let between = trimmed(&old[b + late..but]);
+    let helped = between.iter().position(|t| {
+        !HELPERS.contains(&text(t)) && !is(Some(t), &["wait", "stand", "drive", "park", "ride"])
+    });
+    let between = if is(tokens.get(i), &["no"]) {
+        trimmed(&between[helped.unwrap_or(between.len())..])
+    } else {
+        between
+    };
+    if is(tokens.get(i), &["no"])
+        && !(between.is_empty() || is(between.first(), &["there", "here"]) || is_place(between))
+    {
+        return tokens;
+    }
     let fresh = is(old.get(but + 1), &["a", "an"]) || old.get(but + 1).is_some_and(|t| number(t).is_some());
     let Some((_, e)) = first_noun(&old[but + 1..]).filter(|x| fresh && x.0 < 4) else {
         return tokens;
@@ -173,12 +494,26 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let end = but + 1 + e;
     let more = trimmed(&old[end..]);
     // "not a motorcycle but a van should be following us"
-    let helped = more.iter().take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["to", "now"])).count();
+    let helped = more
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["to", "now"]))
+        .count();
     let more = &more[helped..];
     let lead = trimmed(&tokens[..i]);
     let place = if is_place(lead) && first_noun(lead).is_none() {
         lead
-    } else if lead.is_empty() || leads(lead, &["there should be", "there must be", "it should be", "make it", "i want"]) == Some(lead.len()) {
+    } else if lead.is_empty()
+        || leads(
+            lead,
+            &[
+                "there should be",
+                "there must be",
+                "it should be",
+                "make it",
+                "i want",
+            ],
+        ) == Some(lead.len())
+    {
         if is_place(between) { between } else { more }
     } else {
         return tokens;
@@ -198,17 +533,43 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn appears(tokens: Vec<Token>) -> Vec<Token> {
     let mut out = tokens;
     for i in 1..out.len() {
-        let comes = is(out.get(i), &["appear", "appears", "emerge", "emerges", "materialise", "materialises", "arrive", "arrives"]);
+        let comes = is(
+            out.get(i),
+            &[
+                "appear",
+                "appears",
+                "emerge",
+                "emerges",
+                "materialise",
+                "materialises",
+                "arrive",
+                "arrives",
+            ],
+        );
         if !comes || !(is_place(&out[i + 1..]) || out.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word)) {
             continue;
         }
-        let from = out[..i].iter().rposition(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || is(Some(t), &["and", "but", "then"])).map_or(0, |k| k + 1);
+        let from = out[..i]
+            .iter()
+            .rposition(|t| {
+                t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_))
+                    || is(Some(t), &["and", "but", "then"])
+            })
+            .map_or(0, |k| k + 1);
         let clause = &out[from..i];
-        let fresh = is(clause.first(), &["a", "an", "another", "some"]) || clause.first().is_some_and(|t| number(t).is_some());
-        if !fresh || first_noun(clause).is_none_or(|x| x.0 > 4) || clause.iter().any(|t| HELPERS.contains(&text(t))) {
+        let fresh = is(clause.first(), &["a", "an", "another", "some"])
+            || clause.first().is_some_and(|t| number(t).is_some());
+        if !fresh
+            || first_noun(clause).is_none_or(|x| x.0 > 4)
+            || clause.iter().any(|t| HELPERS.contains(&text(t)))
+        {
             continue;
         }
-        let be = if is_place(&out[i + 1..]) { "should be" } else { "should be there" };
+        let be = if is_place(&out[i + 1..]) {
+            "should be"
+        } else {
+            "should be there"
+        };
         let be = led(be, &out[i], &[]);
         out.splice(i..=i, be);
         return appears(out);
@@ -221,7 +582,8 @@ fn where_another(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find(|i| {
         is(tokens.get(*i), &["where"])
             && tokens[i - 1].kind == TokenKind::Comma
-            && (is(tokens.get(i + 1), &["a", "an", "another", "some"]) || tokens.get(i + 1).is_some_and(|t| number(t).is_some()))
+            && (is(tokens.get(i + 1), &["a", "an", "another", "some"])
+                || tokens.get(i + 1).is_some_and(|t| number(t).is_some()))
     });
     let Some(i) = found else {
         return tokens;
@@ -231,12 +593,17 @@ fn where_another(tokens: Vec<Token>) -> Vec<Token> {
     };
     // the place that was named last
     let place = (0..i - 1).rev().find(|k| {
-        is(tokens.get(*k), &["to", "on", "in", "onto", "into", "at", "behind", "near", "beside"]) && is_place(&tokens[*k..])
+        is(
+            tokens.get(*k),
+            &["to", "on", "in", "onto", "into", "at", "behind", "near", "beside"],
+        ) && is_place(&tokens[*k..])
     });
     let Some(place) = place else {
         return tokens;
     };
-    let close = (i + 1 + b..tokens.len()).find(|k| tokens[*k].kind != TokenKind::Word).unwrap_or(tokens.len());
+    let close = (i + 1 + b..tokens.len())
+        .find(|k| tokens[*k].kind != TokenKind::Word)
+        .unwrap_or(tokens.len());
     let at = match text(&tokens[place]) {
         "to" | "onto" => "on",
         "into" => "in",
@@ -259,13 +626,28 @@ fn dropped(tokens: Vec<Token>) -> Vec<Token> {
         let end = if pronoun {
             i + 2
         } else {
-            match first_noun(&out[i + 1..]).filter(|x| x.0 < 4 && is(out.get(i + 1), &["the", "both", "that", "my"])) {
+            match first_noun(&out[i + 1..])
+                .filter(|x| x.0 < 4 && is(out.get(i + 1), &["the", "both", "that", "my"]))
+            {
                 Some((_, b)) => i + 1 + b,
                 None => continue,
             }
         };
         let rest = &out[end..];
-        let back = leads(rest, &["back to", "back by", "back behind", "back into", "to", "into", "onto", "back"]).is_some();
+        let back = leads(
+            rest,
+            &[
+                "back to",
+                "back by",
+                "back behind",
+                "back into",
+                "to",
+                "into",
+                "onto",
+                "back",
+            ],
+        )
+        .is_some();
         if back || pronoun && is_place(rest) && !is(rest.first(), &["out", "off", "away"]) {
             out[i].text = "move".into();
         }
@@ -278,7 +660,10 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
     for i in 0..tokens.len() {
         let verb = is(
             tokens.get(i),
-            &["leave", "cut", "cross", "rub", "rule", "strike", "edit", "crop", "weed", "filter", "pick", "throw", "kick", "chuck", "toss", "boot", "sort"],
+            &[
+                "leave", "cut", "cross", "rub", "rule", "strike", "edit", "crop", "weed", "filter", "pick",
+                "throw", "kick", "chuck", "toss", "boot", "sort",
+            ],
         );
         if !verb || !opens(&tokens, i) {
             continue;
@@ -291,7 +676,14 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
                 None => continue,
             }
         };
-        let out = is(tokens.get(end), &["out"]) && tokens.get(end + 1).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "too", "entirely", "completely", "altogether"]));
+        let out = is(tokens.get(end), &["out"])
+            && tokens.get(end + 1).is_none_or(|t| {
+                t.kind != TokenKind::Word
+                    || is(
+                        Some(t),
+                        &["and", "please", "too", "entirely", "completely", "altogether"],
+                    )
+            });
         if out {
             let remove = led("remove", &tokens[i], &[&tokens[i + 1..end]]);
             return [&tokens[..i], &remove, &tokens[end + 1..]].concat();
@@ -303,9 +695,26 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
 /// "the second car should be a van, and the third one a bus": the verb again.
 fn same_verb(tokens: Vec<Token>) -> Vec<Token> {
     const VERBS: &[&str] = &[
-        "should be", "should become", "becomes", "become", "should turn into", "turns into", "must be", "shall be",
-        "is to be", "ought to be", "has to be", "should be replaced by", "should be replaced with", "is replaced by",
-        "is replaced with", "should change into", "changes into", "is now", "can be", "could be",
+        "should be",
+        "should become",
+        "becomes",
+        "become",
+        "should turn into",
+        "turns into",
+        "must be",
+        "shall be",
+        "is to be",
+        "ought to be",
+        "has to be",
+        "should be replaced by",
+        "should be replaced with",
+        "is replaced by",
+        "is replaced with",
+        "should change into",
+        "changes into",
+        "is now",
+        "can be",
+        "could be",
     ];
     let Some((v, n)) = find(&tokens, VERBS).filter(|x| x.0 > 0) else {
         return tokens;
@@ -317,10 +726,21 @@ fn same_verb(tokens: Vec<Token>) -> Vec<Token> {
         (is(tokens.get(k), &["and"]) || tokens[k].kind == TokenKind::Comma).then_some(())?;
         let the = k + 1 + usize::from(is(tokens.get(k + 1), &["and"]));
         is(tokens.get(the), &["the", "that"]).then_some(())?;
-        let fresh = (the + 2..tokens.len().min(the + 6)).find(|j| is(tokens.get(*j), &["a", "an"]))?;
+        let places = is_place(&tokens[v + n..]);
+        let fresh = (the + 2..tokens.len().min(the + 6)).find(|j| {
+            is(tokens.get(*j), &["a", "an"])
+                || places && is_place(&tokens[*j..]) && super::words::noun_at(&tokens[j - 1..*j]).is_some()
+        })?;
+        let placed = is_place(&tokens[fresh..]);
         let who = &tokens[the..fresh];
-        let plain = who.iter().all(|t| t.kind == TokenKind::Word && !HELPERS.contains(&text(t)) && !super::words::is_finite(text(t), false));
-        (plain && first_noun(&tokens[fresh..]).is_some_and(|x| x.0 < 4)).then_some((the, fresh))
+        let plain = who.iter().all(|t| {
+            t.kind == TokenKind::Word
+                && !HELPERS.contains(&text(t))
+                && !super::words::is_finite(text(t), false)
+        });
+        let verb_after = tokens[fresh..].iter().any(|t| HELPERS.contains(&text(t)));
+        (plain && (placed && !verb_after || first_noun(&tokens[fresh..]).is_some_and(|x| x.0 < 4)))
+            .then_some((the, fresh))
     });
     let Some((the, fresh)) = second else {
         return tokens;

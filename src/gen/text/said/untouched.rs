@@ -171,7 +171,22 @@ fn edge(t: Option<&Token>) -> bool {
 /// "neither the van nor the people should be touched".
 fn neither(tokens: &[Token]) -> Option<usize> {
     is(tokens.first(), &["neither"]).then_some(())?;
-    let (i, n) = find(tokens, &["be touched", "be changed", "be moved", "be altered", "be affected", "change", "changes", "move", "be removed", "be harmed", "be disturbed"])?;
+    let (i, n) = find(
+        tokens,
+        &[
+            "be touched",
+            "be changed",
+            "be moved",
+            "be altered",
+            "be affected",
+            "change",
+            "changes",
+            "move",
+            "be removed",
+            "be harmed",
+            "be disturbed",
+        ],
+    )?;
     let end = i + n;
     (find(&tokens[..i], &["nor"]).is_some() && edge(tokens.get(end))).then_some(end)
 }
@@ -193,9 +208,20 @@ fn phrase(tokens: &[Token]) -> Option<usize> {
         k += 1;
     }
     // "but keep everything else"
-    let kept = is(tokens.get(n.wrapping_sub(1)), &["keep", "leave", "let", "keeping", "leaving"])
-        && leads(&tokens[n..], &["everything else", "all else", "all the rest", "the rest", "the other things"])
-            .is_some_and(|m| n + m == k)
+    let kept = is(
+        tokens.get(n.wrapping_sub(1)),
+        &["keep", "leave", "let", "keeping", "leaving"],
+    ) && leads(
+        &tokens[n..],
+        &[
+            "everything else",
+            "all else",
+            "all the rest",
+            "the rest",
+            "the other things",
+        ],
+    )
+    .is_some_and(|m| n + m == k)
         && edge(tokens.get(k));
     if kept {
         return Some(k);
@@ -247,16 +273,26 @@ pub fn cut(tokens: &[Token]) -> Vec<Token> {
         let only = leads(
             rest,
             &[
-                "only that", "except that", "just that", "save that", "but that", "except", "only", "just",
-                "with the exception that", "other than that",
+                "only that",
+                "except that",
+                "just that",
+                "save that",
+                "but that",
+                "except",
+                "only",
+                "just",
+                "with the exception that",
+                "other than that",
             ],
         )
         .filter(|n| {
             super::words::first_noun(&rest[*n..]).is_some_and(|x| {
-                x.0 < 5 && rest[n + x.1..].iter().any(|t| {
-                    super::words::is_finite(super::words::text(t), true) && !is(Some(t), &["stay", "stays", "remain", "remains"])
-                        || is(Some(t), &["should", "must", "is", "shall"])
-                })
+                x.0 < 5
+                    && rest[n + x.1..].iter().any(|t| {
+                        super::words::is_finite(super::words::text(t), true)
+                            && !is(Some(t), &["stay", "stays", "remain", "remains"])
+                            || is(Some(t), &["should", "must", "is", "shall"])
+                    })
             })
         });
         trimmed(&rest[only.unwrap_or(0)..]).to_vec()

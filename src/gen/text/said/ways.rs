@@ -298,7 +298,9 @@ pub fn turned(main: &[Token], parts: &[&Part]) -> Option<Turn> {
     let shows = |list: &[&str]| main.iter().any(|t| list.contains(&text(t)));
     if ego
         && shows(&["back", "backs", "rear", "tail"])
-        && shows(&["to", "towards", "toward", "on", "at", "show", "shows", "showing", "shown", "presents", "offers"])
+        && shows(&[
+            "to", "towards", "toward", "on", "at", "show", "shows", "showing", "shown", "presents", "offers",
+        ])
         && !shows(&["face", "front"])
     {
         return Some(Turn::FromEgo);

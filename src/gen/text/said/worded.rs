@@ -354,7 +354,8 @@ fn lifted(tokens: Vec<Token>) -> Vec<Token> {
     if !off || !place || put <= end {
         return tokens;
     }
-    let mut out = led("put", &tokens[0], &[&tokens[1..end]]);
+    let any = is(tokens.get(1), &["any"]);
+    let mut out = led(if any { "move" } else { "put" }, &tokens[0], &[&tokens[1..end]]);
     out.extend_from_slice(&tokens[put + 2..]);
     out
 }

@@ -75,7 +75,7 @@ pub const NOUNS: &[Noun] = &[
     noun(
         &[Car],
         "van|minivan|mini mpv|transporter van|tradesmans van|plumbers van|electricians van|bakery van|laundry van|florists van|parcel delivery van|courier vehicle|delivery vehicle|parcel carrier|dormobile|combi van|combi|kombi|vw camper|camping van|camper bus|rescue van|paramedic van|patrol van|prison van|police transporter|minivan taxi|van taxi|shuttle van|window van|panelled van|light commercial vehicle|lcv|commercial van|ice van|catering van|rental van|hire van|cash in transit van|news van|tv van|broadcast van|sprinter van|ford transit|transit connect|caddy|kangoo|vivaro|ducato|ambulence|ambulance car|emergency ambulance|medical van|rescue vehicle|ambulance van|police van|transit|box van|bread van|milk float|minibus taxi|vw bus|security van|luton|courier van|parcel van|high roof van|people mover|ice cream truck van|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
-         delivery van|postal van|mail van|work van|builders van|transporter|sprinter|ambulance",
+         delivery van|postal van|mail van|work van|builders van|transporter|sprinter",
     )
     .sized(5.4, 2.1, 2.4),
     noun(
@@ -89,6 +89,7 @@ pub const NOUNS: &[Noun] = &[
          haulage truck|logging truck|mail truck|ups truck|dhl truck|fedex truck|parcel truck|snow plough|snowplow|snow plow|gritter|\
          street sweeper|road sweeper|transport truck|luton van|wheeler|tonner|milk lorry|coal lorry|removal truck|trucl|lorrie/lorries",
     ),
+    noun(&[Truck], "ambulance").sized(6.0, 2.2, 2.6),
     noun(&[Truck], "pickup|pick up|pickup truck|pick up truck|ute|bakkie").sized(5.6, 2.1, 1.9),
     noun(
         &[Bus],
@@ -133,7 +134,7 @@ pub const NOUNS: &[Noun] = &[
          parent|businessman/businessmen|businesswoman/businesswomen|businessperson|office worker|postman/postmen|mailman/mailmen|mail carrier|\
          delivery man/delivery men|delivery person|courier|dog walker|hiker|stroller|jaywalker|someone|somebody|figure|foot traffic|folk|folks|individual|\
          stranger|firefighter|fireman/firemen|fire fighter|paramedic|surveyor|flagger|hitchhiker|drunk|beggar|local|resident|neighbour|neighbor|\
-         driver|rider|dad with a pram|walkers|rambler|pedlar|toddlers|crossing warden|refuse collector|dustman/dustmen|bin man/bin men|binman/binmen|roadworker|lollipop man/lollipop men|labourers|tradesman/tradesmen|businesspeople/businesspeople|policeperson|police officer|constable|patrolman/patrolmen|schoolteacher|couple of people/couple of people|oap|fella|gent|teenage boy|teenage girl|bride|priest|nun|monk|chef|barista|reporter|journalist|evangelist|farmer|carpenter|plumber|electrician|mechanic|foreman/foremen|homeless person|homeless man|drunkard|party goer|partygoer|reveller|clubber|cop on foot|passenger|waiting passenger|pedestrain|pedestian|pedestrianss|ppl",
+         driver|rider|parking warden|parking attendant|parking inspector|parking officer|meter maid|dad with a pram|walkers|rambler|pedlar|toddlers|crossing warden|refuse collector|dustman/dustmen|bin man/bin men|binman/binmen|roadworker|lollipop man/lollipop men|labourers|tradesman/tradesmen|businesspeople/businesspeople|policeperson|police officer|constable|patrolman/patrolmen|schoolteacher|couple of people/couple of people|oap|fella|gent|teenage boy|teenage girl|bride|priest|nun|monk|chef|barista|reporter|journalist|evangelist|farmer|carpenter|plumber|electrician|mechanic|foreman/foremen|homeless person|homeless man|drunkard|party goer|partygoer|reveller|clubber|cop on foot|passenger|waiting passenger|pedestrain|pedestian|pedestrianss|ppl",
     ),
     noun(&[Pedestrian], "jogger|runner|sprinter|marathon runner|long distance runner|fitness runner|trail runner|fun runner").state(ObjectState::Moving),
     noun(&[Pedestrian], "child/children|grandchild/grandchildren|grandson|granddaughter|nephew|niece|kid|schoolkids|small child/small children|young child/young children|little child/little children|little kid|small boy|small girl|young boy|young girl|nipper|tot|tiny tot|toddler boy|kiddo|kiddie|preschooler|kindergartner|nursery child/nursery children|bairn|brat|minor|tween|preteen|first grader|school pupil|primary school child/primary school children|elementary school child|schoolmate|playing child/playing children|school boy|school girl|school kid|boy|girl|toddler|schoolchild/schoolchildren|schoolkid|schoolboy|schoolgirl|school child/school children|pupil|youngster|little boy|little girl|infant").sized(0.5, 0.5, 1.25),

@@ -61,8 +61,6 @@ pub fn sides() -> Vec<(&'static [R], String)> {
                     " hand side",
                     " flank",
                     " hand",
-                    " hand edge",
-                    " edge",
                     " of me",
                     " of us",
                     " of the ego",

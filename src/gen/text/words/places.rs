@@ -70,7 +70,7 @@ pub const PLACES: &[(Anchor, Option<Road>, &str)] = &[
     (
         Anchor::Crossing,
         None,
-        "crosswalk|stripes|white stripes|zebra crossing|zebra crosswalk|zebra crossings stripes|zebra markings|striped crossing|white stripes|striped crosswalk|marked crossing|marked crosswalk|painted crossing|crossing point|crossing place|crossing area|toucan crossing|crossing for pedestrians|pedestrian zebra|pedestrian cross walk|ped xing|pedestrian xing|xing|foot crosswalk|footpath crossing|signalised crossing|signalized crossing|light controlled crossing|pedestrian passage|pedestrian lights crossing|zebras|zebra strip|zebra striped crossing|crossing stripes|crosswalk stripes|pedestrian stripes|crosswlk|crossswalk|zebracrossing|walkover|pedestrian crossing|zebra|pelican crossing|cross walk|zebra stripes|crossing|ped crossing|foot crossing|puffin crossing|pedestrian crosswalk|zebra cross|school crossing|croswalk",
+        "crosswalk|pedestrian lights|pedestrian light|pedestrian signal|pedestrian signals|ped lights|stripes|white stripes|zebra crossing|zebra crosswalk|zebra crossings stripes|zebra markings|striped crossing|white stripes|striped crosswalk|marked crossing|marked crosswalk|painted crossing|crossing point|crossing place|crossing area|toucan crossing|crossing for pedestrians|pedestrian zebra|pedestrian cross walk|ped xing|pedestrian xing|xing|foot crosswalk|footpath crossing|signalised crossing|signalized crossing|light controlled crossing|pedestrian passage|pedestrian lights crossing|zebras|zebra strip|zebra striped crossing|crossing stripes|crosswalk stripes|pedestrian stripes|crosswlk|crossswalk|zebracrossing|walkover|pedestrian crossing|zebra|pelican crossing|cross walk|zebra stripes|crossing|ped crossing|foot crossing|puffin crossing|pedestrian crosswalk|zebra cross|school crossing|croswalk",
     ),
     (
         Anchor::Junction,
@@ -261,7 +261,7 @@ pub const FIXED: &[(R, Anchor, &str)] = &[
     (
         R::WaitingAt,
         Anchor::Crossing,
-        "waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street",
+        "want to cross|would like to cross|wish to cross|wishing to cross|want to cross the road|want to cross the street|want to get across|waiting to cross|waits to cross|wait to cross|wanting to cross|about to cross over|waiting to cross over|ready to cross|wants to cross|waiting to cross the road|waiting to cross the street|waits to cross the road|waits to cross the street|wait to cross the road|wait to cross the street|about to cross the road|about to cross the street|wants to cross the road|wants to cross the street|waiting to cross my lane|ready to cross the road|ready to cross the street",
     ),
     (
         R::On,

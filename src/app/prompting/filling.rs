@@ -1,0 +1,207 @@
+//! What memory fills in where a prompt leaves something open, and what it says of that.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::How;
+use crate::app::memory::own_scenes;
+use crate::generation::placement::facts::{self, RoadKind};
+use crate::generation::placement::memory::{Entry, Memory, Open, RoadRef};
+use crate::generation::text::description::{
+    Became, Count, Description, Environment, ObjectSpec, Phrase, TimeOfDay, Weather,
+};
+use crate::generation::text::lexicon::{Sense, look_up};
+use crate::generation::text::tokens::Span;
+use crate::scene::Class;
+use crate::scene::graph::ObjectState;
+
+/// Most objects that memory adds.
+const MOST_REMEMBERED: usize = 14;
+
+/// What came from memory.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Remembered {
+    /// The nearest scenes: what a person would say of each, and how near (cosine).
+    pub scenes: Vec<(String, f64)>,
+    /// What was filled in, in words.
+    pub filled: Vec<String>,
+    /// True if the road is a remembered one.
+    pub road: bool,
+    /// The nearest of them, whole.
+    #[serde(skip)]
+    pub nearest: Option<Entry>,
+}
+
+pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
+    let bundled = Memory::bundled()?;
+    let Some(folder) = &how.own_scenes else {
+        return Ok((bundled, Vec::new()));
+    };
+    let (own, problems) = own_scenes(folder);
+    Ok((Arc::new(bundled.with(own)), problems))
+}
+
+/// Fills what a description leaves open from the nearest scenes; the road that they propose.
+pub(super) fn fill_in(
+    memory: &Memory,
+    prompt: &str,
+    d: &mut Description,
+    seed: u64,
+) -> Option<(Remembered, RoadRef)> {
+    let mut counts: BTreeMap<Class, usize> = BTreeMap::new();
+    for o in &d.foreground {
+        // "seven vehicles" counts every class that the word may mean.
+        let all: &[Class] = match look_up(&o.noun) {
+            Some(Sense::Noun(noun, _)) => noun.classes,
+            _ => &[],
+        };
+        all.iter().chain([&o.class]).for_each(|c| {
+            counts.entry(*c).or_insert(0);
+        });
+        *counts.entry(o.class).or_insert(0) += o.count.n as usize;
+    }
+    for class in d.absent.iter().flat_map(|a| &a.classes) {
+        counts.entry(*class).or_insert(0);
+    }
+    let open = Open {
+        text: prompt.to_string(),
+        road: d.road.kind.and_then(|k| RoadKind::of_template(k.name())),
+        environment: d.environment.map(environment),
+        night: d.time_of_day.map(|t| t == TimeOfDay::Night),
+        weather: d.weather.and_then(weather_index),
+        counts,
+    };
+    let proposal = memory.fill_in(&open, seed)?;
+    let mut filled = Vec::new();
+    if d.time_of_day.is_none() {
+        d.time_of_day = Some(if proposal.night {
+            TimeOfDay::Night
+        } else {
+            TimeOfDay::Day
+        });
+        filled.push(format!("time: {}", d.time_of_day.map_or("", TimeOfDay::name)));
+    }
+    if d.weather.is_none() {
+        d.weather = [
+            Weather::Clear,
+            Weather::Overcast,
+            Weather::Rain,
+            Weather::Snow,
+            Weather::Fog,
+        ]
+        .get(proposal.weather)
+        .copied();
+        filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
+    }
+    // A prompt that says how busy it is, or that this is all, leaves nothing of that open.
+    let said = prompt.to_lowercase();
+    let closed = [
+        "only",
+        "nothing but",
+        "nothing else",
+        "no one else",
+        "alone",
+        "just",
+        "exactly",
+        "lone",
+        "empty",
+        "deserted",
+    ]
+    .iter()
+    .any(|w| said.contains(w));
+    let mut room = if d.density.is_some() || closed {
+        0
+    } else {
+        MOST_REMEMBERED
+    };
+    for (class, by_state) in &proposal.counts {
+        for (n, state) in
+            by_state
+                .iter()
+                .zip([ObjectState::Moving, ObjectState::Parked, ObjectState::Waiting])
+        {
+            let n = (*n).min(room);
+            if n == 0 {
+                continue;
+            }
+            room -= n;
+            let word = format!("{state:?}").to_lowercase();
+            filled.push(format!("{n} x {} ({word})", class.label()));
+            d.foreground.push(ObjectSpec {
+                class: *class,
+                noun: class.label(),
+                count: Count::exactly(n as u32),
+                state: Some(state),
+                size: None,
+                color: None,
+                attributes: vec!["from memory".into()],
+                size_m: None,
+                relations: Vec::new(),
+                span: Span { start: 0, end: 0 },
+            });
+        }
+    }
+    let scenes = proposal
+        .from
+        .iter()
+        .map(|r| (memory.entries()[r.entry].text.clone(), r.similarity))
+        .collect();
+    Some((
+        Remembered {
+            scenes,
+            filled,
+            road: false,
+            nearest: proposal.from.first().map(|r| memory.entries()[r.entry].clone()),
+        },
+        proposal.road,
+    ))
+}
+
+/// What memory would put into a description; none without its weights.
+pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Remembered> {
+    let (memory, _) = memory(&How::default()).ok()?;
+    let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed)?;
+    Some(found)
+}
+
+/// Chips for what memory put in.
+pub fn remembered_phrases(d: &Description) -> Vec<Phrase> {
+    let from_memory = |o: &ObjectSpec| o.attributes.iter().any(|a| a == "from memory");
+    d.foreground
+        .iter()
+        .enumerate()
+        .filter(|(_, o)| from_memory(o))
+        .map(|(i, o)| Phrase {
+            span: o.span,
+            text: format!("{} {}", o.count.n, o.noun),
+            became: Became::Object(i),
+            meaning: "from memory".into(),
+        })
+        .collect()
+}
+
+fn environment(e: Environment) -> facts::Environment {
+    match e {
+        Environment::Downtown | Environment::Urban => facts::Environment::Downtown,
+        Environment::Suburban => facts::Environment::Suburban,
+        Environment::Residential => facts::Environment::Residential,
+        Environment::Rural => facts::Environment::Rural,
+        Environment::Highway => facts::Environment::Highway,
+        Environment::Industrial => facts::Environment::Industrial,
+        Environment::Nature => facts::Environment::Nature,
+    }
+}
+
+fn weather_index(w: Weather) -> Option<usize> {
+    [
+        Weather::Clear,
+        Weather::Overcast,
+        Weather::Rain,
+        Weather::Snow,
+        Weather::Fog,
+    ]
+    .iter()
+    .position(|x| *x == w)
+}
