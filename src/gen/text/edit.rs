@@ -122,6 +122,7 @@ pub(super) struct Editor<'a> {
     pub(super) last: Vec<BoxId>,    // what was spoken of last
     part_of: Vec<BoxId>,            // those that the last ones were picked from
     pub(super) gone: Vec<SceneBox>, // what was taken away last
+    pub(super) left: Vec<SceneBox>, // where what was moved last had stood
     pub(super) out: EditReading,
 }
 
@@ -137,6 +138,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         last: Vec::new(),
         part_of: Vec::new(),
         gone: Vec::new(),
+        left: Vec::new(),
         out: EditReading::default(),
     };
     if text.len() > LONGEST {
@@ -222,6 +224,7 @@ impl Editor<'_> {
                 yaw_rad,
             } => {
                 if let Some(b) = self.boxes.get_mut(id) {
+                    self.left.push(*b);
                     let turn = yaw_rad - b.yaw_rad;
                     b.center_m = *center_m;
                     b.yaw_rad = *yaw_rad;
@@ -249,7 +252,10 @@ impl Editor<'_> {
         if self.style_of(c) {
             done.push("style".to_string());
         }
-        if matches!(c.verb, Verb::Remove | Verb::Clear) {
+        if !matches!(c.verb, Verb::Add | Verb::Note) {
+            self.left.clear();
+        }
+        if matches!(c.verb, Verb::Remove | Verb::Clear | Verb::Move) {
             self.gone.clear();
         }
         match c.verb {
@@ -294,7 +300,9 @@ impl Editor<'_> {
                     .into_iter()
                     .filter(|id| self.boxes.contains_key(id))
                     .collect();
-                let added = if c.in_place && !self.gone.is_empty() {
+                let added = if c.in_place && self.put_in_place(c) {
+                    true
+                } else if c.in_place && !(self.gone.is_empty() && self.left.is_empty()) {
                     self.add_in_place(d)
                 } else if c.in_place && !there.is_empty() {
                     self.replace_all(&there, c);
@@ -309,7 +317,14 @@ impl Editor<'_> {
                 if added {
                     done.push("added".into());
                 }
-                if !c.reading.description.absent.is_empty() {
+                // ("neither cones nor anything else stands ahead of us" speaks of a place)
+                let all = c.implied && c.reading.description.absent.iter().any(|a| a.classes.len() > 6);
+                let placed = [" in ", " on ", " ahead", " behind", " left", " right"]
+                    .iter()
+                    .any(|w| text.contains(w));
+                if all && placed {
+                    self.note(format!("{:?}: what should go was not understood", c.text));
+                } else if !c.reading.description.absent.is_empty() {
                     self.take_absent(&c.reading.description);
                     done.push("removed".into());
                 }
@@ -600,6 +615,10 @@ impl Editor<'_> {
             return true;
         }
         if !m.uncounted {
+            // "the four people are friends of mine": a remark
+            if c.implied && m.definite {
+                return false;
+            }
             self.keep(c);
             return true;
         }

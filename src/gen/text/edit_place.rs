@@ -285,7 +285,11 @@ impl Editor<'_> {
         let Some(spec) = d.foreground.first() else {
             return false;
         };
-        let spots: Vec<SceneBox> = self.gone.clone();
+        let spots: Vec<SceneBox> = if self.left.is_empty() {
+            self.gone.clone()
+        } else {
+            std::mem::take(&mut self.left)
+        };
         let mut rest = spec.count.n as usize;
         self.last.clear();
         for old in spots.iter().take(rest) {
@@ -313,6 +317,41 @@ impl Editor<'_> {
         });
         self.last.extend(done.iter());
         added || !done.is_empty()
+    }
+
+    /// "the motorcycle takes its place": what is there already is moved to where another has stood.
+    pub(super) fn put_in_place(&mut self, c: &super::edit_grammar::Command) -> bool {
+        let ([old], [m]) = (
+            if self.left.is_empty() {
+                &self.gone[..]
+            } else {
+                &self.left[..]
+            },
+            c.targets.as_slice(),
+        ) else {
+            return false;
+        };
+        if !m.definite {
+            return false;
+        }
+        let super::select::Chosen::These(ids) = super::select::choose(&self.map, &self.boxes, m, &c.mentions)
+        else {
+            return false;
+        };
+        let (old, [id]) = (*old, ids.as_slice()) else {
+            return false;
+        };
+        let Some(b) = self.boxes.get(id).filter(|b| b.id != old.id) else {
+            return false;
+        };
+        let center_m = old.center_m.truncate().extend(b.center_m.z);
+        self.push(TextEdit::Move {
+            id: *id,
+            center_m,
+            yaw_rad: old.yaw_rad,
+        });
+        self.last = vec![*id];
+        true
     }
 
     /// The strip or lane that a box stands in, as a relation.

@@ -122,6 +122,15 @@ impl Editor<'_> {
             && c.targets
                 .iter()
                 .all(|m| m.uncounted && m.plural && !m.is_anchor && alike(m));
-        again || c.implied && (theirs || part || remark || c.targets.iter().all(named))
+        // "barriers cost money", "one is still to come": a remark on what is there
+        let told = |m: &Mention| {
+            let stays = [" left", " remain", " still", " enough", "where "]
+                .iter()
+                .any(|w| words.contains(w));
+            let bare = m.uncounted && m.plural && m.pick.is_none();
+            m.spec.relations.is_empty() && alike(m) && (bare || stays)
+        };
+        let told = !c.in_place && !ordered && c.targets.iter().all(told);
+        again || c.implied && (theirs || part || remark || told || c.targets.iter().all(named))
     }
 }

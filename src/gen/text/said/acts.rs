@@ -164,6 +164,14 @@ pub fn acts(
     let first = *said.first()?;
     if let Some(n) = first.begins(&BECOMES).filter(|n| {
         let new = &first.main[*n..];
+        // "changes to our lane behind the bus"
+        let the = usize::from(is(new.first(), &["the", "our", "my", "their", "its"]));
+        if matches!(
+            new.get(the..).and_then(super::words::longest),
+            Some((Sense::Place(..), _))
+        ) {
+            return false;
+        }
         let fresh = is(new.first(), &["a", "an", "another", "one"])
             || new
                 .first()

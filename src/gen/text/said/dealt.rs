@@ -23,7 +23,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         out = replaced(&out, RATHER, "instead of");
     }
     let out = carried_things(bus_stops(out));
-    let out = ours(out);
+    let out = ours(out, talk);
     let out = by_doing(out);
     let out = called_for(out);
     let out = filled(out, talk);
@@ -82,11 +82,11 @@ fn carried_things(mut tokens: Vec<Token>) -> Vec<Token> {
 }
 
 /// "the car takes its place in ours": in our lane.
-fn ours(tokens: Vec<Token>) -> Vec<Token> {
+fn ours(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(i) = (1..tokens.len()).find(|i| {
         is(tokens.get(*i), &["ours", "mine"])
             && is(tokens.get(i - 1), &["in", "into", "from", "to", "on", "onto"])
-            && tokens[..*i].iter().any(|t| matches!(text(t), "lane" | "lanes"))
+            && talk.text.to_lowercase().contains("lane")
     }) else {
         return tokens;
     };

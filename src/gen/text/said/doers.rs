@@ -76,13 +76,22 @@ const TAKEN: &[&str] = &[
     "dragged off",
 ];
 
+const OWNERS: &str = "the owner of the|the owners of the|the rider of the|the riders of the|the owner of that|the owner of this";
+const UNTIL_WE: &str = "brakes until|slows down until|speeds up until|accelerates until|drops back until|falls back until|catches up until|hurries up until|slows until|waits until";
+
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = replaced(&tokens, ", please ,", ",");
+    let out = replaced(&tokens, ", please , but", ", but");
     let out = replaced(&out, TAKES_PLACE, "takes the place of");
     let out = replaced(&out, DRIVER, "the vehicle behind us");
     let out = replaced(&out, DRIVER_AHEAD, "the vehicle in front of us");
-    let out = metres_back(out);
+    let out = gap_closed(metres_back(out));
+    let out = replaced(&out, OWNERS, "the");
+    let out = replaced(&out, UNTIL_WE, "moves until");
+    let out = we_are(out);
+    let out = relatives(out, talk);
+    let out = carried_over(out, talk);
+    let out = two_let(brought(out, talk));
     let out = couple(out, talk);
     let out = sent_home(done_away(out, talk));
     let out = gap_left(out);
@@ -106,6 +115,327 @@ fn known(t: Option<&Token>) -> bool {
             "the", "all", "both", "every", "my", "our", "that", "those", "these",
         ],
     )
+}
+
+/// "until we are 14 m behind it": until it is 14 m ahead of us.
+fn we_are(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        is(tokens.get(i - 1), &["until", "till", "that", "so"]).then_some(())?;
+        leads(&tokens[i..], &["we are", "i am", "our car is", "my car is"])?;
+        let k = i + 2 + usize::from(is(tokens.get(i + 1), &["car"]));
+        (number(tokens.get(k)?).is_some() && is_unit(tokens.get(k + 1))).then_some(())?;
+        let n = leads(
+            &tokens[k + 2..],
+            &["behind", "ahead of", "in front of", "away from", "from"],
+        )?;
+        let it = is(tokens.get(k + 2 + n), &["it", "him", "her", "them"]);
+        (it && tokens
+            .get(k + 3 + n)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and"])))
+        .then_some((i, k, n))
+    });
+    let Some((i, k, n)) = found else {
+        return tokens;
+    };
+    let at = match text(&tokens[k + 2]) {
+        "behind" => "ahead of us",
+        "ahead" | "in" => "behind us",
+        _ => "from us",
+    };
+    let is_ = if is(tokens.get(k + 2 + n), &["them"]) {
+        "they are"
+    } else {
+        "it is"
+    };
+    let way = led(at, &tokens[i], &[&tokens[k + 3 + n..]]);
+    [&tokens[..i], &led(is_, &tokens[i], &[&tokens[k..k + 2]]), &way].concat()
+}
+
+/// "the child's mother has come to stand beside it": somebody new, beside the child.
+fn relatives(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const KIN: &[&str] = &[
+        "mother",
+        "father",
+        "mum",
+        "mom",
+        "dad",
+        "brother",
+        "sister",
+        "wife",
+        "husband",
+        "friend",
+        "colleague",
+        "teacher",
+        "grandmother",
+        "grandfather",
+        "nanny",
+        "boss",
+        "boyfriend",
+        "girlfriend",
+        "son",
+        "daughter",
+        "mate",
+        "partner",
+    ];
+    let found = (1..tokens.len()).find(|i| {
+        let person = matches!(look_up(text(&tokens[*i])), Some(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian);
+        person && is(tokens.get(i - 1), &["the", "that"]) && is(tokens.get(i + 1), KIN) && opens(&tokens, i - 1)
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let who = tokens[i - 1..=i].to_vec();
+    // (one who is there already is meant otherwise)
+    let there = talk.fits(&led("the", &tokens[i], &[&tokens[i + 1..i + 2]])) > 0
+        && !is(tokens.get(i + 1), &["friend", "mate", "partner", "colleague"]);
+    if talk.fits(&who) == 0 || there && talk.fits(&who) != talk.fits(&led("people", &tokens[i], &[])) {
+        return tokens;
+    }
+    let mut out = [&tokens[..i - 1], &led("a", &tokens[i], &[&tokens[i + 1..i + 2]])].concat();
+    for t in &tokens[i + 2..] {
+        match text(t) {
+            "it" | "him" | "her" | "them" => out.extend_from_slice(&who),
+            _ => out.push(t.clone()),
+        }
+    }
+    replaced(
+        &out,
+        "has come to stand|has come and stands|has come over and stands|comes to stand|came to stand",
+        "should stand",
+    )
+}
+
+/// "the worker carries the cones over to the right edge": they are moved there.
+fn carried_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const CARRIES: &[&str] = &[
+        "carries",
+        "has carried",
+        "carry",
+        "have carried",
+        "pushes",
+        "has pushed",
+        "have pushed",
+        "pulls",
+        "has pulled",
+        "drags",
+        "has dragged",
+        "have dragged",
+        "moves",
+        "has moved",
+        "have moved",
+        "brings",
+        "has brought",
+        "have brought",
+        "takes",
+        "has taken",
+        "have taken",
+        "rolls",
+        "has rolled",
+        "shifts",
+        "has shifted",
+        "have shifted",
+        "puts",
+        "has put",
+        "have put",
+        "has placed",
+        "have placed",
+        "sets",
+        "wheels",
+        "has wheeled",
+        "leads",
+        "has led",
+        "have led",
+        "guides",
+        "has guided",
+        "sends",
+        "has sent",
+        "have sent",
+        "waves",
+    ];
+    let found = (2..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], CARRIES)?;
+        let from = (0..i).rev().find(|k| opens(&tokens, *k))?;
+        let doer = &tokens[from..i];
+        let who = known(doer.first()) && first_noun(doer).is_some_and(|x| x.1 == doer.len() && x.0 < 4)
+            || is(doer.first(), &["somebody", "someone"]) && doer.len() == 1;
+        let np = tokens.get(i + n..)?;
+        let (_, b) = first_noun(np).filter(|x| known(np.first()) && x.0 < 4)?;
+        let goal = (b..np.len().min(b + 4))
+            .any(|k| super::words::is_goal(&np[k..]) || is(np.get(k), &["onto", "to"]));
+        (who && goal && talk.fits(&np[..b]) > 0).then_some((from, i + n))
+    });
+    match found {
+        Some((from, np)) => [&tokens[..from], &led("move", &tokens[from], &[&tokens[np..]])].concat(),
+        None => tokens,
+    }
+}
+
+/// "the workers fetch two more cones and set them up beside the four": two more.
+fn brought(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const BRINGS: &[&str] = &[
+        "fetch",
+        "fetches",
+        "have fetched",
+        "has fetched",
+        "bring",
+        "brings",
+        "have brought",
+        "has brought",
+        "add",
+        "adds",
+        "have added",
+        "has added",
+        "set up",
+        "sets up",
+        "have set up",
+        "has set up",
+        "put up",
+        "puts up",
+        "have put up",
+        "has put up",
+        "put out",
+        "puts out",
+        "have put out",
+        "has put out",
+        "lay out",
+        "lays out",
+        "have placed",
+        "has placed",
+        "places",
+        "have laid out",
+        "has laid out",
+    ];
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && known(tokens.first())) else {
+        return tokens;
+    };
+    let Some(n) = leads(&tokens[b..], BRINGS).filter(|_| talk.fits(&tokens[..b]) > 0) else {
+        return tokens;
+    };
+    let np = &tokens[b + n..];
+    let fresh = is(np.first(), &["a", "an", "another"]) || np.first().is_some_and(|t| number(t).is_some());
+    let Some((_, e)) = first_noun(np).filter(|x| fresh && x.0 < 5) else {
+        return tokens;
+    };
+    let rest = &np[e..];
+    let same = leads(
+        rest,
+        &[
+            "and set them up",
+            "and put them up",
+            "and set it up",
+            "and put it",
+            "and put them",
+            "and place them",
+        ],
+    )
+    .is_some();
+    let alike = same && (talk.fits(&np[e - 1..e]) > 0) && first_noun(rest).is_none();
+    let rest = if alike { &[][..] } else { rest };
+    if !alike && same {
+        return tokens;
+    }
+    led("add", &tokens[0], &[np.get(..e).unwrap_or_default(), rest])
+}
+
+/// "instead of the two cars, let two vans drive in the right lane": two vans.
+fn two_let(tokens: Vec<Token>) -> Vec<Token> {
+    if leads(&tokens, &["instead of", "in place of", "rather than"]).is_none() {
+        return tokens;
+    }
+    let Some(i) = tokens.iter().position(|t| t.kind == TokenKind::Comma) else {
+        return tokens;
+    };
+    let let_ =
+        is(tokens.get(i + 1), &["let", "have"]) && tokens.get(i + 2).is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(tokens.get(i + 2..).unwrap_or_default()).filter(|x| let_ && x.0 < 4) else {
+        return tokens;
+    };
+    let end = i + 2 + b;
+    let verb = usize::from(is(
+        tokens.get(end),
+        &["drive", "stand", "wait", "walk", "ride", "be", "come"],
+    ));
+    [
+        &tokens[..=i],
+        &led("put", &tokens[i], &[&tokens[i + 2..end]]),
+        &tokens[end + verb..],
+    ]
+    .concat()
+}
+
+/// "the pickup closes the gap to 7 m": so far it is then.
+fn gap_closed(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let verb = [
+            "closes",
+            "close",
+            "closed",
+            "narrows",
+            "narrowed",
+            "reduces",
+            "reduced",
+            "shortens",
+            "shortened",
+            "opens",
+            "opened",
+            "widens",
+            "widened",
+            "increases",
+            "increased",
+            "lets",
+            "let",
+            "cuts",
+            "cut",
+        ];
+        is(tokens.get(i), &verb).then_some(())?;
+        let n = leads(
+            &tokens[i + 1..],
+            &[
+                "the gap",
+                "the distance",
+                "its distance",
+                "his distance",
+                "her distance",
+                "their distance",
+                "its gap",
+                "his gap",
+                "her gap",
+                "up the gap",
+            ],
+        )?;
+        let to = (i + 1 + n..tokens.len().min(i + n + 8)).find(|k| {
+            is(tokens.get(*k), &["to", "at"])
+                && tokens.get(k + 1).is_some_and(|t| number(t).is_some())
+                && is_unit(tokens.get(k + 2))
+        })?;
+        let between = tokens[i + 1 + n..to].iter().all(|t| {
+            is(
+                Some(t),
+                &[
+                    "to", "us", "me", "from", "between", "and", "itself", "down", "up", "behind", "ahead",
+                    "a", "bit", "grow",
+                ],
+            )
+        });
+        let from = (0..i).rev().find(|k| opens(&tokens, *k))?;
+        let who = &tokens[from..i];
+        let helped = who
+            .iter()
+            .rposition(|t| !HELPERS.contains(&text(t)))
+            .map_or(0, |k| k + 1);
+        let one = is(who.first(), &["it", "he", "she", "they"]) && helped == 1
+            || known(who.first()) && has_noun(&who[..helped]);
+        (between && one).then_some((from + helped, to + 1))
+    });
+    match found {
+        Some((i, k)) => [
+            &tokens[..i],
+            &led("should keep a distance of", &tokens[i], &[&tokens[k..k + 2]]),
+            &tokens[k + 2..],
+        ]
+        .concat(),
+        None => tokens,
+    }
 }
 
 /// "he is 20 m back now": behind us.
@@ -187,7 +517,7 @@ fn done_away(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 t.kind != TokenKind::Word || is(Some(t), &["away", "off", "up", "home", "and", "now"])
             })
         {
-            return Some((from, v + n, v + n + 1));
+            return Some((from, i, v + n, v + n + 1));
         }
         let part =
             np.first().is_some_and(|t| number(t).is_some()) && is(np.get(1), &["of"]) && known(np.get(2));
@@ -197,15 +527,30 @@ fn done_away(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         // the doer says nothing of a place: "has taken the left lane" is none of this
         let place =
             is_place(&tokens[end..]) && !is(tokens.get(end), &["away", "up", "off", "from", "out", "down"]);
-        (!place && talk.fits(&np[if part { 2 } else { 0 }..b]) > 0).then_some((from, v + n, end))
+        (!place && talk.fits(&np[if part { 2 } else { 0 }..b]) > 0).then_some((from, i, v + n, end))
     });
-    let Some((from, np, end)) = found else {
+    let Some((from, has, np, end)) = found else {
         return tokens;
     };
     let close = (end..tokens.len())
         .find(|k| tokens[*k].kind != TokenKind::Word || is(tokens.get(*k), &["and", "but", "so"]))
         .unwrap_or(tokens.len());
     let remove = led("remove", &tokens[from], &[&tokens[np..end]]);
+    // "... and is about to leave": said of him who did it
+    let goes_on = is(tokens.get(close), &["and", "but"])
+        && tokens
+            .get(close + 1)
+            .is_some_and(|t| HELPERS.contains(&text(t)) || super::words::is_finite(text(t), false));
+    if goes_on {
+        return [
+            &tokens[..from],
+            &remove,
+            &tokens[close..=close],
+            &tokens[from..has],
+            &tokens[close + 1..],
+        ]
+        .concat();
+    }
     [&tokens[..from], &remove, &tokens[close..]].concat()
 }
 

@@ -1,7 +1,7 @@
 //! Who is spared: "all the motor vehicles but the bus may disappear".
 
 use super::super::lexicon::{Sense, look_up};
-use super::super::tokens::Token;
+use super::super::tokens::{Token, TokenKind};
 use super::Piece;
 use super::lists::HELPERS;
 use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text};
@@ -76,9 +76,10 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let plain = is(
         tokens.get(all + group.0),
         &["everything", "everyone", "everybody", "objects", "things"],
-    ) && !tokens[all..all + group.0]
-        .iter()
-        .any(|t| matches!(look_up(text(t)), Some(Sense::State(..))));
+    ) && !is_place(&tokens[all + group.1..i])
+        && !tokens[all..all + group.0]
+            .iter()
+            .any(|t| matches!(look_up(text(t)), Some(Sense::State(..))));
     let from = i + n;
     let definite = is(tokens.get(from), &["the", "my", "that", "those", "these"]);
     if plain || !definite || leads(&tokens[from..], &["the one", "the ones", "the following"]).is_some() {
@@ -90,7 +91,7 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
             let t = &tokens[*k];
             // (the verb of "that follows us" is no end)
             let relative = (1..3).any(|n| is(tokens.get(k.wrapping_sub(n)), &["that", "which", "who"]));
-            t.kind != super::super::tokens::TokenKind::Word
+            t.kind != TokenKind::Word
                 || !relative && (HELPERS.contains(&text(t)) || is_finite(text(t), true))
                 || matches!(text(t), "with" | "by" | "into" | "to" | "onto")
                 // "and the coach" is spared, too
@@ -189,7 +190,7 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
             let t = &tokens[*k];
             HELPERS.contains(&text(t))
                 || goes(t)
-                || (is(Some(t), &["and"]) || t.kind != super::super::tokens::TokenKind::Word)
+                || (is(Some(t), &["and"]) || t.kind != TokenKind::Word)
                     && tokens.get(k + 1).is_some_and(super::super::rephrase::is_verb)
         })
         .unwrap_or(tokens.len());
@@ -205,6 +206,24 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
                 .any(|t| is(Some(t), &["rid", "erase", "wipe", "ditch"])));
     // everybody but the child speaks of people alone
     let people = is(tokens.get(whole), &["everyone", "everybody"]) && only_people(np);
+    // "everything on the road goes except the bulldozer": what is elsewhere stays
+    let told = &before[whole + 1..];
+    let told = &told[usize::from(is(told.first(), &["else", "objects"]))..];
+    let stop = told
+        .iter()
+        .position(|t| HELPERS.contains(&text(t)) || goes(t) || t.kind != TokenKind::Word)
+        .unwrap_or(told.len());
+    let there = is_place(&told[..stop]) && is(told.first(), &["on", "in", "at", "behind", "ahead"]);
+    if many
+        && there
+        && !others
+        && first_noun(np).is_some()
+        && (gone.is_some() || removing || told[stop..].iter().any(goes))
+    {
+        let objects = led("remove all the objects", &tokens[0], &[&told[..stop]]);
+        let end = gone.map_or(close, |g| g + 1);
+        return [&objects, &led("except", &tokens[0], &[np]), &tokens[end..]].concat();
+    }
     if !many || others || people || first_noun(np).is_none() || !(gone.is_some() || removing) {
         return tokens;
     }

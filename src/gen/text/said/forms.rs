@@ -70,10 +70,17 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         main.push(words::word("and", first));
     }
     main.pop();
+    while is(main.first(), &["and"]) {
+        main.remove(0);
+    }
     // "directly behind the first one"
     if let Some((i, n)) = find(
         &main,
         &[
+            "the other two",
+            "the other three",
+            "the other four",
+            "the others",
             "the first one",
             "the first",
             "the other one",
@@ -88,7 +95,15 @@ pub(super) fn fresh(s: &Subject, pred: &[Token], clause: &[Token], talk: &Talk<'
         ],
     ) && words::noun_at(&main[i + n..]).is_none()
     {
-        let one = if is(main.get(i + n - 1), &["first", "one", "other"]) {
+        let many = is(main.get(i + n - 1), &["two", "three", "four", "others"]);
+        let one = if let (true, [noun]) = (many, s.noun.as_slice()) {
+            let many = matches!(look_up(text(noun)), Some(Sense::Noun(_, true)));
+            vec![if many {
+                noun.clone()
+            } else {
+                words::word(&super::super::lexicon::plural(text(noun)), noun)
+            }]
+        } else if is(main.get(i + n - 1), &["first", "one", "other"]) {
             super::topics::singular_of(&s.noun)
         } else {
             s.noun.clone()

@@ -155,11 +155,24 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(i) = (0..tokens.len()).find(|i| {
         is(tokens.get(*i), &["give", "get", "bring", "lend", "assign"])
-            && is(tokens.get(i + 1), &["the", "both", "that", "my", "each"])
+            && (is(tokens.get(i + 1), &["the", "both", "that", "my", "each"])
+                || is(tokens.get(i + 1), &["him", "her", "them"])
+                    && talk.last.is_some()
+                    && is_fresh(tokens.get(i + 2)))
             && begins_at(&tokens, *i)
     }) else {
         return tokens;
     };
+    // "give him a colleague": him who was named
+    if is(tokens.get(i + 1), &["him", "her", "them"]) {
+        let named = first_noun(&tokens[..i]).map(|x| tokens[x.0..x.1].to_vec());
+        let Some(who) = named.or_else(|| talk.last.as_ref().map(|l| led(l, &tokens[i], &[]))) else {
+            return tokens;
+        };
+        let the = led("the", &tokens[i], &[&who]);
+        let again = [&tokens[..=i], &the, &tokens[i + 2..]].concat();
+        return given(again, talk);
+    }
     let Some((_, b)) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 4) else {
         return tokens;
     };
@@ -412,5 +425,27 @@ fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         text: many.to_string(),
         span: tokens[i].span,
     };
+    // "I want as many motorcycles as cars": so many in all
+    let wish = [
+        "i want",
+        "we want",
+        "i need",
+        "we need",
+        "there should be",
+        "there must be",
+        "let there be",
+        "i would like",
+        "id like",
+        "make it",
+        "there are",
+        "there shall be",
+    ];
+    if leads(&tokens[..i], &wish) == Some(i) {
+        return led(
+            "keep exactly",
+            &tokens[0],
+            &[&[digit], &tokens[i + n..as_], &tokens[end..]],
+        );
+    }
     [&tokens[..i], &[digit], &tokens[i + n..as_], &tokens[end..]].concat()
 }

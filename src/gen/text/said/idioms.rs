@@ -213,10 +213,26 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
     if own && thing == 0 {
         return None;
     }
-    let mut out = rest[..at].to_vec();
-    out.extend_from_slice(who);
     // "are about to board the bus: bring them near it"
     let other = first_noun(aim).map(|n| led("the", &tokens[0], &[&aim[n.0..n.1]]));
+    // several are no "it": "the people want to board the bus, so bring it back and let them wait"
+    let several = matches!(
+        who.last().and_then(|t| look_up(text(t))),
+        Some(Sense::Noun(_, true))
+    );
+    if several && is(rest.get(at), &["it", "its"]) {
+        let other = other.filter(|_| is(rest.get(at), &["it"]))?;
+        let mut out = [&rest[..at], &other[..]].concat();
+        for t in &rest[at + 1..] {
+            match text(t) {
+                "them" => out.extend_from_slice(who),
+                _ => out.push(t.clone()),
+            }
+        }
+        return Some(out);
+    }
+    let mut out = rest[..at].to_vec();
+    out.extend_from_slice(who);
     for t in &rest[at + 1 + if own { thing } else { 0 }..] {
         match &other {
             Some(other) if text(t) == "it" => out.extend(other.iter().cloned()),

@@ -17,6 +17,7 @@ mod gaps;
 mod gifts;
 mod idioms;
 mod left;
+mod likewise;
 mod limits;
 pub(super) mod lists;
 mod of_several;
@@ -152,6 +153,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = exchanges::plain(presence::plain(wider::plain(out, talk), talk), talk);
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
+    let out = likewise::plain(out, talk);
     let out = gifts::plain(turns::plain(out, talk), talk);
     if out.is_empty() {
         return stop.to_vec();
@@ -484,6 +486,21 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     // "fire engine in" of one that is there: more of it is not meant
     if is(pred.first(), &["in"]) {
         return None;
+    }
+    // "the fourth is still crossing": as before
+    let still = pred.iter().take(3).any(|t| text(t) == "still")
+        || leads(
+            pred,
+            &["is about to", "are about to", "was about to", "were about to"],
+        )
+        .is_some();
+    if still
+        && !pred
+            .iter()
+            .any(|t| is(Some(t), &["should", "must", "shall", "needs", "not"]))
+        && !pred.iter().any(|t| matches!(text(t), "and" | "but"))
+    {
+        return Some(vec![remembered(&s.np, talk)]);
     }
     let parts = parts(pred, s.plural || mood.caused);
     // "Bus is too far off": a complaint says only what "it" will mean

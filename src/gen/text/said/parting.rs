@@ -109,9 +109,13 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && leads(rest, &["instead of the", "in place of the", "rather than the"]).is_some()
                 && super::super::rephrase::is_verb(&body[from]);
             // "the van and the truck are to disappear": two subjects of one verb
+            let let_ = usize::from(is(body.get(from), &["let", "have", "should", "may"]));
             let joined = text(t) == "and"
-                && is(body.get(from), &["the", "both", "my", "that", "those", "these"])
-                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 && from + n.1 == i)
+                && is(
+                    body.get(from + let_),
+                    &["the", "both", "my", "that", "those", "these"],
+                )
+                && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 + let_ && from + n.1 == i)
                 && is(body.get(next), &["the", "my", "that", "those", "these"]);
             // "only the cones and barriers are left"
             let only = text(t) == "and"

@@ -33,13 +33,31 @@ impl Part {
             let there = self.main.is_empty() || self.begins(&THERE).is_some();
             return there;
         }
-        if gone_off(&self.main) {
+        if gone_off(&self.main)
+            || is(
+                self.main.first(),
+                &[
+                    "vanished",
+                    "vanishes",
+                    "vanish",
+                    "disappeared",
+                    "disappears",
+                    "disappear",
+                ],
+            )
+        {
             return true;
         }
         let Some(n) = self.begins(&GONE) else {
             return false;
         };
         let rest = &self.main[n..];
+        // "goes at a distance of 25 m", "gone 5 m to the left"
+        if leads(rest, &["at a distance", "by a distance"]).is_some()
+            || is(rest.first(), &["at", "by"]) && rest.get(1).is_some_and(|t| number(t).is_some())
+        {
+            return false;
+        }
         // "has dropped off its passenger"
         let object = |t: Option<&Token>| {
             is(
@@ -104,8 +122,69 @@ impl Part {
     }
 }
 
+/// "has got on the bus": who is in a vehicle is not seen.
+fn boarded(main: &[Token]) -> bool {
+    let n = leads(
+        main,
+        &[
+            "got on",
+            "got onto",
+            "got in",
+            "got into",
+            "gotten on",
+            "gotten into",
+            "gotten in",
+            "got aboard",
+            "climbed into",
+            "climbed aboard",
+            "climbed onto",
+            "climbed on",
+            "sat down in",
+            "sitting in",
+            "seated in",
+            "hopped on",
+            "hopped into",
+            "hopped onto",
+            "stepped into",
+            "stepped onto",
+            "stepped aboard",
+            "jumped into",
+            "boarded",
+            "entered",
+            "been picked up by",
+            "picked up by",
+            "been taken in by",
+            "gets on",
+            "gets into",
+            "climbs into",
+            "boards",
+            "get on",
+            "get into",
+            "climb into",
+            "board",
+            "inside",
+            "taken their seats in",
+            "taken a seat in",
+            "taken seats in",
+        ],
+    );
+    let Some(np) = n
+        .map(|n| &main[n..])
+        .filter(|np| is(np.first(), &["the", "a", "an", "our", "my", "that", "one"]))
+    else {
+        return false;
+    };
+    super::words::first_noun(np).is_some_and(|(a, b)| {
+        a < 4
+            && matches!(longest(&np[a..b]).map(|l| l.0), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
+    })
+}
+
 /// "has gone back to the station", "is back in the depot": where it is no part of the scene.
 fn gone_off(main: &[Token]) -> bool {
+    if boarded(main) {
+        return true;
+    }
     let went = is(
         main.first(),
         &[

@@ -135,7 +135,7 @@ fn of_them(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .position(|t| t.kind == TokenKind::Comma)
         .or_else(|| {
             (n + 2..tokens.len())
-                .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep"]))
+                .find(|k| removes(tokens.get(*k)) || is(tokens.get(*k), &["leave", "keep", "only", "just"]))
                 .map(|k| k - 1)
                 .filter(|k| first_noun(&tokens[n..=*k]).is_some())
         })
@@ -311,7 +311,13 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     if suffices && counted && a < n + 5 {
         return Some(led("keep exactly", &tokens[0], &[&rest[..1], &tokens[a..b]]));
     }
-    let w = leads(rest, WISHES)?;
+    // "instead of one car, three are waiting at the crossing"
+    let w = leads(rest, WISHES).or_else(|| {
+        let verb = rest
+            .get(1)
+            .is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
+        (verb && rest.first().is_some_and(|t| number(t).is_some())).then_some(0)
+    })?;
     let k = w + usize::from(is(rest.get(w), &["just", "only"]));
     let many = rest.get(k).filter(|t| number(t).is_some())?;
     let ends =
@@ -333,9 +339,31 @@ fn instead_of_number(tokens: &[Token]) -> Option<Vec<Token>> {
     )
     .unwrap_or(0);
     let place = trimmed(&tail[all..]);
-    let placed = super::words::is_place(place)
-        && first_noun(place).is_none()
-        && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let place = &place[if w == 0 {
+        place
+            .iter()
+            .take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["now", "to"]))
+            .count()
+    } else {
+        0
+    }..];
+    let stands = usize::from(
+        w == 0
+            && is(
+                place.first(),
+                &[
+                    "waiting", "standing", "wait", "stand", "drive", "driving", "walking", "walk", "parked",
+                ],
+            ),
+    );
+    let placed = w == 0
+        && place.len() > stands
+        && super::words::is_place(&place[stands..])
+        && first_noun(place).is_none();
+    let placed = placed
+        || super::words::is_place(place)
+            && first_noun(place).is_none()
+            && !place.iter().any(|t| t.kind == TokenKind::Comma);
     let place = if placed { place } else { &[] };
     (counted && (ends || placed) && a < n + 5).then(|| {
         led(

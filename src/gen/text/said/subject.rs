@@ -59,6 +59,19 @@ pub(super) fn pointing(tokens: &[Token]) -> Option<(Back, usize)> {
     {
         return Some((Back::Others, n));
     }
+    // "the fourth is still crossing"
+    let nth = super::words::leads(
+        tokens,
+        &["the second", "the third", "the fourth", "the fifth", "the last"],
+    );
+    if let Some(n) = nth
+        && tokens.get(n).is_some_and(|t| {
+            HELPERS.contains(&text(t))
+                || is_finite(text(t), false) && super::words::noun_at(&tokens[n..]).is_none()
+        })
+    {
+        return Some((Back::Others, n));
+    }
     let both = super::words::leads(
         tokens,
         &[
@@ -430,6 +443,9 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     };
     let one_of = one_of
         || leave
+            && !tokens[pred..]
+                .iter()
+                .any(|t| matches!(text(t), "missing" | "absent"))
             && super::predicate::parts(&tokens[pred..], true)
                 .iter()
                 .any(super::predicate::Part::is_gone);

@@ -249,6 +249,7 @@ fn no_longer_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             "there should be no longer a",
             "there should be not a",
             "no longer a",
+            "no more",
         ],
     ) else {
         return tokens;
