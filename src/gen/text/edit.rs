@@ -318,6 +318,7 @@ impl Editor<'_> {
                     done.push("added".into());
                 }
                 // ("neither cones nor anything else stands ahead of us" speaks of a place)
+                let text = c.text.to_lowercase();
                 let all = c.implied && c.reading.description.absent.iter().any(|a| a.classes.len() > 6);
                 let placed = [" in ", " on ", " ahead", " behind", " left", " right"]
                     .iter()
