@@ -293,8 +293,13 @@ impl Parser<'_> {
         {
             self.at += 1;
         }
+        // "a van and a bus; both come towards us": the subject of the new clause
+        if self.head.is_empty() && self.fronted.is_empty() {
+            self.head.clone_from(&both);
+        } else {
+            self.relative = true;
+        }
         self.last = both;
-        self.relative = true;
         self.fresh = false;
         self.chain = false;
         true
@@ -359,6 +364,10 @@ impl Parser<'_> {
                         | Sense::Noun(_, false)
                 )
             )
+            || before > 1
+                && self
+                    .item(before - 1)
+                    .is_some_and(|b| super::parse::is_prenominal(&b.words))
         {
             before -= 1;
         }
@@ -408,6 +417,16 @@ impl Parser<'_> {
         if is_to_be(lead) && rides && m.spec.class == Class::Pedestrian && m.spec.count.n == 1 {
             m.mounts(noun.classes[0]);
             m.spec.noun = word.to_string();
+            return true;
+        }
+        // "The first one is a van. The second one is a bus."
+        let told = m.like && m.spec.class.is_vehicle() && noun.classes[0].is_vehicle();
+        if told && noun.classes.len() == 1 && is_to_be(lead) && article {
+            m.classes = noun.classes;
+            m.spec.class = noun.classes[0];
+            m.spec.noun = word.to_string();
+            m.spec.size_m = noun.size_m;
+            m.like = false;
             return true;
         }
         if noun.classes.len() > 1 || !m.classes.contains(&noun.classes[0]) {

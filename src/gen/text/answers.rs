@@ -32,7 +32,10 @@ pub fn in_full(tokens: &[Token]) -> Vec<Token> {
 }
 
 fn answered(question: &[Token], answer: &[Token]) -> Option<Vec<Token>> {
-    let (_, asked) = question.split_last().filter(|(l, _)| l.kind == TokenKind::Stop)?;
+    let (end, asked) = question.split_last().filter(|(l, _)| l.kind == TokenKind::Stop)?;
+    if let Some(told) = yes_or_no(asked, answer).or_else(|| placed(asked, end, answer)) {
+        return Some(told);
+    }
     let stop = answer
         .iter()
         .position(|t| t.kind == TokenKind::Stop)
@@ -97,6 +100,70 @@ fn answered(question: &[Token], answer: &[Token]) -> Option<Vec<Token>> {
     (named && fresh && said.len() <= 12).then(|| [said, &asked[n..], rest].concat())
 }
 
+/// "Is there a truck? Yes, behind us.": there is a truck, behind us.
+fn yes_or_no(asked: &[Token], answer: &[Token]) -> Option<Vec<Token>> {
+    let lead = begins(
+        asked,
+        "is there|are there|is there any|are there any|do we see|do we have|and is there|and are there",
+    )?;
+    let thing = asked
+        .get(lead..)
+        .filter(|t| t.iter().any(is_noun) || begins(t, "anything|anyone|anybody").is_some())?;
+    if let Some(n) = begins(
+        answer,
+        "yes|yeah|yep|indeed|sure|yes there is|yes there are|yes indeed",
+    ) {
+        let comma = answer.get(n).is_some_and(|t| t.kind == TokenKind::Comma);
+        // "yes, a bus": what the answer names itself is told by it
+        let named = answer.get(n + 1..).is_some_and(|a| a.iter().take(4).any(is_noun));
+        return (!named).then(|| {
+            let mut out: Vec<Token> = ["there", "is"].map(|w| word(w, &answer[0])).to_vec();
+            out.extend_from_slice(thing);
+            out.extend_from_slice(
+                &answer[n + usize::from(
+                    comma && answer.get(n + 1).is_some_and(super::rephrase::is_place_word),
+                )..],
+            );
+            out
+        });
+    }
+    let n = begins(
+        answer,
+        "no|none|nope|not at all|no there is not|no there isnt|no there are not|no there arent",
+    )?;
+    let rest = answer.get(n..)?;
+    rest.first().is_none_or(|t| t.kind != TokenKind::Word).then(|| {
+        let mut out: Vec<Token> = ["there", "is", "no"].map(|w| word(w, &answer[0])).to_vec();
+        let article = begins(thing, "a|an|any").unwrap_or(0);
+        out.extend_from_slice(&thing[article..]);
+        out.extend_from_slice(rest);
+        out
+    })
+}
+
+/// "And to the right? Four cars.": to the right: four cars.
+fn placed(asked: &[Token], end: &Token, answer: &[Token]) -> Option<Vec<Token>> {
+    const WORDS: &str = "on|in|at|to|the|left|right|behind|ahead|front|of|us|me|side|our|my|lane|pavement|sidewalk|kerb|curb|road|street|hand|oncoming|junction|crossing|zebra|car|park|and";
+    let lead = begins(
+        asked,
+        "and|what about|how about|and what about|and what is|what is",
+    )
+    .unwrap_or(0);
+    let place = asked.get(lead..).filter(|p| !p.is_empty() && p.len() <= 7)?;
+    let first = begins(place, "on|in|at|to|behind|ahead").is_some();
+    let only = place.iter().all(|t| WORDS.split('|').any(|w| w == t.text));
+    let fresh = answer.first().is_some_and(|t| {
+        number(t).is_some() || matches!(t.text.as_str(), "a" | "an" | "no" | "nothing" | "nobody")
+    });
+    (first && only && fresh && lead < asked.len()).then(|| {
+        let mark = Token {
+            kind: TokenKind::Mark,
+            ..word(":", end)
+        };
+        [place, &[mark], answer].concat()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::tokens::tokens;
@@ -121,6 +188,12 @@ mod tests {
             said("How many cars are parked? Three."),
             "three cars are parked ."
         );
+        assert_eq!(said("And to the right? Four cars."), "to the right : four cars .");
+        assert_eq!(
+            said("Is there a truck? Yes, behind us."),
+            "there is a truck behind us ."
+        );
+        assert_eq!(said("Is there a bus? No."), "there is no bus .");
         assert_eq!(said("What a day! A bus comes."), "what a day . a bus comes .");
     }
 }

@@ -39,7 +39,10 @@ pub(super) fn drop_named(mentions: &mut [Mention], prompt: &str) {
             .get(m.spec.span.end..)
             .is_some_and(|rest| rest.trim_start().starts_with([',', '(', ':', '-', '–', '—']));
         // "three vehicles ahead: a car in our lane and two vans behind it"
-        let listed = mentions.get(i + 1).is_some_and(|next| {
+        let start = (i + 1..mentions.len())
+            .find(|k| !mentions[*k].is_anchor)
+            .unwrap_or(i + 1);
+        let listed = mentions.get(start).is_some_and(|next| {
             let gap = prompt.get(m.spec.span.end..next.spec.span.start).unwrap_or(".");
             !gap.contains(['.', ';', '!', '?'])
                 && [
@@ -68,13 +71,15 @@ pub(super) fn drop_named(mentions: &mut [Mention], prompt: &str) {
         }
         let apposed = apposed || listed;
         let mut sum = 0;
-        let mut last = i;
+        // (what only says where they are stands before the list)
+        let mut last = if listed { start - 1 } else { i };
+        let before = last;
         while last + 1 < mentions.len()
             && sum < mentions[i].spec.count.n
             && (joined(&mentions[last], &mentions[last + 1])
                 || listed && one_sentence(&mentions[last], &mentions[last + 1]))
             && mentions[i].classes.contains(&mentions[last + 1].spec.class)
-            && (if sort {
+            && (if sort && !listed {
                 !is_sort(&mentions[last + 1].spec.noun)
             } else {
                 told_apart(&mentions[last + 1])
@@ -83,12 +88,12 @@ pub(super) fn drop_named(mentions: &mut [Mention], prompt: &str) {
             last += 1;
             sum += mentions[last].spec.count.n;
         }
-        if !apposed || last < i + 2 || sum != mentions[i].spec.count.n {
+        if !apposed || last < before + 2 || sum != mentions[i].spec.count.n {
             continue;
         }
         let theirs = mentions[i].spec.relations.clone();
         let state = mentions[i].spec.state;
-        for m in &mut mentions[i + 1..=last] {
+        for m in &mut mentions[before + 1..=last] {
             m.spec.state = m.spec.state.or(state);
             if m.spec.relations.is_empty() {
                 m.spec.relations.clone_from(&theirs);
@@ -98,7 +103,7 @@ pub(super) fn drop_named(mentions: &mut [Mention], prompt: &str) {
         for m in mentions.iter_mut() {
             for r in &mut m.spec.relations {
                 if r.anchor == Anchor::Object(i) {
-                    r.anchor = Anchor::Object(i + 1);
+                    r.anchor = Anchor::Object(before + 1);
                 }
             }
         }

@@ -220,9 +220,9 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
             let verb = begins(&tokens[i + n..], LEFT)?;
             let k = i + n + verb;
             // ("somebody left a trailer standing there": what is left there is told, not who left it)
-            let his = tokens
-                .get(k)
-                .is_some_and(|t| matches!(t.text.as_str(), "his" | "her" | "their" | "a" | "an" | "the"));
+            let his = tokens.get(k).is_some_and(|t| {
+                matches!(t.text.as_str(), "his" | "her" | "their" | "a" | "an" | "the") || number(t).is_some()
+            });
             let noun = (k + 1..tokens.len().min(k + 5)).find(|j| is_noun(&tokens[*j]))?;
             let more = tokens.get(noun + 1..).is_some_and(|rest| {
                 rest.iter()
@@ -240,7 +240,12 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
         });
         match whole {
             Some((his, noun)) => {
-                out.push(word("a", &tokens[i]));
+                let many = number(&tokens[his]).filter(|n| *n > 1);
+                out.push(if many.is_some() {
+                    tokens[his].clone()
+                } else {
+                    word("a", &tokens[i])
+                });
                 out.extend_from_slice(&tokens[his + 1..=noun]);
                 let stands = tokens.get(noun + 1).is_some_and(|t| {
                     matches!(

@@ -36,6 +36,8 @@ pub struct Mention {
     pub said_where: bool,
     /// Used up by its parts.
     pub gone: bool,
+    /// "The second one": of the kind of another, until it is told what it is.
+    pub like: bool,
 }
 
 /// What was said before a noun.
@@ -127,6 +129,7 @@ impl Mention {
             bare: pre.article.is_none() && pre.count.is_none(),
             said_where: false,
             gone: false,
+            like: false,
         }
     }
 }

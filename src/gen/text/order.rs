@@ -18,7 +18,13 @@ const FARTHER: &str = "further ahead|farther ahead|further on|farther on|further
 impl Parser<'_> {
     /// "and further ahead a bus": ahead of what was named ahead of us before.
     pub(super) fn farther_on(&mut self, item: &Item, span: Span) {
-        if self.edits || !FARTHER.split('|').any(|w| w == item.words) {
+        // ("a little further ahead")
+        let said = |w: &str| {
+            item.words
+                .strip_suffix(w)
+                .is_some_and(|lead| lead.is_empty() || lead.ends_with(' '))
+        };
+        if self.edits || !FARTHER.split('|').any(said) {
             return;
         }
         let ahead = |m: &Mention| {
@@ -59,6 +65,19 @@ impl Parser<'_> {
                 span,
             });
         }
+    }
+
+    /// "behind the taxi a bus and then a van": what the one after "then" is behind.
+    pub(super) fn after_then(&self, frag: &Frag) -> Option<usize> {
+        let along = matches!(&frag.prep, Prep::Rels(k) if matches!(k.as_slice(), [R::Behind | R::InFrontOf | R::Following]));
+        let then = (1..=3).any(|k| {
+            self.at
+                .checked_sub(k)
+                .and_then(|i| self.item(i))
+                .is_some_and(|i| matches!(i.words.as_str(), "then" | "and then" | "next" | "and next"))
+        });
+        let before = self.list.len().checked_sub(2).map(|k| self.list[k]);
+        before.filter(|_| along && then && !self.edits)
     }
 
     /// A list ordered by distance begins, or goes on, here.

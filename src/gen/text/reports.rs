@@ -8,8 +8,13 @@ use super::wording::{begins, replaced, word};
 
 /// A prompt without the manners of reports.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let out = said_before(tokens);
-    let out = fields(&without_speaker(&out));
+    let tokens = replaced(
+        tokens,
+        "same lane as ours|same lane as mine|the same lane as ours|the same lane as mine",
+        "our lane",
+    );
+    let out = said_before(&tokens);
+    let out = none_there(&lane_is(&fields(&without_speaker(&out))));
     let out = sides_of_road(&out);
     in_number(&out)
 }
@@ -112,6 +117,64 @@ fn fields(tokens: &[Token]) -> Vec<Token> {
     out
 }
 
+/// "My lane: blocked by a fence.": my lane is blocked.
+fn lane_is(tokens: &[Token]) -> Vec<Token> {
+    const IS: &str = "blocked|closed|obstructed|free|empty|clear|deserted|occupied|taken|crowded|barred|shut";
+    let mut out: Vec<Token> = Vec::new();
+    let mut opened = 0;
+    for (i, t) in tokens.iter().enumerate() {
+        let place = t.text == ":"
+            && (1..=4).contains(&(out.len() - opened))
+            && out.last().is_some_and(|b| {
+                matches!(look_up(&b.text), Some(Sense::Place(..))) || b.text.ends_with("lane")
+            })
+            && tokens
+                .get(i + 1)
+                .is_some_and(|n| begins(std::slice::from_ref(n), IS).is_some());
+        if place {
+            let many = out.last().is_some_and(|b| b.text.ends_with('s'));
+            out.push(word(if many { "are" } else { "is" }, t));
+        } else {
+            out.push(t.clone());
+        }
+        if t.kind == TokenKind::Stop {
+            opened = out.len();
+        }
+    }
+    out
+}
+
+/// "Vehicle left: none.": no vehicle on the left.
+fn none_there(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
+        let colon = sentence
+            .iter()
+            .position(|t| t.text == ":")
+            .filter(|k| (2..=6).contains(k));
+        let none = colon.filter(|k| {
+            begins(&sentence[k + 1..], "none|nil|zero|0|no|nobody|nothing").is_some()
+                && ends(sentence.get(k + 2))
+                && is_noun(&sentence[0])
+                && !is_noun(&sentence[1])
+                && !sentence[..*k].iter().any(|t| t.kind == TokenKind::Comma)
+        });
+        match none {
+            Some(k) => {
+                out.push(word("no", &sentence[0]));
+                out.push(sentence[0].clone());
+                let side = matches!(sentence[1].text.as_str(), "left" | "right")
+                    .then(|| ["on", "the"].map(|w| word(w, &sentence[1])));
+                out.extend(side.into_iter().flatten());
+                out.extend_from_slice(&sentence[1..k]);
+                out.extend_from_slice(&sentence[k + 2..]);
+            }
+            None => out.extend_from_slice(sentence),
+        }
+    }
+    out
+}
+
 /// "road right side": the right side of the road.
 fn sides_of_road(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
@@ -166,10 +229,15 @@ fn in_number(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        let comma = out.last().is_some_and(|t| t.kind == TokenKind::Comma);
+        let comma = out
+            .last()
+            .is_some_and(|t| t.kind == TokenKind::Comma || t.text == "(");
         let counted = number(&tokens[i]).is_some() && comma;
-        let tail = begins(tokens.get(i + 1..).unwrap_or(&[]), "in number|strong")
-            .filter(|n| counted && ends(tokens.get(i + 1 + n)));
+        let tail = begins(
+            tokens.get(i + 1..).unwrap_or(&[]),
+            "in number|strong|pieces|pcs|units|altogether|in all",
+        )
+        .filter(|n| counted && ends(tokens.get(i + 1 + n)));
         let noun = out.len() > 1 && is_noun(&out[out.len() - 2]);
         match tail.filter(|_| noun) {
             Some(n) => {
@@ -177,7 +245,11 @@ fn in_number(tokens: &[Token]) -> Vec<Token> {
                 let at = out.len() - 1;
                 out.insert(at, tokens[i].clone());
                 i += 1 + n;
-                i += usize::from(tokens.get(i).is_some_and(|t| t.kind == TokenKind::Comma));
+                i += usize::from(
+                    tokens
+                        .get(i)
+                        .is_some_and(|t| t.kind == TokenKind::Comma || t.text == ")"),
+                );
             }
             None => {
                 out.push(tokens[i].clone());
@@ -215,6 +287,12 @@ mod tests {
             said("Road right side parked one van"),
             "on the right side of the road parked one van"
         );
+        assert_eq!(
+            said("My lane: blocked by a fence."),
+            "my lane is blocked by a fence ."
+        );
+        assert_eq!(said("Vehicle left: none."), "no vehicle on the left .");
+        assert_eq!(said("cones (five pieces) stand"), "five cones stand");
         assert_eq!(
             said("its passengers, six in number, wait"),
             "its six passengers wait"

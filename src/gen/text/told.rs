@@ -169,7 +169,7 @@ fn without_empty_places(tokens: &[Token]) -> Vec<Token> {
 
 /// "a van driver has stopped for them": his van has; who drives is not on foot.
 fn drivers(tokens: &[Token]) -> Vec<Token> {
-    const DRIVES: &str = "stops|stop|has stopped|have stopped|stopped|brakes|is braking|yields|is yielding|gives way|is giving way|lets|is letting|drives|drive|is driving|are driving|overtakes|overtake|is overtaking|are overtaking|turns|is turning|approaches|is approaching|follows|is following|tailgates|is tailgating|comes towards|is coming towards|cuts in|pulls out|is pulling out|reverses|is reversing|slows down|is slowing down";
+    const DRIVES: &str = "stops|stop|has stopped|have stopped|stopped|brakes|is braking|yields|is yielding|gives way|is giving way|lets|is letting|drives|drive|is driving|are driving|overtakes|overtake|is overtaking|are overtaking|turns|is turning|approaches|is approaching|follows|is following|tailgates|is tailgating|comes towards|is coming towards|cuts in|pulls out|is pulling out|reverses|is reversing|slows down|is slowing down|waits|is waiting|has to wait|must wait|waited";
     const FOOT: &str = "foot|pavement|sidewalk|footpath|walks|walking|kerb";
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
@@ -182,7 +182,10 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
                 .take_while(|t| !matches!(t.kind, TokenKind::Stop | TokenKind::Comma))
                 .any(|t| FOOT.split('|').any(|w| w == t.text))
         };
-        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !on_foot();
+        let whose = out
+            .last()
+            .is_some_and(|b| matches!(b.text.as_str(), "whose" | "its" | "their" | "the"));
+        let drives = who && begins(&tokens[i + 1..], DRIVES).is_some() && !on_foot() && !whose;
         let vehicle = out.last().is_some_and(
             |b| matches!(look_up(&b.text), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle()),
         );
@@ -191,6 +194,10 @@ fn drivers(tokens: &[Token]) -> Vec<Token> {
             .rev()
             .take(3)
             .any(|b| matches!(b.text.as_str(), "a" | "an" | "another" | "one" | "two" | "three"));
+        // ("the bus driver waits": the bus, if none was named)
+        let kind = out.last().map(|b| b.text.clone());
+        let the = out.len() > 1 && out[out.len() - 2].text == "the";
+        let fresh = fresh || the && kind.is_some_and(|k| out[..out.len() - 1].iter().all(|b| b.text != k));
         match (drives, vehicle, fresh) {
             (true, true, true) if t.text.ends_with('s') => {
                 let many = out.pop().map(|b| super::lexicon::plural(&b.text));

@@ -11,7 +11,10 @@ const DONE: &str =
 
 /// A prompt whose clauses are turned round.
 pub fn round(tokens: &[Token]) -> Vec<Token> {
-    let out = by_whom_first(tokens);
+    let out = of_so_many(tokens);
+    let out = among_them(&in_between(&out));
+    let out = nearer_than(&out);
+    let out = by_whom_first(&out);
     let out = followed_so_far(&out);
     let out = has_beside_it(&out);
     nearest_of_all(&side_again(&out))
@@ -49,9 +52,10 @@ fn nearest_of_all(tokens: &[Token]) -> Vec<Token> {
         let ahead = tokens[from..i]
             .iter()
             .any(|t| matches!(t.text.as_str(), "ahead" | "front" | "before"));
-        let others: Vec<&Token> = tokens[from..i]
-            .iter()
-            .filter(|t| is_noun(t) && t.text != noun.text)
+        let ours = |k: usize| k > 0 && matches!(tokens[k - 1].text.as_str(), "ego" | "host" | "my" | "our");
+        let others: Vec<&Token> = (from..i)
+            .filter(|k| is_noun(&tokens[*k]) && tokens[*k].text != noun.text && !ours(*k))
+            .map(|k| &tokens[k])
             .collect();
         let told = tokens[from..i].iter().any(|t| is_noun(t) && t.text == noun.text);
         if ahead && told && !others.is_empty() {
@@ -81,6 +85,164 @@ fn nearest_of_all(tokens: &[Token]) -> Vec<Token> {
             out.pop();
         }
         i = end;
+    }
+    out
+}
+
+/// "a family of four walks": four people; "a group of four cars" names them.
+fn of_so_many(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let found = begins(
+            &tokens[i..],
+            "a family of|a group of|a party of|the family of|a crowd of|a team of|a gang of|a queue of",
+        )
+        .filter(|n| {
+            let many = tokens.get(i + n).is_some_and(|t| number(t).is_some());
+            let named = tokens.get(i + n + 1).is_some_and(|t| t.text == "of")
+                || tokens[i + n..]
+                    .iter()
+                    .skip(1)
+                    .take(3)
+                    .take_while(|t| t.kind == TokenKind::Word && !super::rephrase::is_place_word(t))
+                    .any(is_noun);
+            many && !named
+        });
+        match found {
+            Some(n) => {
+                out.push(tokens[i + n].clone());
+                out.push(word("people", &tokens[i]));
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "in between, on the road: one worker": between them.
+fn in_between(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], "in between").filter(|n| {
+            let next = tokens.get(i + n);
+            let alone = ends(next)
+                || next.is_some_and(|t| {
+                    matches!(
+                        t.text.as_str(),
+                        "is" | "are" | "stands" | "stand" | "there" | "walks" | "a" | "an" | "waits" | ":"
+                    ) && !tokens[i + n..].iter().take(8).any(|t| t.text == "and")
+                });
+            alone && i > 0
+        });
+        match n {
+            Some(n) => {
+                out.extend(["between", "them"].map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "five people, among them two children, wait": two of them children.
+fn among_them(tokens: &[Token]) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let led = out.last().is_some_and(|t| t.kind == TokenKind::Comma);
+        let many = begins(
+            &tokens[i..],
+            "among them|amongst them|among whom|among which|including",
+        )
+        .filter(|_| {
+            led && out
+                .iter()
+                .rev()
+                .skip(1)
+                .take(3)
+                .any(|t| number(t).is_some_and(|n| n > 1))
+        })
+        .filter(|n| {
+            tokens
+                .get(i + n)
+                .is_some_and(|t| number(t).is_some() || matches!(t.text.as_str(), "a" | "an"))
+        })
+        .filter(|n| {
+            let list = tokens[i + n..]
+                .iter()
+                .take_while(|t| t.kind == TokenKind::Word || matches!(t.kind, TokenKind::Number(_)));
+            tokens.get(i + n + 1).is_some_and(is_noun) && !list.clone().any(|t| t.text == "and")
+        });
+        match many {
+            Some(n) => {
+                let one = matches!(tokens[i + n].text.as_str(), "a" | "an");
+                out.push(if one {
+                    word("one", &tokens[i])
+                } else {
+                    tokens[i + n].clone()
+                });
+                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+                if one {
+                    out.push(tokens[i + n].clone());
+                }
+                i += n + 1;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+/// "the taxi is nearer to us than the bus": behind it, where both are ahead of us.
+fn nearer_than(tokens: &[Token]) -> Vec<Token> {
+    const NEARER: &str = "nearer to us than|closer to us than|nearer to me than|closer to me than|nearer than|closer than|nearer to the ego vehicle than|closer to the ego vehicle than|less far away than|not as far away as";
+    const FARTHER: &str = "farther away from us than|further away from us than|farther from us than|further from us than|farther away than|further away than|farther from me than|further from me than|farther than|further than";
+    let thing = |i: usize| {
+        let article = begins(&tokens[i..], "the|a|an|that|this").unwrap_or(0);
+        article > 0 && tokens[i + article..].iter().take(2).any(is_noun)
+    };
+    let turned = tokens.iter().enumerate().any(|(i, t)| {
+        t.text == "oncoming" || begins(&tokens[i..], "behind us|behind me|towards us|towards me").is_some()
+    });
+    let mut out: Vec<Token> = Vec::new();
+    let mut i = 0;
+    while i < tokens.len() {
+        let n = begins(&tokens[i..], NEARER)
+            .map(|n| (n, "behind"))
+            .or_else(|| begins(&tokens[i..], FARTHER).map(|n| (n, "in front of")))
+            .filter(|(n, _)| {
+                thing(i + n)
+                    && !turned
+                    && out.last().is_some_and(|t| {
+                        matches!(
+                            t.text.as_str(),
+                            "is" | "are" | "was" | "were" | "stands" | "drives" | "being"
+                        )
+                    })
+            });
+        match n {
+            Some((n, by)) => {
+                out.extend(by.split(' ').map(|w| word(w, &tokens[i])));
+                i += n;
+            }
+            None => {
+                out.push(tokens[i].clone());
+                i += 1;
+            }
+        }
     }
     out
 }

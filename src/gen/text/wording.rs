@@ -139,7 +139,8 @@ pub fn prompt(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let tokens = super::answers::in_full(&super::common::plain(tokens));
     let tokens = super::choices::made(&super::reports::plain(&tokens));
-    let tokens = &super::turned::round(&super::people::seen(&tokens))[..];
+    let tokens = super::spaces::filled(&super::people::seen(&tokens));
+    let tokens = &super::turned::round(&super::plain_turns::filled(&tokens))[..];
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         out.extend(without_aim(&without_purpose(&super::titles::without(sentence))));
     }

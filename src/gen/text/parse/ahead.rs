@@ -141,9 +141,19 @@ impl Parser<'_> {
     }
 
     pub(super) fn takes_object(&self, item: &Item) -> bool {
-        places::RELATIONS
-            .iter()
-            .any(|(_, l)| l.split('|').any(|w| w.trim() == item.words))
+        let listed = |words: &str| {
+            places::RELATIONS
+                .iter()
+                .any(|(_, l)| l.split('|').any(|w| w.trim() == words))
+        };
+        // "somewhere behind us"
+        let bare = || {
+            super::super::words::phrases::ADVERBS
+                .split('|')
+                .filter_map(|a| item.words.strip_prefix(a)?.strip_prefix(' '))
+                .any(listed)
+        };
+        listed(&item.words) || bare()
     }
 
     pub(super) fn noun_directly(&self, i: usize) -> bool {

@@ -71,7 +71,13 @@ impl Parser<'_> {
             .find(|&i| !self.mentions[i].gone && !self.mentions[i].is_anchor);
         let more = last.is_some_and(|i| {
             let m = &self.mentions[i];
-            !self.edits && nth == Some(m.spec.count.n) && !m.spec.relations.is_empty() && m.spec.count.n > 1
+            // ("five vans, two of them white, ... a sixth")
+            let rest = self.whole.filter(|w| Some(*w) != last && !self.mentions[*w].gone);
+            let many = m.spec.count.n + rest.map_or(0, |w| self.mentions[w].spec.count.n);
+            !self.edits
+                && (nth == Some(m.spec.count.n) || nth == Some(many))
+                && !m.spec.relations.is_empty()
+                && many > 1
         });
         if more && self.pending.is_none() {
             if self
@@ -137,6 +143,7 @@ impl Parser<'_> {
                 twin.spec.relations.clear();
                 twin.spec.span = span;
                 twin.spec.count = Count::exactly(1);
+                twin.like = true;
                 for frag in &self.fronted {
                     apply(&mut twin.spec, frag);
                 }
@@ -212,6 +219,14 @@ impl Parser<'_> {
         part.spec.attributes.retain(|a| a != "in total");
         self.mentions.push(part);
         let index = self.mentions.len() - 1;
+        // "four cars, two of them red, are parked": what follows is said of all of them
+        let aside = !self.edits
+            && self.chain
+            && self
+                .item(self.at.wrapping_sub(1))
+                .is_some_and(|b| b.tag == Tag::Comma)
+            && self.head == [parent];
+        self.aside = aside.then_some((parent, index));
         self.whole = Some(parent);
         let rest = left.n - n;
         let parent_spec = &mut self.mentions[parent].spec;
@@ -225,6 +240,41 @@ impl Parser<'_> {
         self.last = vec![index];
         self.chain = false;
         self.pre = Pre::default();
+    }
+
+    /// After the comma that ends ", two of them red,": the subject goes on with its verb.
+    pub(super) fn past_aside(&mut self) {
+        let Some((whole, part)) = self
+            .aside
+            .filter(|a| self.last == [a.1] && self.mentions.len() == a.1 + 1)
+        else {
+            self.aside = None;
+            return;
+        };
+        let verb = match self.item(self.at + 1).map(|n| n.tag) {
+            Some(Tag::Is(Sense::State(_, true))) => true,
+            Some(Tag::Is(Sense::Filler)) => self
+                .item(self.at + 1)
+                .is_some_and(|n| matches!(n.words.as_str(), "is" | "are" | "was" | "were" | "have" | "has")),
+            Some(Tag::Is(Sense::Rel(_) | Sense::EgoRel(_))) => self.item(self.at + 1).is_some_and(|n| {
+                super::super::words::verbs::RELATING
+                    .iter()
+                    .flat_map(|r| r.1.split('|'))
+                    .any(|v| super::super::words::verbs::forms(v.trim()).base == n.words)
+            }),
+            _ => false,
+        };
+        if !verb {
+            return;
+        }
+        self.aside = None;
+        self.flush();
+        self.head = [whole, part]
+            .into_iter()
+            .filter(|i| !self.mentions[*i].gone)
+            .collect();
+        self.last.clone_from(&self.head);
+        self.list.clone_from(&self.head);
     }
 
     /// True if a colon or a dash stands right before.

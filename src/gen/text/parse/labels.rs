@@ -1,11 +1,14 @@
 //! Names that reports give to what they tell of: "Vehicle 1, a red hatchback", "the target, a van".
 
+use super::super::description::Anchor;
 use super::super::lexicon::Sense;
-use super::super::mention::{Mention, Pre};
+use super::super::mention::{Frag, Mention, Pre, Prep, apply};
 use super::super::tag::Tag;
+use super::super::tokens::Span;
 use super::super::words::objects::Noun;
 use super::Parser;
 use crate::scene::Class;
+use crate::scene::graph::RelationKind;
 
 impl Parser<'_> {
     /// "Vehicle 1": the number is a name, if it stands after a noun in the singular and no noun or unit follows. True if
@@ -51,6 +54,28 @@ impl Parser<'_> {
         }
         self.pre = Pre::default();
         true
+    }
+
+    /// "the only other vehicle is an oncoming lorry": what is said of the lorry holds for what it is.
+    pub(super) fn adjectives_of_same(&mut self, pre: &Pre, span: Span) {
+        let Some(&i) = self.head.last().or(self.last.last()).filter(|_| !self.edits) else {
+            return;
+        };
+        for kinds in pre.attributes.iter().filter_map(|a| a.strip_prefix('\u{1}')) {
+            let frag = Frag {
+                prep: Prep::Rels(
+                    kinds
+                        .split(',')
+                        .filter_map(|n| RelationKind::ALL.into_iter().find(|k| k.name() == n))
+                        .collect(),
+                ),
+                anchor: Anchor::Ego,
+                and: None,
+                distance_m: None,
+                span,
+            };
+            apply(&mut self.mentions[i].spec, &frag);
+        }
     }
 
     /// True if this is what a report named first and now describes: ", a red hatchback,".

@@ -83,6 +83,7 @@ pub(super) struct Parser<'a> {
     with: bool,
     pub(super) edits: bool,
     pub(super) order: Option<(bool, Option<usize>)>, // a list by distance: near first, the one before
+    pub(super) aside: Option<(usize, usize)>,        // a group and the part of it that a comma set apart
     denied: bool,                                    // what follows says where something is not
     pub(super) listed: Vec<Stated>,                  // where what a colon introduces stands
 }
@@ -149,6 +150,7 @@ impl<'a> Parser<'a> {
             with: false,
             edits,
             order: None,
+            aside: None,
             denied: false,
             listed: Vec::new(),
         }
@@ -246,6 +248,7 @@ impl<'a> Parser<'a> {
                     ..Pre::default()
                 };
                 self.not_goes_on &= self.list_goes_on();
+                self.past_aside();
                 self.linked = true;
                 self.denied = false;
                 self.fresh = true;
@@ -448,7 +451,7 @@ fn is_directed(kind: RelationKind) -> bool {
     )
 }
 
-fn is_prenominal(words: &str) -> bool {
+pub(super) fn is_prenominal(words: &str) -> bool {
     matches!(
         words,
         "oncoming"

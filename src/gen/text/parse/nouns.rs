@@ -58,6 +58,7 @@ impl Parser<'_> {
             || self.says_which(noun, word, plural, &pre)
             || self.is_that(noun, word, &pre)
         {
+            self.adjectives_of_same(&pre, whole);
             return;
         }
         let total = !self.edits && self.pending.is_none() && self.in_total();
@@ -261,6 +262,18 @@ impl Parser<'_> {
             .copied()
             .filter(|_| self.with || hers && !self.edits);
         self.with = false;
+        // "a lorry has a motorbike on its left and a cyclist on its right": the lorry's right
+        let shared = || {
+            let sibling = self.last.last().filter(|_| self.anded && !self.edits)?;
+            let m = self.mentions.get(*sibling)?;
+            let host = m.host?;
+            let by_host = m.spec.relations.iter().any(|r| r.anchor == Anchor::Object(host));
+            let placed = matches!(self.sense(self.at + 1), Some(Sense::Possessed(_)))
+                || matches!(self.sense(self.at + 1), Some(Sense::Rel(_)))
+                    && matches!(self.sense(self.at + 2), Some(Sense::Pronoun));
+            (by_host && placed && *sibling != index).then_some(host)
+        };
+        let host = host.or_else(shared);
         if !old {
             self.mentions[index].host = host;
         }
@@ -320,7 +333,11 @@ impl Parser<'_> {
         {
             self.mentions[index].spec.state = Some(state);
         }
-        for frag in self.fronted.clone() {
+        for mut frag in self.fronted.clone() {
+            if let (Some(before), Anchor::Object(_)) = (self.after_then(&frag), frag.anchor) {
+                frag.anchor = Anchor::Object(before);
+                frag.distance_m = None;
+            }
             if frag.anchor != Anchor::Object(index) {
                 apply(&mut self.mentions[index].spec, &frag);
             }
@@ -416,7 +433,19 @@ impl Parser<'_> {
                 .filter(|m| m.spec.noun == new.spec.noun && !m.gone)
                 .count()
                 == 1;
-        if !(new.definite || bare || again) || new.pick.is_some() || self.edits {
+        // "a bus and two vans crashed. Bus: 20 m ahead.": the label names it again
+        let label = new.bare
+            && new.uncounted
+            && opens
+            && self.pending.is_none()
+            && self.item(self.at + 1).is_some_and(|n| n.words == ":")
+            && self
+                .mentions
+                .iter()
+                .filter(|m| stem(&m.spec.noun) == stem(&new.spec.noun) && !m.gone)
+                .count()
+                == 1;
+        if !(new.definite || bare || again || label) || new.pick.is_some() || self.edits {
             return None;
         }
         let fits = |m: &Mention| {

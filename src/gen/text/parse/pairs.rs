@@ -13,7 +13,8 @@ impl Parser<'_> {
     fn together(&self, many: u32, noun: Option<&'static Noun>) -> Option<Vec<usize>> {
         let own = self.targets();
         // a clause that begins with them has no subject of its own yet
-        let skip = |i: &usize| own.contains(i) && !self.fresh && self.pending.is_some();
+        let skip =
+            |i: &usize| own.contains(i) && !self.fresh && self.pending.as_ref().is_some_and(|p| !p.fresh);
         let mut sum = 0;
         let mut found = Vec::new();
         for i in (0..self.mentions.len()).rev() {
@@ -57,7 +58,26 @@ impl Parser<'_> {
 
     /// "the two machines", "both cars", "these three vehicles": those that were named one by one. True if it was that.
     pub(super) fn named_together(&mut self, noun: &'static Noun, plural: bool, span: Span) -> bool {
-        let Some(many) = self.pre.count.filter(|c| c.is_exact() && c.n > 1).map(|c| c.n) else {
+        let between = self
+            .pending
+            .as_ref()
+            .is_some_and(|p| p.first.is_none() && p.prep == Prep::Rels(vec![RelationKind::Between]));
+        let fits = |m: &super::super::mention::Mention| {
+            !m.gone && noun.classes.contains(&m.spec.class) && m.classes.len() <= noun.classes.len()
+        };
+        // "between the machines": the two that were named one by one
+        let two = between
+            && self.pre.count.is_none()
+            && self.pre.article == Some(true)
+            && self.mentions.iter().filter(|m| fits(m)).count() == 2
+            && self.mentions.iter().all(|m| !fits(m) || m.spec.count.n == 1);
+        let Some(many) = self
+            .pre
+            .count
+            .filter(|c| c.is_exact() && c.n > 1)
+            .map(|c| c.n)
+            .or(two.then_some(2))
+        else {
             return false;
         };
         let pointed = self.pre.article == Some(true)
@@ -119,7 +139,9 @@ impl Parser<'_> {
             .item(self.at + 1)
             .is_some_and(|n| n.words.starts_with("of them") || n.words == "of");
         // "between the two a child stands"
-        let another = matches!(self.sense(self.at + 1), Some(Sense::Article(false)));
+        let another = self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "a" | "an" | "another"));
         if count != 2 || self.noun_ahead(self.at + 1) && !self.finite_next() && !another || of {
             return false;
         }
@@ -166,6 +188,39 @@ impl Parser<'_> {
         }
         self.last = all;
         self.relative = true;
+        self.fresh = false;
+        self.chain = false;
+        true
+    }
+
+    /// "Three cars. All of them are oncoming": those that the sentence before was about. True if it was that.
+    pub(super) fn all_again(&mut self) -> bool {
+        let of = self
+            .item(self.at + 1)
+            .is_some_and(|n| matches!(n.words.as_str(), "of them" | "of these" | "of those" | "them" | "these" | "those" | "are" | "were"))
+            // "A bus and a van. All oncoming."
+            || self.ends(self.at.wrapping_sub(1))
+                && matches!(
+                    self.sense(self.at + 1),
+                    Some(Sense::EgoRel(_) | Sense::Rel(_) | Sense::State(_, false) | Sense::In | Sense::At)
+                );
+        let open = self.head.is_empty() && self.fronted.is_empty() && self.pending.is_none();
+        let there = |i: &usize| !self.mentions[*i].gone && !self.mentions[*i].is_anchor;
+        let before: Vec<usize> = if self.before.iter().any(there) {
+            self.before.iter().copied().filter(there).collect()
+        } else {
+            (0..self.mentions.len()).rev().find(there).into_iter().collect()
+        };
+        let many = before.iter().map(|i| self.mentions[*i].spec.count.n).sum::<u32>() > 1;
+        if self.edits || !of || !open || !many || self.noun_ahead(self.at + 2) {
+            return false;
+        }
+        self.at += usize::from(
+            self.item(self.at + 1)
+                .is_some_and(|n| n.words.starts_with("of") || n.words.starts_with("th")),
+        );
+        self.last.clone_from(&before);
+        self.head = before;
         self.fresh = false;
         self.chain = false;
         true

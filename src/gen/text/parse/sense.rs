@@ -60,7 +60,10 @@ impl<'a> Parser<'a> {
                         return false;
                     }
                     // "one car 10 m ahead and one 20 m ahead, all in our lane"
-                    Pick::All if matches!(item.words.as_str(), "all" | "all of") && self.all_named() => {
+                    Pick::All
+                        if matches!(item.words.as_str(), "all" | "all of")
+                            && (self.all_named() || self.all_again()) =>
+                    {
                         return false;
                     }
                     _ => self.pre.pick = Some(pick),
@@ -82,6 +85,14 @@ impl<'a> Parser<'a> {
                 if !self.edits && !self.fresh && !self.last.is_empty() && self.pending.is_none() =>
             {
                 self.state(ObjectState::Moving, true, false, item);
+            }
+            // "a man with a stick": a thing, no command
+            Sense::Verb(_)
+                if !self.edits
+                    && matches!(self.sense(self.at.wrapping_sub(1)), Some(Sense::Article(false))) =>
+            {
+                self.pre = Pre::default();
+                self.with = false;
             }
             Sense::Verb(verb) => {
                 // In a description, "remove all cars" means that there are none, other verbs add nothing.

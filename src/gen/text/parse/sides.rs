@@ -159,6 +159,10 @@ impl Parser<'_> {
                     if matches!(self.sense(j.wrapping_sub(1)), Some(Sense::Article(true))) => {}
                 Tag::Is(Sense::State(_, true)) => return self.subject_after(j + 1),
                 Tag::Is(Sense::Filler) => match item.words.as_str() {
+                    // "The second one, right in front of it, is a bus" says what it is
+                    "is" | "was" if matches!(self.head.as_slice(), [h] if self.mentions[*h].like) => {
+                        return false;
+                    }
                     "is" | "are" | "was" | "were" | "there is" | "there are" => {
                         return self.subject_after(j + 1);
                     }

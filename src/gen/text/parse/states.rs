@@ -128,6 +128,14 @@ impl Parser<'_> {
                 )
             });
             let m = &mut self.mentions[t];
+            // "the parked van, which stands on the right": still parked
+            let stands = matches!(
+                item.words.as_str(),
+                "stands" | "stand" | "is standing" | "are standing" | "stood" | "standing"
+            );
+            if stands && m.spec.state == Some(ObjectState::Parked) {
+                continue;
+            }
             if pedals && m.spec.class == Class::Pedestrian && !self.edits {
                 m.mounts(Class::Bicycle);
             }
