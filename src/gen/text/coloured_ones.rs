@@ -36,7 +36,12 @@ pub fn named(tokens: &[Token]) -> Vec<Token> {
             out.extend(colour.chain(noun));
             continue;
         }
-        let nouns = || (0..i).rev().filter(|k| is_noun(&tokens[*k]));
+        // (people have no colour: "the red one has a new owner, the blue one has not")
+        let nouns = || {
+            (0..i)
+                .rev()
+                .filter(|k| is_noun(&tokens[*k]) && !is_person(&tokens[*k]))
+        };
         let of_colour = nouns().find(|k| *k > 0 && is_colour(&tokens[k - 1]));
         let noun = match of_colour.or_else(|| nouns().next()) {
             Some(k) => singular(&tokens[k].text).to_owned(),
@@ -49,4 +54,8 @@ pub fn named(tokens: &[Token]) -> Vec<Token> {
 
 fn is_noun(t: &Token) -> bool {
     matches!(look_up(&t.text), Some(Sense::Noun(..)))
+}
+
+fn is_person(t: &Token) -> bool {
+    matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if n.classes[0] == crate::scene::Class::Pedestrian)
 }

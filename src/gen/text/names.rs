@@ -75,6 +75,12 @@ const SAME: &[&str] = &[
     "bollard|post|steel bollard|concrete bollard",
 ];
 
+/// Nouns for kinds that have several names: what they may be called.
+const KINDS: &[(&str, &[&str])] = &[(
+    "emergency vehicle|emergency service|emergency services|rescue vehicle",
+    &["police car", "ambulance", "fire engine"],
+)];
+
 /// Plural (and every singular) to singular.
 static SINGULAR: LazyLock<HashMap<String, &'static str>> = LazyLock::new(|| {
     let mut table = HashMap::new();
@@ -179,6 +185,10 @@ fn is_called(name: &str, noun: &str) -> bool {
             .collect::<Vec<_>>()
     };
     let (of_name, of_noun) = (group(&name), group(noun));
+    let kind = KINDS.iter().find(|k| k.0.split('|').any(|w| w == noun));
+    if let Some((_, names)) = kind {
+        return names.iter().any(|n| is_called(&name, n));
+    }
     part(&name, noun) || part(noun, &name) || of_name.iter().any(|g| of_noun.contains(g))
 }
 
@@ -268,6 +278,8 @@ mod tests {
         assert!(is_called("school bus", "bus"));
         assert!(is_called("fire engine", "fire truck"));
         assert!(is_called("van", "delivery van"));
+        assert!(is_called("police car", "emergency vehicle"));
+        assert!(!is_called("taxi", "emergency vehicle"));
         assert!(!is_called("taxi", "van"));
         assert!(!is_called("minivan", "van"));
         assert_eq!(singular("taxis"), "taxi");

@@ -73,10 +73,13 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     .map(|(i, n)| (all + i, n))?;
     // "everything but the bus" and the like are numbers of their own
     let group = first_noun(&tokens[all..i]).filter(|x| x.0 < 5)?;
-    let plain = is(
-        tokens.get(all + group.0),
-        &["everything", "everyone", "everybody", "objects", "things"],
-    ) && !is_place(&tokens[all + group.1..i])
+    // ("all moving objects" are some)
+    let plain = group.0 < 2
+        && is(
+            tokens.get(all + group.0),
+            &["everything", "everyone", "everybody", "objects", "things"],
+        )
+        && !is_place(&tokens[all + group.1..i])
         && !tokens[all..all + group.0]
             .iter()
             .any(|t| matches!(look_up(text(t)), Some(Sense::State(..))));

@@ -1,6 +1,7 @@
 //! One for another in roundabout words: "in the digger's place stands a van", "rather than one tanker, two cars are coming",
 //! "where there was a woman there are now four people", "for just as many cones".
 
+use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
@@ -9,7 +10,8 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = place_of(tokens, talk);
+    let out = keep_and_rest(tokens, talk);
+    let out = place_of(no_but(out, talk), talk);
     let out = where_was(out, talk);
     let out = in_place_of(out, talk);
     let out = just_as_many(out, talk);
@@ -28,6 +30,155 @@ fn is_fresh(t: Option<&Token>) -> bool {
     is(t, &["a", "an", "another"]) || t.is_some_and(|t| number(t).is_some())
 }
 
+/// "keep the emergency vehicles, lose the rest": only those stay, where all of their kind are named.
+fn keep_and_rest(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if !is(
+        tokens.first(),
+        &["keep", "leave", "retain", "spare", "save", "preserve"],
+    ) {
+        return tokens;
+    }
+    let found = (3..tokens.len()).find_map(|i| {
+        let link = ends(tokens.get(i)) || is(tokens.get(i), &["and", "but"]);
+        link.then_some(())?;
+        let k = i + 1 + usize::from(is(tokens.get(i + 1), &["and", "but"]));
+        let n = leads(
+            &tokens[k..],
+            &[
+                "remove",
+                "delete",
+                "erase",
+                "lose",
+                "drop",
+                "clear",
+                "scrap",
+                "discard",
+                "take away",
+                "get rid of",
+                "throw out",
+                "clear away",
+                "do away with",
+                "bin",
+            ],
+        )?;
+        let m = leads(
+            &tokens[k + n..],
+            &[
+                "the rest",
+                "everything else",
+                "all else",
+                "anything else",
+                "all the rest",
+                "the remainder",
+                "all other things",
+                "every other thing",
+            ],
+        )?;
+        let late = k + n + m;
+        let closed = tokens[late..]
+            .iter()
+            .all(|t| ends(Some(t)) || is(Some(t), &["please", "away", "out"]));
+        closed.then_some((i, is(tokens.get(k + n + m - 1), &["rest"])))
+    });
+    let Some((i, rest)) = found else {
+        return tokens;
+    };
+    let np = &tokens[1..i];
+    let Some((a, b)) = first_noun(np).filter(|x| x.0 < 5) else {
+        return tokens;
+    };
+    // ("keep the nearest cone, remove the rest" speaks of cones)
+    let fit = talk.fits(np);
+    let whole = !rest || talk.fits(&np[a..b]) == fit;
+    if fit == 0
+        || !whole
+        || !is(
+            np.first(),
+            &["the", "my", "both", "all", "these", "those", "that"],
+        )
+    {
+        return tokens;
+    }
+    led("keep only", &tokens[0], &[np])
+}
+
+/// "no motorbike this time but a cyclist": the motorbike becomes one.
+fn no_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(
+        &tokens,
+        &["no", "not a", "not the", "no longer a", "not a single"],
+    ) else {
+        return tokens;
+    };
+    let Some((0, b)) = first_noun(&tokens[n..]) else {
+        return tokens;
+    };
+    let mut k = n + b;
+    k += leads(
+        &tokens[k..],
+        &[
+            "this time",
+            "any more",
+            "anymore",
+            "any longer",
+            "here",
+            "there",
+            "for once",
+        ],
+    )
+    .unwrap_or(0);
+    k += usize::from(tokens.get(k).is_some_and(|t| t.kind == TokenKind::Comma));
+    let but = leads(&tokens[k..], &["but", "rather", "instead"]);
+    let Some(new) = but
+        .and_then(|m| tokens.get(k + m..))
+        .filter(|x| is_fresh(x.first()))
+    else {
+        return tokens;
+    };
+    let Some((_, e)) = first_noun(new).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let tail = trimmed(&new[e..]);
+    // ("on the left sidewalk", where it is)
+    let there = is_place(tail) && !has_noun(tail) && {
+        let np = [&tokens[n..n + b], tail].concat();
+        talk.fits(&np) == talk.fits(&tokens[n..n + b])
+    };
+    let same = there
+        || leads(
+            tail,
+            &[
+                "coming the same way",
+                "going the same way",
+                "in the same place",
+                "the same way",
+                "in the same lane",
+                "at the same place",
+                "in the same spot",
+                "on the same spot",
+                "there",
+            ],
+        )
+        .is_some();
+    let old = talk.fits(&tokens[n..n + b]);
+    let many = matches!(look_up(text(&tokens[n + b - 1])), Some(Sense::Noun(_, true)));
+    if old == 0 || old > 1 && !many || !(tail.is_empty() || same && !has_noun(tail)) {
+        return tokens;
+    }
+    let mut fresh = new[..e].to_vec();
+    if old > 1 && is(fresh.first(), &["a", "an"]) {
+        fresh[0].text = "one".into();
+    }
+    let with = led("with", &tokens[0], &[&fresh]);
+    let many = Token {
+        kind: TokenKind::Number(old as f64),
+        text: old.to_string(),
+        span: tokens[0].span,
+    };
+    let counted: &[Token] = if old > 1 { std::slice::from_ref(&many) } else { &[] };
+    led("replace the", &tokens[0], &[counted, &tokens[n..n + b], &with])
+}
+
 /// "in the digger's place": in place of the digger.
 fn place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
@@ -38,6 +189,31 @@ fn place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let place = is(tokens.get(end), &["place", "stead", "spot", "position"]);
         (place && talk.fits(&tokens[i + 1..end]) > 0).then_some((i, end))
     });
+    // "the cyclist's place is taken by a bus"
+    let taken = first_noun(&tokens)
+        .filter(|x| x.0 < 3 && is(tokens.first(), &["the", "that"]))
+        .and_then(|(_, b)| {
+            let n = leads(
+                &tokens[b..],
+                &[
+                    "place is taken by",
+                    "place is now taken by",
+                    "place has been taken by",
+                    "place was taken by",
+                    "place should be taken by",
+                    "spot is taken by",
+                    "spot has been taken by",
+                    "place goes to",
+                    "spot goes to",
+                    "place belongs to",
+                ],
+            )?;
+            (is_fresh(tokens.get(b + n)) && talk.fits(&tokens[..b]) > 0).then_some((b, b + n))
+        });
+    if let Some((b, new)) = taken {
+        let with = led("with", &tokens[b], &[&tokens[new..]]);
+        return led("replace", &tokens[0], &[&tokens[..b], &with]);
+    }
     match found {
         Some((i, end)) => {
             let of = led("in place of", &tokens[i], &[&tokens[i + 1..end]]);

@@ -266,6 +266,11 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
                         | "out"
                         | "off"
                         | "superfluous"
+                        | "enough"
+                        | "suffice"
+                        | "suffices"
+                        | "do"
+                        | "plenty"
                 )
             });
     (removing || goes).then(|| {
@@ -457,6 +462,10 @@ pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
 
 /// "a tanker comes in its place", "put one lorry at the same place"
 pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) -> Option<Vec<Piece>> {
+    // "remove the car and put one in its place" is more than one command
+    if super::some_of::removes(inner.first()) {
+        return None;
+    }
     let mut rest: Vec<Token> = inner[..i].to_vec();
     rest.extend_from_slice(&inner[i + n..]);
     let (a, b) = first_noun(&rest)?;

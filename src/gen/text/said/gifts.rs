@@ -288,13 +288,23 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let before = trimmed(&tokens[..i]);
     let after = trimmed(&tokens[close..]);
     // what follows only says that it is better so
-    let praise = after.is_empty()
+    let praise = !has_noun(after)
         || after.iter().any(|t| {
             matches!(
                 text(t),
                 "better" | "nicer" | "prefer" | "perfect" | "cleaner" | "best" | "simpler"
             )
         });
+    // "without the bus, please, and at night"
+    let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    if i == 0 && after.iter().any(style) && !has_noun(after) {
+        let sky = after.iter().position(style).unwrap_or(0);
+        let from = after[..sky]
+            .iter()
+            .rposition(|t| !is(Some(t), &["at", "in", "by", "with"]))
+            .map_or(0, |k| k + 1);
+        return [&remove[..], &led("and make it", &tokens[i], &[&after[from..]])].concat();
+    }
     if i == 0 {
         return match (
             praise,
@@ -440,7 +450,10 @@ fn as_many_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "there are",
         "there shall be",
     ];
-    if leads(&tokens[..i], &wish) == Some(i) {
+    let whole = leads(&tokens, super::some_of::WISHES) == Some(i)
+        && !is(tokens.first(), &["add", "insert"])
+        && talk.fits(&tokens[i + n..as_]) > 0;
+    if whole || leads(&tokens[..i], &wish) == Some(i) {
         return led(
             "keep exactly",
             &tokens[0],

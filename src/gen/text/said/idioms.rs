@@ -202,13 +202,17 @@ fn intention(tokens: &[Token]) -> Option<Vec<Token>> {
         who.first(),
         &["the", "all", "both", "my", "that", "those", "these"],
     );
-    if !definite || !super::super::rephrase::is_verb(rest.first()?) {
+    let orders = super::super::rephrase::is_verb(rest.first()?) || is(rest.first(), &["have", "let", "get"]);
+    if !definite || !orders {
         return None;
     }
     let at =
         (1..rest.len()).find(|k| is(rest.get(*k), &["it", "him", "her", "them", "his", "their", "its"]))?;
     let own = is(rest.get(at), &["his", "her", "their", "its"])
         || is(rest.get(at), &["her"]) && is(rest.get(at + 1), &["vehicle", "car"]);
+    // ("have her stand there": she)
+    let own =
+        own && !(is(rest.get(at), &["her"]) && rest.get(at + 1).is_some_and(|t| is_finite(text(t), true)));
     let thing = usize::from(is(rest.get(at + 1), &["vehicle", "car", "machine", "ride"]));
     if own && thing == 0 {
         return None;

@@ -6,6 +6,7 @@
 mod acts;
 mod causing;
 mod colours;
+mod company;
 mod dealt;
 mod doers;
 mod exception;
@@ -24,6 +25,7 @@ mod of_several;
 mod orders;
 mod parting;
 mod passive;
+mod plainly;
 mod predicate;
 mod presence;
 mod question;
@@ -35,12 +37,14 @@ mod shorthand;
 mod skies;
 mod some_of;
 mod spaces;
+mod splits;
 mod spoken;
 mod steps;
 mod strips;
 mod subject;
 mod sums;
 mod swap;
+mod terse;
 #[cfg(test)]
 mod tests;
 mod topics;
@@ -108,14 +112,25 @@ impl Talk<'_> {
         fitting(self.map, self.boxes, m, &mentions).len()
     }
 
-    /// How far the only box is that fits these words, m.
+    /// How far the boxes are that fit these words, m, if they are all as far.
     fn range(&self, np: &[Token]) -> Option<f64> {
         let (_, mentions) = parse(self.text, &tag(np));
         let m = mentions.iter().find(|m| !m.is_anchor && !m.gone)?;
-        match fitting(self.map, self.boxes, m, &mentions).as_slice() {
-            [only] => Some(self.boxes.get(only)?.center_m.truncate().length().round()),
-            _ => None,
-        }
+        let ids = fitting(self.map, self.boxes, m, &mentions);
+        let far: Vec<f64> = ids
+            .iter()
+            .filter_map(|id| self.boxes.get(id))
+            .map(|b| b.center_m.truncate())
+            .map(|p| {
+                if ids.len() > 1 {
+                    p.x.abs().max(p.y.abs())
+                } else {
+                    p.length()
+                }
+            })
+            .collect();
+        let first = far.first()?;
+        far.iter().all(|f| (f - first).abs() < 2.5).then(|| first.round())
     }
 
     /// A noun for a pronoun.
@@ -149,8 +164,10 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = remarks::plain(spoken::sides_named(body.to_vec()), talk);
-    let out = exchanges::plain(presence::plain(wider::plain(out, talk), talk), talk);
+    let out = plainly::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = splits::plain(remarks::plain(out, talk), talk);
+    let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
+    let out = terse::plain(exchanges::plain(out, talk), talk);
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
     let out = likewise::plain(out, talk);

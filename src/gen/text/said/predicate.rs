@@ -109,6 +109,8 @@ impl Part {
             ],
         )
         .is_some();
+        // ("has gone at a distance of 20 m": there it is)
+        let ours = ours || leads(rest, &["at a distance of", "at distance"]).is_some();
         let ends = !ours
             && (rest.is_empty()
                 || matches!(rest[0].kind, TokenKind::Comma | TokenKind::Stop | TokenKind::Mark)

@@ -23,7 +23,7 @@ const OURSELVES: &[&str] = &[
 ];
 const QUEUED: &str =
     "in the queue|in the line|in line|in the row|in the column|in the convoy|in the string|in the file";
-const ACROSS: &str = "from the sidewalk they are on over to the one across the road|from the sidewalk they are on to the one across the road|over to the sidewalk across the road|over to the one across the road|over to the one on the other side|over to the one opposite|to the one across the road|to the one across the street|over to the one across the street|to the sidewalk across the road|to the sidewalk across the street|to the pavement across the road|to the pavement across the street|to the sidewalk on the other side of the road|to the pavement on the other side of the road";
+const ACROSS: &str = "from the sidewalk they are on over to the one across the road|from the sidewalk they are on to the one across the road|over to the sidewalk across the road|over to the one across the road|over to the one on the other side|over to the one opposite|to the one across the road|to the one across the street|over to the one across the street";
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {

@@ -232,8 +232,8 @@ fn none(tokens: &[Token]) -> Option<Vec<Token>> {
         trimmed(of)
     };
     let (_, b) = first_noun(of).filter(|x| x.0 < 3)?;
-    of[b..]
-        .iter()
-        .all(stays)
-        .then(|| led("remove all the", &tokens[0], &[&of[..b]]))
+    // ("on the left" is a place)
+    let side =
+        (b + 1..of.len()).any(|k| is(of.get(k), &["left"]) && is(of.get(k - 1), &["the", "my", "our"]));
+    (!side && of[b..].iter().all(stays)).then(|| led("remove all the", &tokens[0], &[&of[..b]]))
 }

@@ -34,13 +34,221 @@ const LIKE: &[&str] = &[
 /// A sentence without such remarks.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, LOOKS, "faces us");
+    let out = replaced(&out, "please to", "please");
+    let out = gone_on(put_there(out));
+    let out = as_before(reported(out));
+    let out = replaced(&out, "the two on foot|both on foot", "the two pedestrians");
+    let out = replaced(&out, "the three on foot", "the three pedestrians");
+    let out = replaced(&out, "the one on foot", "the pedestrian");
+    let out = and_left(out);
+    let out = between_us(out);
     let out = deserving(out);
     let out = of_a_kind(out);
     let out = tidied(out);
-    let out = watching(out);
+    let out = left_there(watching(out));
+    let out = that_makes(out);
     let out = theirs_instead(out);
     let out = in_to(out);
     like_the_first(out, talk)
+}
+
+/// "a colleague told me the taxi is a van": what was told.
+fn reported(tokens: Vec<Token>) -> Vec<Token> {
+    const TELLS: &[&str] = &[
+        "told me that",
+        "told me",
+        "told us that",
+        "told us",
+        "tells me that",
+        "tells me",
+        "tells us",
+        "tells us that",
+        "says that",
+        "says",
+        "said that",
+        "said",
+        "reports that",
+        "reports",
+        "reported that",
+        "reported",
+        "claims that",
+        "claims",
+        "claimed that",
+        "informs us that",
+        "informed us that",
+        "informed me that",
+        "insists that",
+        "swears that",
+        "swears",
+        "reminds me that",
+        "reminded me that",
+        "points out that",
+        "pointed out that",
+        "notes that",
+        "noted that",
+        "remembers that",
+        "recalls that",
+    ];
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let fresh = is(tokens.first(), &["a", "my", "our", "an", "one"]);
+    let Some(n) = leads(&tokens[b..], TELLS).filter(|_| fresh) else {
+        return tokens;
+    };
+    let rest = &tokens[b + n..];
+    if is(
+        rest.first(),
+        &[
+            "the", "both", "all", "there", "it", "my", "two", "three", "nobody", "a", "an", "one",
+        ],
+    ) && (has_noun(rest) || is(rest.first(), &["it"]))
+    {
+        return rest.to_vec();
+    }
+    tokens
+}
+
+/// "as before, only that the van is behind us": what is other.
+fn as_before(tokens: Vec<Token>) -> Vec<Token> {
+    const SAME: &[&str] = &[
+        "as before",
+        "same as before",
+        "the same as before",
+        "everything as before",
+        "all as before",
+        "like before",
+        "just as before",
+        "as it was",
+        "as it is",
+        "everything as it is",
+        "everything as it was",
+        "all as it was",
+        "the same scene",
+        "same scene",
+        "the same again",
+        "same again",
+        "the same thing",
+    ];
+    let Some(n) = leads(&tokens, SAME) else {
+        return tokens;
+    };
+    let mut k = n;
+    while tokens.get(k).is_some_and(|t| {
+        mark(t) && t.kind != TokenKind::Stop
+            || is(
+                Some(t),
+                &["only", "just", "but", "except", "that", "with", "and", "now"],
+            )
+    }) {
+        k += 1;
+    }
+    let rest = &tokens[k..];
+    // ("as before, but with a bus" brings one)
+    let with = is(tokens.get(k - 1), &["with"]);
+    if k == n || rest.is_empty() || with {
+        return tokens;
+    }
+    rest.to_vec()
+}
+
+/// "has found a new owner and left": it is gone, whatever it did before.
+fn and_left(tokens: Vec<Token>) -> Vec<Token> {
+    const LEFT: &[&str] = &[
+        "left",
+        "gone",
+        "driven off",
+        "driven away",
+        "walked off",
+        "walked away",
+        "disappeared",
+        "vanished",
+        "gone home",
+        "moved on",
+        "ridden off",
+        "run off",
+        "departed",
+        "cleared off",
+    ];
+    let found = (2..tokens.len()).find_map(|i| {
+        is(tokens.get(i), &["and"]).then_some(())?;
+        let n = leads(&tokens[i + 1..], LEFT)?;
+        let end = i + 1 + n;
+        tokens.get(end).is_none_or(mark).then_some(())?;
+        let from = tokens[..i]
+            .iter()
+            .rposition(|t| mark(t) || is(Some(t), &["and", "but"]))
+            .map_or(0, |k| k + 1);
+        let (_, b) = first_noun(&tokens[from..i]).filter(|x| x.0 < 4)?;
+        let has = from + b;
+        let known = is(
+            tokens.get(from),
+            &["the", "both", "my", "that", "those", "these", "all", "one", "two"],
+        );
+        (known && is(tokens.get(has), &["has", "have"]) && i > has + 1).then_some((has + 1, i + 1))
+    });
+    match found {
+        Some((from, to)) => [&tokens[..from], &tokens[to..]].concat(),
+        None => tokens,
+    }
+}
+
+/// "behind us, with 10 m between": 10 m behind us.
+fn between_us(tokens: Vec<Token>) -> Vec<Token> {
+    const PLACES: &[&str] = &[
+        "behind us",
+        "behind me",
+        "ahead of us",
+        "ahead of me",
+        "in front of us",
+        "in front of me",
+        "behind",
+        "ahead",
+        "in front",
+    ];
+    let Some((i, n)) = find(&tokens, PLACES).filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let mut k = i + n;
+    while is(tokens.get(k), &[",", "with", "and", "leaving", "keeping", "at"])
+        || tokens.get(k).is_some_and(|t| t.kind == TokenKind::Comma)
+    {
+        k += 1;
+    }
+    let metres =
+        tokens.get(k).is_some_and(|t| number(t).is_some()) && super::words::is_unit(tokens.get(k + 1));
+    let Some(m) = leads(
+        &tokens[(k + 2).min(tokens.len())..],
+        &[
+            "between us",
+            "in between",
+            "between",
+            "of space",
+            "of space between",
+            "of space between us",
+            "of space in between",
+            "of distance",
+            "distance",
+            "gap",
+            "free",
+            "apart",
+            "of distance between us",
+            "of air between us",
+        ],
+    )
+    .filter(|_| metres && k > i + n) else {
+        return tokens;
+    };
+    if tokens.get(k + 2 + m).is_some_and(|t| !mark(t)) {
+        return tokens;
+    }
+    [
+        &tokens[..i],
+        &tokens[k..k + 2],
+        &tokens[i..i + n],
+        &tokens[k + 2 + m..],
+    ]
+    .concat()
 }
 
 /// "there is one barrier too many; take it away": said twice.
@@ -254,6 +462,86 @@ fn tidied(tokens: Vec<Token>) -> Vec<Token> {
     }
 }
 
+/// "somebody parked a bike at the right kerb": one is there.
+fn left_there(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "somebody has",
+            "someone has",
+            "somebody",
+            "someone",
+            "they have",
+            "they",
+        ],
+    ) else {
+        return tokens;
+    };
+    let verb = is(
+        tokens.get(n),
+        &[
+            "parked",
+            "put",
+            "left",
+            "placed",
+            "abandoned",
+            "dumped",
+            "dropped",
+            "set",
+            "stood",
+            "added",
+            "erected",
+        ],
+    );
+    let k = n + 1 + usize::from(is(tokens.get(n + 1), &["up", "down"]));
+    let fresh =
+        is(tokens.get(k), &["a", "an", "another"]) || tokens.get(k).is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(&tokens[k.min(tokens.len())..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    if verb && fresh && is_place(&tokens[k + b..]) {
+        return led("add", &tokens[0], &[&tokens[k..]]);
+    }
+    tokens
+}
+
+/// "add three more, then there are five": it says so already.
+fn that_makes(mut tokens: Vec<Token>) -> Vec<Token> {
+    let found = (3..tokens.len()).find_map(|i| {
+        mark(&tokens[i - 1]).then_some(())?;
+        let n = leads(
+            &tokens[i..],
+            &[
+                "then there are",
+                "then there will be",
+                "then we have",
+                "that makes",
+                "which makes",
+                "that is",
+                "making",
+                "so there are then",
+            ],
+        )?;
+        tokens.get(i + n).filter(|t| number(t).is_some())?;
+        let end = i
+            + n
+            + 1
+            + leads(
+                &tokens[i + n + 1..],
+                &["of them", "in all", "altogether", "in total", "all told"],
+            )
+            .unwrap_or(0);
+        let counted = tokens[..i]
+            .iter()
+            .any(|t| is(Some(t), &["more", "another", "fewer", "less"]));
+        (counted && tokens.get(end).is_none_or(|t| t.kind == TokenKind::Stop)).then_some((i - 1, end))
+    });
+    if let Some((from, end)) = found {
+        tokens.drain(from..end);
+    }
+    tokens
+}
+
 /// "three people watch it all from the left pavement": they are there.
 fn watching(tokens: Vec<Token>) -> Vec<Token> {
     const WATCH: &[&str] = &[
@@ -313,25 +601,32 @@ fn watching(tokens: Vec<Token>) -> Vec<Token> {
     }
 }
 
-/// "their mother stands there instead": a mother, in the place of those who are gone.
+/// "their mother stands there instead", "a lorry is parked there instead": in the place of those who are gone.
 fn theirs_instead(tokens: Vec<Token>) -> Vec<Token> {
-    let body = trimmed(&tokens);
-    if !is(body.first(), &["their", "his", "her", "its", "a", "an"]) {
-        return tokens;
-    }
-    let Some((_, b)) = first_noun(body).filter(|x| x.0 < 3) else {
+    let whole = trimmed(&tokens);
+    let from = whole
+        .iter()
+        .rposition(|t| mark(t) || is(Some(t), &["and"]))
+        .map_or(0, |k| k + 1);
+    let body = &whole[from..];
+    let theirs = is(body.first(), &["their", "his", "her", "its"]);
+    let fresh =
+        is(body.first(), &["a", "an", "another"]) || body.first().is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 < 4 && (theirs || fresh)) else {
         return tokens;
     };
     let tail = &body[b..];
     // ("instead" at the end is cut off by `trimmed`)
-    let instead = tokens.iter().any(|t| text(t) == "instead");
+    let instead = tokens.iter().rev().take(3).any(|t| text(t) == "instead");
     let verb = leads(
         tail,
         &[
             "stands",
             "stand",
             "is",
+            "are",
             "waits",
+            "wait",
             "sits",
             "walks",
             "now stands",
@@ -340,6 +635,11 @@ fn theirs_instead(tokens: Vec<Token>) -> Vec<Token> {
             "is waiting",
             "comes",
             "has come",
+            "is parked",
+            "are parked",
+            "is now parked",
+            "has parked",
+            "are standing",
         ],
     )
     .unwrap_or(0);
@@ -354,14 +654,112 @@ fn theirs_instead(tokens: Vec<Token>) -> Vec<Token> {
             "in her place",
         ],
     );
-    if verb > 0 && there == Some(tail.len() - verb) && (instead || is(tail.last(), &["place"])) {
-        return led(
-            "put a",
-            &tokens[0],
-            &[&body[1..b], &led("in their place", &tokens[0], &[])],
-        );
+    if verb == 0 || there != Some(tail.len() - verb) || !(instead || is(tail.last(), &["place"])) {
+        return tokens;
     }
-    tokens
+    let np = if theirs {
+        led("a", &body[0], &[&body[1..b]])
+    } else {
+        body[..b].to_vec()
+    };
+    let put = led("put", &body[0], &[&np, &led("in their place", &body[0], &[])]);
+    [&whole[..from], &put].concat()
+}
+
+/// "put there a bus": put a bus there.
+fn put_there(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find(|i| {
+        let fresh = is(tokens.get(i + 1), &["a", "an", "one", "another", "some"])
+            || tokens.get(i + 1).is_some_and(|t| number(t).is_some());
+        is(tokens.get(*i), &["there", "here"])
+            && is(tokens.get(i - 1), &["put", "place", "set", "park"])
+            && fresh
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    match first_noun(&tokens[i + 1..]).filter(|x| x.0 < 4) {
+        Some((_, b)) => {
+            let there = led("in its place", &tokens[i], &[]);
+            [
+                &tokens[..i],
+                &tokens[i + 1..i + 1 + b],
+                &there,
+                &tokens[i + 1 + b..],
+            ]
+            .concat()
+        }
+        None => tokens,
+    }
+}
+
+/// "the taxi has gone on to 20 m ahead": there it is.
+fn gone_on(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], &["has", "have", "is"]).unwrap_or(0);
+        let m = leads(
+            &tokens[i + n..],
+            &[
+                "gone",
+                "moved",
+                "driven",
+                "rolled",
+                "pulled",
+                "gone on",
+                "moved on",
+                "driven on",
+                "rolled on",
+                "gone ahead",
+                "goes",
+                "moves",
+                "drives",
+                "rolls",
+                "rides",
+                "ridden",
+                "goes on",
+                "moves on",
+                "drives on",
+                "rolls on",
+                "rides on",
+                "closed",
+                "closed up",
+                "closes up",
+                "come",
+                "comes",
+                "crept",
+                "crept up",
+            ],
+        )?;
+        let mut k = i + n + m;
+        k += usize::from(is(
+            tokens.get(k),
+            &["on", "up", "in", "out", "forward", "back", "further", "ahead"],
+        ));
+        k += usize::from(is(tokens.get(k), &["to", "until"]));
+        let to = is(tokens.get(k - 1), &["to", "until"]);
+        let metres =
+            tokens.get(k).is_some_and(|t| number(t).is_some()) && super::words::is_unit(tokens.get(k + 1));
+        let there = is(tokens.get(k + 2), &["ahead", "behind"])
+            || leads(
+                &tokens[(k + 2).min(tokens.len())..],
+                &["in front of us", "in front of me", "in front"],
+            )
+            .is_some();
+        (to && metres && there && has_noun(&tokens[..i])).then_some((i, k))
+    });
+    let Some((i, k)) = found else {
+        return tokens;
+    };
+    let mut rest = tokens[k..].to_vec();
+    if rest.get(3).is_none_or(|t| mark(t) || is(Some(t), &["and"])) && is(rest.get(2), &["ahead", "behind"]) {
+        let us = led(
+            if text(&rest[2]) == "ahead" { "of us" } else { "us" },
+            &tokens[i],
+            &[],
+        );
+        rest.splice(3..3, us);
+    }
+    [&tokens[..i], &led("should be", &tokens[i], &[]), &rest].concat()
 }
 
 /// "pull the cones in to 15 m ahead": to there, not by so much.

@@ -44,7 +44,60 @@ const CLOUDLESS: &str = "not a cloud in the sky|not a single cloud in the sky|no
 const SUN: &str = "have the sun out|the sun out|the sun comes out|the sun has come out|let the sun come out|let the sun shine|bring out the sun|bring the sun out|the sun should shine|the sun shines again|get the sun out";
 const SUNSET: &str = "let the sun set|the sun sets|the sun is setting|the sun goes down|the sun is going down|the sun should set|let the sun go down";
 const CLOUDED: &str = "cover the sky with clouds|cover the sky in clouds|fill the sky with clouds|clouds cover the sky|clouds fill the sky|clouds covering the sky|cloud the sky over|a sky full of clouds|the sky is full of clouds|let clouds gather|let clouds cover the sky|the sky clouds over|the sky has clouded over";
+const BLUE: &str = "sky : blue|sky : clear|sky : cloudless|sky blue|skies blue|sky : sunny|weather : fine|weather : good|the fog thins out|the fog thins|fog thins out|the fog has thinned out|the fog is thinning|the mist thins out|the mist has thinned out|fog out|rain out";
 const SET: &str = "set the time of day to|set the time to|change the time of day to|change the time to|switch the time to|move the time to|put the time at|turn the clock to|set the clock to|set the weather to|change the weather to|switch the weather to|turn the weather to|set the lighting to|change the lighting to|set the light to|change the light to|darken everything to|darken the scene to|darken the whole scene to|plunge everything into|plunge the scene into|brighten everything to|brighten the scene to|turn everything to|turn everything into|turn the scene into|bathe everything in|bathe the scene in|drown everything in|wrap everything in|wrap the scene in|cover everything in|shroud everything in|shroud the scene in";
+
+/// "the sun has burnt off the fog", "the wind has blown the rain away": clear.
+fn dispelled(tokens: Vec<Token>) -> Vec<Token> {
+    const DONE: &[&str] = &[
+        "burnt off",
+        "burned off",
+        "burns off",
+        "blown away",
+        "blows away",
+        "blew away",
+        "dispelled",
+        "dispels",
+        "dispersed",
+        "disperses",
+        "driven off",
+        "driven away",
+        "drives away",
+        "swept away",
+        "sweeps away",
+        "broken through",
+        "breaks through",
+        "blown",
+        "blows",
+        "burnt",
+        "burned",
+        "chased away",
+        "chases away",
+        "driven out",
+        "beaten",
+        "eaten up",
+        "melted away",
+    ];
+    let found = (1..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], DONE)?;
+        let the = i + n + usize::from(is(tokens.get(i + n), &["the", "this", "that", "all"]));
+        is(tokens.get(the), SKIES).then_some(())?;
+        let end = the + 1 + usize::from(is(tokens.get(the + 1), &["away", "off"]));
+        let lead = &tokens[..i];
+        let by = lead.len() < 6
+            && lead.iter().any(|t| {
+                is(
+                    Some(t),
+                    &["sun", "wind", "breeze", "sunshine", "warmth", "storm", "heat"],
+                )
+            });
+        by.then_some(end)
+    });
+    match found {
+        Some(end) => [&led("clear weather", &tokens[0], &[])[..], &tokens[end..]].concat(),
+        None => tokens,
+    }
+}
 
 /// "fog where there was rain": fog.
 fn where_was(tokens: Vec<Token>) -> Vec<Token> {
@@ -115,6 +168,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let mut out = replaced(tokens, CLOUDLESS, "clear weather");
     out = replaced(&out, SUN, "clear weather");
     out = replaced(&out, SUNSET, "make it dusk");
+    out = dispelled(replaced(&out, BLUE, "clear weather"));
     out = where_was(out);
     out = replaced(&out, CLOUDED, "overcast weather");
     out = replaced(&out, SET, "make it");

@@ -232,7 +232,8 @@ pub(super) fn other_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 tokens.get(*k),
                 &[
                     "to", "over", "onto", "across", "should", "is", "are", "on", "from", "goes", "go",
-                    "crosses",
+                    "crosses", "has", "have", "must", "walk", "walks", "cross", "move", "moves", "change",
+                    "changes",
                 ],
             )
         })

@@ -64,7 +64,11 @@ pub(super) fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         &np[a..b]
     };
     let plain_np = !np.iter().any(is_verb_word) && !np.iter().any(|t| t.kind != TokenKind::Word);
-    let Some(first) = rest.first().filter(|_| plain_np) else {
+    // "the woman wants to catch the bus: ..." is a clause
+    let clause = np
+        .get(end)
+        .is_some_and(|t| super::words::is_finite(text(t), false) || super::lists::HELPERS.contains(&text(t)));
+    let Some(first) = rest.first().filter(|_| plain_np && !clause) else {
         return tokens;
     };
     let the: Vec<Token> =

@@ -13,12 +13,14 @@ use crate::scene::graph::LaneRole as L;
 
 const ENGINE: &str = "everything that has an engine|anything that has an engine|everything with an engine|anything with an engine|all things with an engine|everything that has a motor|anything that has a motor|everything with a motor|anything with a motor|whatever has an engine|whatever has a motor|everything motorised|everything motorized|everything that is motorised|everything that runs on an engine|everything powered by an engine";
 const TWO_WHEELS: &str = "everything on two wheels|everything with two wheels|anything on two wheels|anything with two wheels|all two wheelers|everyone on two wheels|everybody on two wheels|everything that has two wheels|whatever has two wheels";
+const RIDERS: &str = "everybody who rides a bike|everyone who rides a bike|everybody who rides a bicycle|everyone who rides a bicycle|everyone on a bike|everybody on a bike|everyone on a bicycle|everybody on a bicycle|everyone riding a bike|everybody riding a bike|anyone on a bike|anybody on a bike|everyone who cycles|everybody who cycles|all who cycle|all who ride a bike|everybody cycling|everyone cycling|anyone who cycles|whoever rides a bike|whoever is on a bike";
 const WHEELS: &str = "everything on wheels|everything with wheels|anything on wheels|anything with wheels|everything that has wheels|anything that has wheels|everything on four wheels|everything with four wheels";
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, ENGINE, "all motor vehicles");
     let out = replaced(&out, TWO_WHEELS, "all bicycles and all motorcycles");
+    let out = replaced(&out, RIDERS, "all bicycles");
     let out = replaced(&out, WHEELS, "all vehicles and all bicycles");
     let out = replaced(
         &out,

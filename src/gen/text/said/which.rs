@@ -156,7 +156,7 @@ fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 matches!(
                     look_up(text(t)),
                     Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))
-                )
+                ) || is(Some(t), &["oncoming", "approaching"])
             });
             plain.then(|| end + noun_at(&tokens[end..]).unwrap_or(1))
         };

@@ -404,8 +404,32 @@ fn as_far(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             "behind me",
             "ahead of me",
             "in front of me",
+            "on our right",
+            "on our left",
+            "to our right",
+            "to our left",
+            "behind us",
+            "ahead of us",
+            "in front of us",
         ],
     );
+    // ("from behind us to in front of us": where it goes)
+    let side = side.map(|(i, n)| {
+        match find(
+            &tokens[i + n..],
+            &[
+                "in front of us",
+                "in front of me",
+                "ahead of us",
+                "ahead of me",
+                "behind us",
+                "behind me",
+            ],
+        ) {
+            Some((k, m)) if is(tokens.get(i.wrapping_sub(1)), &["from"]) => (i + n + k, m),
+            _ => (i, n),
+        }
+    });
     let noun = first_noun(&tokens).filter(|n| n.0 < 4);
     let (Some((at, n)), Some((place, _)), Some((_, end))) = (same, side, noun) else {
         return tokens;
