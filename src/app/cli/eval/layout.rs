@@ -22,6 +22,10 @@ use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 const SETS: &[(&str, &str)] = &[
     ("names.jsonl", include_str!("../../../../tests/data/names.jsonl")),
     (
+        "causes_k.jsonl",
+        include_str!("../../../../tests/data/causes_k.jsonl"),
+    ),
+    (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
     ),
