@@ -181,7 +181,7 @@ mod tests {
         );
         assert_eq!(
             said("What is behind us? A van, and a bus follows it."),
-            "a van is behind us , and a bus follows it ."
+            "behind us : a van , and a bus follows it ."
         );
         assert_eq!(said("Where is the bus? 20 m ahead."), "the bus is 20 m ahead .");
         assert_eq!(

@@ -285,10 +285,11 @@ fn rides(tokens: &[Token]) -> Vec<Token> {
         let opens = i == 0
             || tokens[i - 1].kind != TokenKind::Word
             || matches!(tokens[i - 1].text.as_str(), "and" | "while");
-        let named = out
-            .iter()
-            .any(|t| is_noun(t) && !people.contains(&t.text.as_str()));
-        let new = who.filter(|w| opens && !named && !people.contains(w));
+        let named = || {
+            out.iter()
+                .any(|t| is_noun(t) && !people.contains(&t.text.as_str()))
+        };
+        let new = who.filter(|w| opens && !people.contains(w) && !named());
         if let Some(who) = new {
             out.extend(["a", who].map(|w| word(w, t)));
             people.push(who);
