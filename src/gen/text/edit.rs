@@ -468,9 +468,18 @@ impl Editor<'_> {
             self.note(format!("{:?}: what should change was not understood", c.text));
             return None;
         }
+        let spared: Vec<BoxId> = c
+            .except
+            .iter()
+            .flat_map(|m| match choose(&self.map, &self.boxes, m, &c.except) {
+                Chosen::These(ids) => ids,
+                _ => super::select::fitting(&self.map, &self.boxes, m, &c.except),
+            })
+            .collect();
         let mut all = Vec::new();
         for (k, mention) in c.targets.iter().enumerate() {
-            if k > 0 && !removing && !c.each {
+            let pair = c.verb == Verb::Replace && c.by.as_ref().is_some_and(|by| by.plural);
+            if k > 0 && !removing && !c.each && !pair {
                 break;
             }
             let chosen = match c.nth {
@@ -495,6 +504,14 @@ impl Editor<'_> {
                     let recent = candidates.iter().map(|x| x.id);
                     all.extend(recent.filter(|id| self.last.contains(id)));
                 }
+                // ("but keep the black car" tells which of two is not meant)
+                Chosen::Several { ref candidates, .. }
+                    if !mention.plural
+                        && candidates.iter().filter(|x| !spared.contains(&x.id)).count() == 1 =>
+                {
+                    let others = candidates.iter().map(|x| x.id);
+                    all.extend(others.filter(|id| !spared.contains(id)));
+                }
                 Chosen::Several { what, candidates } => {
                     self.out.questions.push(Question {
                         text: format!("{} {what}: which?", candidates.len()),
@@ -504,13 +521,7 @@ impl Editor<'_> {
                 }
             }
         }
-        for spared in &c.except {
-            let ids = match choose(&self.map, &self.boxes, spared, &c.except) {
-                Chosen::These(ids) => ids,
-                _ => super::select::fitting(&self.map, &self.boxes, spared, &c.except),
-            };
-            all.retain(|id| !ids.contains(id));
-        }
+        all.retain(|id| !spared.contains(id));
         // "remove everything else": but what was spoken of
         if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else") {
             all.retain(|id| !self.last.contains(id));

@@ -184,6 +184,13 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
     let list = words(&items);
     let has = |w: &str| list.contains(&w);
     let definite_next = matches!(list.first(), Some(&"the" | &"my" | &"that" | &"this"));
+    // "drop one of them", "drop the other two"
+    let points = list.first().is_some_and(|w| {
+        w.starts_with("the ")
+            || w.ends_with(" of")
+            || w.contains(" of ")
+            || matches!(*w, "it" | "them" | "both" | "all" | "every")
+    }) || list.get(1).is_some_and(|w| w.starts_with("of"));
     let only = list.iter().take(3).any(|w| {
         matches!(
             *w,
@@ -245,7 +252,7 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             Verb::Move
         }
         // "drop the barrier" takes it away, "drop a barrier" puts one in
-        Some(Verb::Add) if definite_next && matches!(first, "drop") => Verb::Remove,
+        Some(Verb::Add) if matches!(first, "drop") && (definite_next || points) => Verb::Remove,
         Some(v) => v,
     };
     let implied = given.is_none();

@@ -215,6 +215,24 @@ fn only_one(t: &Token, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<Class> {
     (boxes.values().filter(|b| b.class == class).count() == 1).then_some(class)
 }
 
+/// "take it out", "remove them": nothing but that.
+fn takes_it(words: &str) -> bool {
+    let words = words.to_lowercase();
+    let mut list = words
+        .split_whitespace()
+        .filter(|w| !matches!(*w, "so" | "please" | "just" | "then"));
+    let removes = list.next().is_some_and(|w| {
+        matches!(
+            w,
+            "take" | "remove" | "delete" | "erase" | "drop" | "clear" | "get"
+        )
+    });
+    let it = list
+        .next()
+        .is_some_and(|w| matches!(w, "it" | "them" | "him" | "her"));
+    removes && it && list.count() < 3
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
@@ -306,6 +324,31 @@ impl<'t> Reader<'t> {
                 Piece::Plain(tokens) => {
                     out.extend(imperatives(self.text, &rephrase(&tokens), &mut self.last_noun));
                 }
+            }
+        }
+        // "delete the car behind us, but keep the black car"
+        let kept: Vec<Mention> = out
+            .iter()
+            .filter(|c| c.verb == Verb::Keep && !c.only && c.change.is_none())
+            .flat_map(|c| {
+                c.targets
+                    .iter()
+                    .filter(|m| m.definite && m.uncounted && !m.plural && m.spec.relations.is_empty())
+            })
+            .cloned()
+            .collect();
+        for c in out
+            .iter_mut()
+            .filter(|c| c.verb == Verb::Remove && c.except.is_empty())
+        {
+            c.except.clone_from(&kept);
+        }
+        // "I don't need the blue car any more, take it out": said twice
+        for i in 1..out.len() {
+            let again =
+                out[i].verb == Verb::Remove && out[i - 1].verb == Verb::Remove && takes_it(&out[i].text);
+            if again {
+                out[i].verb = Verb::Note;
             }
         }
         let quiet = out.iter().all(|c| c.verb == Verb::Note);

@@ -94,8 +94,21 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
             let t = &tokens[*k];
             // (the verb of "that follows us" is no end)
             let relative = (1..3).any(|n| is(tokens.get(k.wrapping_sub(n)), &["that", "which", "who"]));
+            // ("the vehicles parked on the right")
+            let does = *k == from + noun
+                && matches!(
+                    text(t),
+                    "parked"
+                        | "standing"
+                        | "waiting"
+                        | "driving"
+                        | "walking"
+                        | "riding"
+                        | "coming"
+                        | "stopped"
+                );
             t.kind != TokenKind::Word
-                || !relative && (HELPERS.contains(&text(t)) || is_finite(text(t), true))
+                || !relative && !does && (HELPERS.contains(&text(t)) || is_finite(text(t), true))
                 || matches!(text(t), "with" | "by" | "into" | "to" | "onto")
                 // "and the coach" is spared, too
                 || text(t) == "and" && !(is(tokens.get(k + 1), &["the", "my", "that", "those"])

@@ -47,6 +47,7 @@ mod swap;
 mod terse;
 #[cfg(test)]
 mod tests;
+mod tidy;
 mod topics;
 mod totals;
 mod turns;
@@ -164,7 +165,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = plainly::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = plainly::plain(out, talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
     let out = terse::plain(exchanges::plain(out, talk), talk);

@@ -1,0 +1,517 @@
+//! What is said twice, beside the point or in an unusual order, in plain words.
+
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::replaced;
+use super::Talk;
+use super::some_of::removes;
+use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
+
+const EVERYTHING: &str = "everyone and everything|everything and everyone|everybody and everything|everything and everybody|anyone and anything|anything and anyone|anybody and anything";
+const TRAFFIC: &str =
+    "all traffic|all the traffic|any traffic|all other traffic|all of the traffic|every traffic";
+const WITH_IT: &str =
+    "with it to|with him to|with her to|with them to|along with it to|along to|together with it to";
+const MEANT: &str = "what i meant was|what i meant is|what i really meant was|what i wanted was|what i want is|what i actually meant was|what i actually want is";
+const AROUND: &str = "walking around here|walking about here|walking around there|walking around|walking about|wandering around|running around|strolling around|hanging around here|hanging around|hanging about|standing around here|standing around";
+const LIFT: &str =
+    "pick up the|pick up that|pick up all the|pick up all|pick up both|pick up every|pick up one of the";
+const SPARING: &[&str] = &[
+    "except",
+    "except for",
+    "but",
+    "apart from",
+    "other than",
+    "save for",
+    "besides",
+    "aside from",
+];
+
+/// A sentence (without its stop) in plainer words.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = replaced(&tokens, EVERYTHING, "everything");
+    let out = replaced(&out, TRAFFIC, "all vehicles");
+    let out = replaced(&out, WITH_IT, "to");
+    let out = replaced(&out, MEANT, "i meant");
+    let out = match is(out.first(), &["i", "we"]) {
+        true => replaced(&out, AROUND, ""),
+        false => out,
+    };
+    let out = lifted(out);
+    let out = than_there(out);
+    let out = all_that_is(out);
+    let out = no_more_sky(out);
+    let out = rest_stays(out);
+    let out = wished_gone(out, talk);
+    let out = out_and_in(out);
+    let out = left_alone(out);
+    let out = still_so(out);
+    let out = closer_to(out);
+    let out = other_out(out);
+    let out = ones_spared(out);
+    let out = no_but(out);
+    let out = enough_so(just_those(out));
+    let out = the_other_so_many(out);
+    let out = match find(&out, &["instead of"])
+        .filter(|(i, n)| out.get(i + n).is_some_and(|t| number(t).is_some()))
+    {
+        Some(_) => replaced(
+            &out,
+            "cross there|stand there|wait there|walk there|be there|stand here",
+            "",
+        ),
+        None => out,
+    };
+    let out = replaced(
+        &out,
+        "let its driver stand|and its driver stands|let the driver stand",
+        "add a man",
+    );
+    only_of(out, talk)
+}
+
+fn comma(t: &Token) -> bool {
+    t.kind == TokenKind::Comma
+}
+
+/// "pick up the cones": they go.
+fn lifted(tokens: Vec<Token>) -> Vec<Token> {
+    match leads(&tokens, &LIFT.split('|').collect::<Vec<_>>()) {
+        Some(_) => led("remove", &tokens[0], &[&tokens[2..]]),
+        None => tokens,
+    }
+}
+
+/// "rather in front of us than behind us": in front of us.
+fn than_there(tokens: Vec<Token>) -> Vec<Token> {
+    let wish = tokens
+        .iter()
+        .any(|t| matches!(text(t), "rather" | "better" | "prefer" | "sooner" | "id"));
+    let than = (2..tokens.len())
+        .find(|i| is(tokens.get(*i), &["than"]) && is_place(&tokens[i + 1..]) && !has_noun(&tokens[i + 1..]));
+    match than.filter(|_| wish) {
+        Some(i) => tokens[..i].to_vec(),
+        None => tokens,
+    }
+}
+
+/// "clear away everything that is ahead of us"
+fn all_that_is(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "everything that is",
+            "everything which is",
+            "everything thats",
+            "whatever is",
+            "all that is",
+            "everything that stands",
+            "everything that drives",
+        ],
+    ) else {
+        return tokens;
+    };
+    let removing = tokens[..i].iter().any(|t| removes(Some(t)));
+    if !removing || !is_place(&tokens[i + n..]) {
+        return tokens;
+    }
+    led("remove all objects", &tokens[i], &[&tokens[i + n..]])
+}
+
+/// "no more snow, just an overcast sky": the sky that comes.
+fn no_more_sky(tokens: Vec<Token>) -> Vec<Token> {
+    let sky = |t: &Token| {
+        matches!(
+            text(t),
+            "rain" | "snow" | "fog" | "clouds" | "sunshine" | "mist" | "storm" | "sandstorm" | "drizzle"
+        )
+    };
+    let lead = leads(
+        &tokens,
+        &["no more", "no", "without", "not any more", "enough of the"],
+    );
+    let Some(n) = lead.filter(|n| tokens.get(*n).is_some_and(sky)) else {
+        return tokens;
+    };
+    let from = n + 1;
+    let next = leads(
+        &tokens[from..]
+            .iter()
+            .filter(|t| !comma(t))
+            .cloned()
+            .collect::<Vec<_>>(),
+        &["just", "only", "but", "instead", "rather"],
+    );
+    let begin = from + tokens[from..].iter().take_while(|t| comma(t)).count();
+    match next {
+        Some(k) if begin + k < tokens.len() && !has_noun(&tokens[begin + k..]) => {
+            led("make it", &tokens[0], &[&tokens[begin + k..]])
+        }
+        _ => tokens,
+    }
+}
+
+/// "empty the car park, only the pedestrian stays": everything goes but him.
+fn rest_stays(tokens: Vec<Token>) -> Vec<Token> {
+    let clears = is(tokens.first(), &["empty", "clear", "remove", "delete", "erase"]);
+    let Some(i) = (2..tokens.len()).find(|i| comma(&tokens[*i]) || text(&tokens[*i]) == "and") else {
+        return tokens;
+    };
+    let rest = trimmed(&tokens[i..]);
+    let only = leads(rest, &["only", "just"]);
+    let stays = find(
+        rest,
+        &[
+            "stays",
+            "stay",
+            "remains",
+            "remain",
+            "is left",
+            "are left",
+            "may stay",
+            "can stay",
+            "should stay",
+            "should remain",
+        ],
+    );
+    match (only, stays) {
+        (Some(a), Some((b, n))) if clears && b + n == rest.len() && b > a && has_noun(&rest[a..b]) => {
+            led("remove everything except", &tokens[0], &[&rest[a..b]])
+        }
+        _ => tokens,
+    }
+}
+
+/// "I would like the farther truck and the black car gone"
+fn wished_gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "i would like",
+            "id like",
+            "i want",
+            "we want",
+            "i need",
+            "we would like",
+            "wed like",
+        ],
+    ) else {
+        return tokens;
+    };
+    let end = (i + n..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["gone", "removed", "deleted", "away", "taken"])
+            && tokens
+                .get(k + 1)
+                .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "away", "out"]))
+    });
+    let Some(end) = end else { return tokens };
+    let np = &tokens[i + n..end];
+    let list = np.iter().any(|t| text(t) == "and") && !np.iter().any(comma) && talk.fits(np) > 0;
+    let lead = tokens[..i].len() < 8 && first_noun(&tokens[..i]).is_none();
+    if !list || !lead {
+        return tokens;
+    }
+    let after = end + 1 + usize::from(is(tokens.get(end + 1), &["away", "out"]));
+    led("remove", &tokens[i], &[np, &tokens[after..]])
+}
+
+/// "both trucks out, one bus 20 m ahead in"
+fn out_and_in(tokens: Vec<Token>) -> Vec<Token> {
+    let out = (1..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["out"]) && tokens.get(i + 1).is_some_and(|t| comma(t) || text(t) == "and")
+    });
+    let (Some(i), Some(last)) = (out, tokens.last()) else {
+        return tokens;
+    };
+    let plain =
+        text(last) == "in" && i + 2 < tokens.len() - 1 && has_noun(&tokens[..i]) && !removes(tokens.first());
+    if !plain {
+        return tokens;
+    }
+    let what = trimmed(&tokens[i + 1..tokens.len() - 1]);
+    led(
+        "remove",
+        &tokens[0],
+        &[&tokens[..i], &led("and add", &tokens[i], &[what])],
+    )
+}
+
+/// "(turn it around) but leave it in our lane": it is there.
+fn left_alone(tokens: Vec<Token>) -> Vec<Token> {
+    const LEAVE: &[&str] = &[
+        "but leave it",
+        "but keep it",
+        "but leave them",
+        "but keep them",
+        "but let it stay",
+        "but leave him",
+        "but leave her",
+        "and leave it",
+        "and keep it",
+    ];
+    match find(&tokens, LEAVE).filter(|x| x.0 > 2) {
+        Some((i, n))
+            if (is_place(&tokens[i + n..]) || is(tokens.get(i + n), &["where", "there", "as"]))
+                && !tokens[i + n..].iter().any(|t| comma(t) || text(t) == "and") =>
+        {
+            trimmed(&tokens[..i]).to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+/// "make the car a motorcycle, staying in the left lane", "car -> cyclist, still coming towards us": as before.
+fn still_so(tokens: Vec<Token>) -> Vec<Token> {
+    let becomes = tokens.iter().any(|t| {
+        matches!(
+            text(t),
+            "make" | "into" | ">" | "replace" | "becomes" | "become" | "turn" | "swap" | "exchange"
+        )
+    });
+    let Some(i) = (3..tokens.len()).find(|i| comma(&tokens[*i])) else {
+        return tokens;
+    };
+    let rest = trimmed(&tokens[i..]);
+    let still = leads(rest, &["still", "but still", "yet still", "again"]).unwrap_or(0);
+    let goes = rest.get(still).is_some_and(|t| {
+        let w = text(t);
+        matches!(w, "staying" | "remaining" | "keeping")
+            || still > 0 && (w.ends_with("ing") || is_place(&rest[still..]))
+    });
+    let alone = !rest.iter().any(|t| comma(t) || matches!(text(t), "and" | "but"));
+    match becomes && goes && alone {
+        true => tokens[..i].to_vec(),
+        false => tokens,
+    }
+}
+
+/// "bring the truck closer, only 15 m ahead of us": to 15 m ahead of us.
+fn closer_to(tokens: Vec<Token>) -> Vec<Token> {
+    let way = (2..tokens.len()).find(|i| {
+        is(
+            tokens.get(*i),
+            &["closer", "nearer", "back", "forward", "further", "farther"],
+        ) && tokens.get(i + 1).is_some_and(comma)
+    });
+    let Some(i) = way else { return tokens };
+    let n = leads(
+        &tokens[i + 2..],
+        &[
+            "only",
+            "just",
+            "to",
+            "to only",
+            "to just",
+            "to about",
+            "about",
+            "so that it is",
+            "so it is",
+            "so that it is only",
+        ],
+    )
+    .unwrap_or(0);
+    let at = i + 2 + n;
+    let measured =
+        tokens.get(at).is_some_and(|t| number(t).is_some()) && super::words::is_unit(tokens.get(at + 1));
+    if !measured {
+        return tokens;
+    }
+    let start = i - usize::from(is(tokens.get(i - 1), &["a"]));
+    [&tokens[..start], &led("to", &tokens[i], &[]), &tokens[at..]].concat()
+}
+
+/// "leave just one pedestrian and take the other one out": said twice.
+fn other_out(tokens: Vec<Token>) -> Vec<Token> {
+    let keeps = is(tokens.first(), &["leave", "keep"]) && is(tokens.get(1), &["just", "only", "one"]);
+    let and = (3..tokens.len()).find(|i| {
+        text(&tokens[*i]) == "and"
+            && removes(tokens.get(i + 1))
+            && leads(
+                &tokens[i + 2..],
+                &[
+                    "the other",
+                    "the others",
+                    "the rest",
+                    "the other one",
+                    "the other ones",
+                    "all others",
+                    "all the others",
+                ],
+            )
+            .is_some()
+            && !has_noun(&tokens[i + 2..])
+    });
+    match and.filter(|_| keeps) {
+        Some(i) => tokens[..i].to_vec(),
+        None => tokens,
+    }
+}
+
+/// "all vehicles except the ones parked on the right": the vehicles.
+fn ones_spared(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, SPARING) else {
+        return tokens;
+    };
+    let Some((a, b)) = first_noun(&tokens[..i]).filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let ones = is(tokens.get(i + n), &["the", "those"]) && is(tokens.get(i + n + 1), &["ones", "one"]);
+    let those = is(tokens.get(i + n), &["those"]) && !ones;
+    match (ones, those) {
+        (true, _) => [
+            &tokens[..i + n],
+            &led("the", &tokens[i], &[]),
+            &tokens[a..b],
+            &tokens[i + n + 2..],
+        ]
+        .concat(),
+        (_, true) if !has_noun(&tokens[i + n..]) => [
+            &tokens[..i + n],
+            &led("the", &tokens[i], &[]),
+            &tokens[a..b],
+            &tokens[i + n + 1..],
+        ]
+        .concat(),
+        _ => tokens,
+    }
+}
+
+/// "no cars except the white car": all others go.
+fn no_but(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        let opens = i == 0 || comma(&tokens[i - 1]) || is(tokens.get(i - 1), &["and", "but", "with", "want"]);
+        if !opens || !is(tokens.get(i), &["no"]) {
+            return None;
+        }
+        let (k, n) = find(&tokens[i..], SPARING)?;
+        let np = &tokens[i + 1..i + k];
+        let whole =
+            first_noun(np).is_some_and(|x| x.0 < 3) && !np.iter().any(|t| comma(t) || text(t) == "and");
+        let the = is(tokens.get(i + k + n), &["the", "my", "that", "those"]);
+        (whole && the).then_some((i, k))
+    });
+    let Some((i, k)) = found else { return tokens };
+    let keep = i - usize::from(i > 0 && is(tokens.get(i - 1), &["with", "want"]));
+    [
+        &tokens[..keep],
+        &led("remove all", &tokens[i], &[]),
+        &tokens[i + 1..i + k],
+        &led(
+            "except",
+            &tokens[i + k],
+            &[&tokens[i + k + find(&tokens[i + k..], SPARING).map_or(1, |x| x.1)..]],
+        ),
+    ]
+    .concat()
+}
+
+/// "no excavator, no cones, just the car": what stays needs no word.
+fn just_those(tokens: Vec<Token>) -> Vec<Token> {
+    let denies = (0..tokens.len()).any(|i| is(tokens.get(i), &["no"]) && (i == 0 || comma(&tokens[i - 1])));
+    let last = (2..tokens.len()).rev().find(|i| comma(&tokens[*i]));
+    match last.filter(|_| denies) {
+        Some(i)
+            if is(tokens.get(i + 1), &["just", "only"])
+                && is(tokens.get(i + 2), &["the", "my"])
+                && first_noun(&tokens[i + 2..]).is_some_and(|x| i + 2 + x.1 == tokens.len()) =>
+        {
+            tokens[..i].to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+/// "two pedestrians are enough, so drop one of them": said twice.
+fn enough_so(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, _)) = find(
+        &tokens,
+        &[
+            "are enough",
+            "is enough",
+            "would be enough",
+            "are sufficient",
+            "will do",
+            "suffice",
+        ],
+    ) else {
+        return tokens;
+    };
+    let counted = tokens[..i].iter().any(|t| number(t).is_some());
+    let so = (i..tokens.len())
+        .find(|k| removes(tokens.get(k + 1)) && (comma(&tokens[*k]) || is(tokens.get(*k), &["so", "and"])));
+    let over = so.is_some_and(|k| {
+        leads(
+            &tokens[k + 2..],
+            &[
+                "one of them",
+                "the other",
+                "the others",
+                "the rest",
+                "one",
+                "two of them",
+                "the third",
+                "the surplus",
+            ],
+        )
+        .is_some()
+            && !has_noun(&tokens[k + 2..])
+    });
+    match so.filter(|_| counted && over) {
+        Some(k) => trimmed(&tokens[..k]).to_vec(),
+        None => tokens,
+    }
+}
+
+/// "keep the green car and drop the other two cars": the other two.
+fn the_other_so_many(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((_, b)) = first_noun(&tokens) else {
+        return tokens;
+    };
+    let named = super::super::names::singular(text(&tokens[b - 1])).to_owned();
+    let Some((i, n)) = find(&tokens[b..], &["the other"]).map(|(i, n)| (b + i, n)) else {
+        return tokens;
+    };
+    let many = tokens.get(i + n).is_some_and(|t| number(t).is_some());
+    let same = tokens
+        .get(i + n + 1)
+        .is_some_and(|t| super::super::names::singular(text(t)) == named);
+    match many && same && is(tokens.first(), &["keep", "leave"]) {
+        true => [&tokens[..i + n + 1], &tokens[i + n + 2..]].concat(),
+        false => tokens,
+    }
+}
+
+/// "of the cars on the right, keep only the green car"
+fn only_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["of", "out of", "among", "from among", "from"]) else {
+        return tokens;
+    };
+    let Some(i) = tokens.iter().position(comma).filter(|i| *i > n) else {
+        return tokens;
+    };
+    let group = &tokens[n..i];
+    let k = leads(
+        &tokens[i + 1..],
+        &[
+            "keep only",
+            "keep just",
+            "leave only",
+            "leave just",
+            "only keep",
+            "only leave",
+            "just keep",
+            "retain only",
+            "spare only",
+        ],
+    );
+    let Some(k) = k else { return tokens };
+    let np = &tokens[i + 1 + k..];
+    let definite = is(np.first(), &["the", "that", "those"]) && first_noun(np).is_some_and(|x| x.0 < 5);
+    if !definite || talk.fits(group) == 0 {
+        return tokens;
+    }
+    led(
+        "remove all",
+        &tokens[0],
+        &[group, &led("except", &tokens[i], &[np])],
+    )
+}
