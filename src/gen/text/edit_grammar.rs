@@ -264,6 +264,26 @@ impl<'t> Reader<'t> {
             .all(|t| t.kind != TokenKind::Word)
     }
 
+    /// "one pedestrian is enough; take the other two off" is one sentence.
+    fn join_enough(&mut self, from: usize) {
+        let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
+        let Some(stop) = stop.filter(|s| *s > from + 1) else {
+            return;
+        };
+        let semicolon = self
+            .text
+            .get(self.tokens[stop].span.start..self.tokens[stop].span.end)
+            == Some(";");
+        if semicolon
+            && matches!(
+                self.tokens[stop - 1].text.as_str(),
+                "enough" | "sufficient" | "plenty" | "do"
+            )
+        {
+            self.tokens[stop].kind = TokenKind::Comma;
+        }
+    }
+
     /// The commands of the next sentence; `None` at the end.
     pub(super) fn next(
         &mut self,
@@ -275,6 +295,7 @@ impl<'t> Reader<'t> {
             return None;
         }
         let from = self.at;
+        self.join_enough(from);
         let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
         // "Woman to my right. Same distance." is one sentence
         let stop = stop.map(|s| {

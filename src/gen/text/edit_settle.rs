@@ -95,7 +95,9 @@ impl Editor<'_> {
             .iter()
             .any(|w| words.starts_with(w));
         let named = |m: &Mention| {
-            m.definite && m.pick != Some(Pick::More) && !m.is_anchor || m.uncounted && means_all(m)
+            m.definite && m.pick != Some(Pick::More) && !m.is_anchor
+                || m.pick == Some(Pick::All)
+                || m.uncounted && means_all(m)
         };
         let there = |m: &Mention| m.definite && !fitting(&self.map, &self.boxes, m, &c.mentions).is_empty();
         let again = !ordered && !c.in_place && c.targets.iter().all(there);

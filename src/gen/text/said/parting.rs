@@ -295,6 +295,7 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
             inner.get(1),
             &[
                 "the", "it", "them", "him", "her", "both", "all", "my", "every", "each", "those", "these",
+                "a", "an", "another", "some",
             ],
         )
     {

@@ -13,6 +13,7 @@ const WITH_IT: &str =
     "with it to|with him to|with her to|with them to|along with it to|along to|together with it to";
 const MEANT: &str = "what i meant was|what i meant is|what i really meant was|what i wanted was|what i want is|what i actually meant was|what i actually want is";
 const AROUND: &str = "walking around here|walking about here|walking around there|walking around|walking about|wandering around|running around|strolling around|hanging around here|hanging around|hanging about|standing around here|standing around";
+const SAME_SPOT: &str = "parked in the same place|parked in the same spot|standing in the same place|in the very same place|in the same place|in the same spot|at the same spot|at the same place|on the same spot";
 const LIFT: &str =
     "pick up the|pick up that|pick up all the|pick up all|pick up both|pick up every|pick up one of the";
 const SPARING: &[&str] = &[
@@ -37,6 +38,16 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         false => out,
     };
     let out = lifted(out);
+    let out = replaced(&out, SAME_SPOT, "");
+    let out = replaced(
+        &out,
+        "could we have|can we have|could i have|can i have|may i have|may we have|might we have",
+        "add",
+    );
+    let out = away_with(out);
+    let out = included(fronted_exception(out));
+    let out = set_out(purpose(out));
+    let out = ordinals(all_to(out));
     let out = than_there(out);
     let out = all_that_is(out);
     let out = no_more_sky(out);
@@ -67,6 +78,177 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "add a man",
     );
     only_of(out, talk)
+}
+
+/// "away with the bus and with the people"
+fn away_with(tokens: Vec<Token>) -> Vec<Token> {
+    match leads(&tokens, &["away with", "down with", "off with", "out with"]) {
+        Some(n)
+            if is(
+                tokens.get(n),
+                &["the", "all", "both", "my", "every", "that", "those"],
+            ) =>
+        {
+            led(
+                "remove",
+                &tokens[0],
+                &[&replaced(&tokens[n..], "and with", "and")],
+            )
+        }
+        _ => tokens,
+    }
+}
+
+/// "with the exception of the bus, remove everything"
+fn fronted_exception(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "with the exception of",
+            "apart from",
+            "except for",
+            "aside from",
+            "other than",
+            "save for",
+        ],
+    ) else {
+        return tokens;
+    };
+    let comma = tokens.iter().position(comma).filter(|i| *i > n);
+    match comma {
+        Some(i)
+            if removes(tokens.get(i + 1)) && is(tokens.get(i + 2), &["everything", "everyone", "all"]) =>
+        {
+            [&tokens[i + 1..], &led("except", &tokens[0], &[&tokens[n..i]])].concat()
+        }
+        _ => tokens,
+    }
+}
+
+/// "everything, the bus included, except ...": the bus is in everything.
+fn included(tokens: Vec<Token>) -> Vec<Token> {
+    let end = (3..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["included", "includes", "too"])
+            && tokens.get(i + 1).is_none_or(|t| t.kind != TokenKind::Word)
+    });
+    let Some(end) = end.filter(|i| text(&tokens[*i]) == "included") else {
+        return tokens;
+    };
+    let all = is(tokens.get(1), &["everything", "everyone", "all", "every"]);
+    match (0..end).rev().find(|i| comma(&tokens[*i])) {
+        Some(start) if all => [
+            &tokens[..start],
+            tokens.get(end + 1..).map_or(
+                &[][..],
+                |r| if r.first().is_some_and(comma) { &r[1..] } else { r },
+            ),
+        ]
+        .concat(),
+        _ => tokens,
+    }
+}
+
+/// "... so that my students see her": why, not what.
+fn purpose(tokens: Vec<Token>) -> Vec<Token> {
+    const WHY: &[&str] = &[
+        "see",
+        "sees",
+        "notice",
+        "learn",
+        "learns",
+        "know",
+        "knows",
+        "understand",
+        "practise",
+        "practice",
+        "train",
+        "test",
+        "react",
+        "feel",
+        "brake",
+        "watch",
+    ];
+    match find(&tokens, &["so that", "in order that"]).filter(|x| x.0 > 2) {
+        Some((i, n))
+            if tokens[i + n..].iter().take(5).any(|t| WHY.contains(&text(t)))
+                && !tokens[i..].iter().any(comma) =>
+        {
+            tokens[..i].to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+/// "set three cones near her", "park two trucks there": they come.
+fn set_out(tokens: Vec<Token>) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for (i, t) in tokens.iter().enumerate() {
+        let opens =
+            i == 0 || comma(&tokens[i - 1]) || is(tokens.get(i - 1), &["and", "so", "then", "please"]);
+        let some = tokens.get(i + 1).is_some_and(|n| {
+            number(n).is_some() && text(n) != "one" || matches!(text(n), "a" | "an" | "some" | "another")
+        });
+        let thing = some && first_noun(&tokens[i + 1..]).is_some_and(|x| x.0 < 5);
+        match text(t) {
+            "set" | "lay" | "stand" | "position" if opens && thing => out.push(super::words::word("add", t)),
+            "park" if opens && thing && tokens.get(i + 1).is_some_and(|n| number(n).is_some()) => {
+                out.extend(led("add", t, &[]));
+                out.push(tokens[i + 1].clone());
+                out.push(super::words::word("parked", t));
+            }
+            _ if i > 1
+                && text(&tokens[i - 1]) == "park"
+                && out.last().is_some_and(|o| text(o) == "parked") => {}
+            _ => out.push(t.clone()),
+        }
+    }
+    out
+}
+
+/// "all bicycles to the other sidewalk": they move.
+fn all_to(tokens: Vec<Token>) -> Vec<Token> {
+    let all = is(tokens.first(), &["all", "both", "every"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    match all && is(tokens.get(b), &["to", "onto", "into", "over", "across"]) {
+        true => led("move", &tokens[0], &[&tokens]),
+        false => tokens,
+    }
+}
+
+/// "remove the third and the fourth car": the fourth first, so that the third stays the third.
+fn ordinals(tokens: Vec<Token>) -> Vec<Token> {
+    const NTH: [&str; 6] = ["first", "second", "third", "fourth", "fifth", "sixth"];
+    let nth = |i: usize| NTH.iter().position(|n| is(tokens.get(i), &[n]));
+    let found = (0..tokens.len()).find_map(|i| {
+        removes(tokens.get(i)).then_some(())?;
+        is(tokens.get(i + 1), &["the"]).then_some(())?;
+        let a = nth(i + 2)?;
+        is(tokens.get(i + 3), &["and"]).then_some(())?;
+        let the = usize::from(is(tokens.get(i + 4), &["the"]));
+        let b = nth(i + 4 + the)?;
+        let (k, n) = first_noun(&tokens[i + 5 + the..]).filter(|x| x.0 == 0)?;
+        Some((i, a.max(b), a.min(b), i + 5 + the + k, i + 5 + the + n))
+    });
+    let Some((i, high, low, a, b)) = found else {
+        return tokens;
+    };
+    let one = |n: usize| {
+        [
+            led("the", &tokens[i], &[]),
+            led(NTH[n], &tokens[i], &[&tokens[a..b]]),
+        ]
+        .concat()
+    };
+    [
+        &tokens[..=i],
+        &one(high),
+        &led("and", &tokens[i], &[&tokens[i..=i]]),
+        &one(low),
+        &tokens[b..],
+    ]
+    .concat()
 }
 
 fn comma(t: &Token) -> bool {
