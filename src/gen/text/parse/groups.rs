@@ -124,7 +124,7 @@ impl Parser<'_> {
                 && !m.definite
                 && !m.spec.relations.is_empty()
         });
-        let parent = parent.filter(|p| !self.edits && lone.is_none_or(|s| s < *p) || self.edits);
+        let parent = parent.filter(|p| self.edits || lone.is_none_or(|s| s < *p));
         let Some(parent) = parent else {
             let single = self.last.first().or(self.before.first()).copied();
             if self.pending.is_none()

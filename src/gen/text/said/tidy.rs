@@ -38,7 +38,15 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         false => out,
     };
     let out = lifted(out);
-    let out = replaced(&out, SAME_SPOT, "");
+    let exchanges = is(
+        out.first(),
+        &["exchange", "replace", "swap", "substitute", "trade"],
+    );
+    let out = if exchanges {
+        replaced(&out, SAME_SPOT, "")
+    } else {
+        out
+    };
     let out = replaced(
         &out,
         "could we have|can we have|could i have|can i have|may i have|may we have|might we have",
@@ -84,10 +92,11 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn away_with(tokens: Vec<Token>) -> Vec<Token> {
     match leads(&tokens, &["away with", "down with", "off with", "out with"]) {
         Some(n)
-            if is(
-                tokens.get(n),
-                &["the", "all", "both", "my", "every", "that", "those"],
-            ) =>
+            if find(&tokens, &["in with"]).is_none()
+                && is(
+                    tokens.get(n),
+                    &["the", "all", "both", "my", "every", "that", "those"],
+                ) =>
         {
             led(
                 "remove",
