@@ -33,6 +33,14 @@ pub fn in_full(tokens: &[Token]) -> Vec<Token> {
 
 fn answered(question: &[Token], answer: &[Token]) -> Option<Vec<Token>> {
     let (end, asked) = question.split_last().filter(|(l, _)| l.kind == TokenKind::Stop)?;
+    // "what a day!" asks nothing
+    let exclaims = asked.first().is_some_and(|t| t.text == "what")
+        && asked
+            .get(1)
+            .is_some_and(|t| matches!(t.text.as_str(), "a" | "an"));
+    if exclaims {
+        return None;
+    }
     if let Some(told) = yes_or_no(asked, answer).or_else(|| placed(asked, end, answer)) {
         return Some(told);
     }

@@ -288,6 +288,13 @@ impl Editor<'_> {
             }
             Verb::Add => {
                 if self.only_named(c) {
+                    // ("move them" means those that were spoken of)
+                    if let Some(m) = c.targets.first() {
+                        let spoken = super::select::fitting(&self.map, &self.boxes, m, &c.mentions);
+                        if !spoken.is_empty() {
+                            self.last = spoken;
+                        }
+                    }
                     self.note(format!(
                         "{:?}: what should become of it was not understood",
                         c.text

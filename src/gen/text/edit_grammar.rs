@@ -215,6 +215,9 @@ fn only_one(t: &Token, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<Class> {
     (boxes.values().filter(|b| b.class == class).count() == 1).then_some(class)
 }
 
+/// Words of the longest sentence in which turns of speech are looked for.
+const LONGEST_SENTENCE: usize = 400;
+
 /// "take it out", "remove them": nothing but that.
 fn takes_it(words: &str) -> bool {
     let words = words.to_lowercase();
@@ -332,6 +335,14 @@ impl<'t> Reader<'t> {
             .last()
             .is_some_and(|t| self.text.get(t.span.start..t.span.end) == Some("?"));
         let pointed = self.left.resolved(&self.tokens[from..end], &talk);
+        // (nobody says so much in one sentence; it is read as a list of plain commands)
+        if end - from > LONGEST_SENTENCE {
+            return Some(imperatives(
+                self.text,
+                &rephrase(&self.tokens[from..end]),
+                &mut self.last_noun,
+            ));
+        }
         let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);

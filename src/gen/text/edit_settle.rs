@@ -130,7 +130,8 @@ impl Editor<'_> {
                 .iter()
                 .any(|w| words.contains(w));
             let bare = m.uncounted && m.plural && m.pick.is_none();
-            m.spec.relations.is_empty() && alike(m) && (bare || stays)
+            let named = bare && !fitting(&self.map, &self.boxes, m, &c.mentions).is_empty();
+            named || m.spec.relations.is_empty() && alike(m) && (bare || stays)
         };
         let told = !c.in_place && !ordered && c.targets.iter().all(told);
         again || c.implied && (theirs || part || remark || told || c.targets.iter().all(named))

@@ -111,6 +111,18 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/exam_5.jsonl"),
     ),
     (
+        "exam_6.jsonl",
+        include_str!("../../../../tests/data/exam_6.jsonl"),
+    ),
+    (
+        "exam_7.jsonl",
+        include_str!("../../../../tests/data/exam_7.jsonl"),
+    ),
+    (
+        "exam_8.jsonl",
+        include_str!("../../../../tests/data/exam_8.jsonl"),
+    ),
+    (
         "strangers_14.jsonl",
         include_str!("../../../../tests/data/strangers_14.jsonl"),
     ),

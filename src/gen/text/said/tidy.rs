@@ -56,6 +56,17 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = included(fronted_exception(out));
     let out = set_out(purpose(out));
     let out = ordinals(all_to(out));
+    let out = replaced(
+        &out,
+        "is enough for me|is enough for us|is plenty for me|is plenty for us",
+        "is enough",
+    );
+    let out = replaced(
+        &out,
+        "are enough for me|are enough for us|are plenty for me",
+        "are enough",
+    );
+    let out = every_in_list(in_the_middle(needed_so(turned_once(out))));
     let out = than_there(out);
     let out = all_that_is(out);
     let out = no_more_sky(out);
@@ -258,6 +269,121 @@ fn ordinals(tokens: Vec<Token>) -> Vec<Token> {
         &tokens[b..],
     ]
     .concat()
+}
+
+/// "turn the bus round, it must drive in the opposite direction": said twice.
+fn turned_once(tokens: Vec<Token>) -> Vec<Token> {
+    let turns = is(tokens.first(), &["turn", "rotate", "spin", "swing"]);
+    let again = find(
+        &tokens,
+        &[
+            "it must drive",
+            "it should drive",
+            "it has to drive",
+            "it must go",
+            "it should go",
+            "it must face",
+            "it should face",
+            "so that it drives",
+            "so that it goes",
+        ],
+    );
+    match again.filter(|x| turns && x.0 > 2) {
+        Some((i, n))
+            if leads(
+                &tokens[i + n..],
+                &[
+                    "in the opposite direction",
+                    "in the other direction",
+                    "the other way",
+                    "the opposite way",
+                ],
+            )
+            .is_some() =>
+        {
+            trimmed(&tokens[..i]).to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+/// "we need a road roller, so add one in the oncoming lane": one roller.
+fn needed_so(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "we need",
+            "i need",
+            "i want",
+            "we want",
+            "there is no",
+            "is missing",
+        ],
+    ) else {
+        return tokens;
+    };
+    let Some((k, m)) = find(
+        &tokens[i + n..],
+        &[
+            "so add one",
+            "so put one",
+            "so place one",
+            "add one",
+            "so let us add one",
+        ],
+    )
+    .map(|(k, m)| (i + n + k, m)) else {
+        return tokens;
+    };
+    let np = trimmed(&tokens[i + n..k]);
+    let single = is(np.first(), &["a", "an"]) && first_noun(np).is_some_and(|x| x.1 == np.len());
+    match single && !has_noun(&tokens[k + m..]) {
+        true => led("add", &tokens[0], &[np, &tokens[k + m..]]),
+        false => tokens,
+    }
+}
+
+/// "the excavator, the worker and every cone": all cones.
+fn every_in_list(tokens: Vec<Token>) -> Vec<Token> {
+    let mut out = tokens;
+    for i in 1..out.len() {
+        let listed = comma(&out[i - 1]) || text(&out[i - 1]) == "and";
+        if listed && text(&out[i]) == "every" && out.iter().any(|t| removes(Some(t))) {
+            if let Some((a, b)) = first_noun(&out[i + 1..]).filter(|x| x.0 == 0 && x.1 == 1) {
+                let at = i + 1 + a;
+                let many = super::super::lexicon::plural(text(&out[at]));
+                out[at] = super::words::word(&many, &out[i + b]);
+                out[i] = super::words::word("all", &out[i].clone());
+            }
+        }
+    }
+    out
+}
+
+/// "the car in the middle of the row": the middle car.
+fn in_the_middle(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "in the middle of the row",
+            "in the middle of the queue",
+            "in the middle of the line",
+            "in the middle of the three",
+        ],
+    ) else {
+        return tokens;
+    };
+    let the = (0..i).rev().find(|k| is(tokens.get(*k), &["the"]));
+    match the.filter(|k| first_noun(&tokens[*k..i]).is_some_and(|x| k + x.1 == i)) {
+        Some(k) => [
+            &tokens[..=k],
+            &led("middle", &tokens[i], &[]),
+            &tokens[k + 1..i],
+            &tokens[i + n..],
+        ]
+        .concat(),
+        None => tokens,
+    }
 }
 
 fn comma(t: &Token) -> bool {
