@@ -348,13 +348,15 @@ fn every_in_list(tokens: Vec<Token>) -> Vec<Token> {
     let mut out = tokens;
     for i in 1..out.len() {
         let listed = comma(&out[i - 1]) || text(&out[i - 1]) == "and";
-        if listed && text(&out[i]) == "every" && out.iter().any(|t| removes(Some(t))) {
-            if let Some((a, b)) = first_noun(&out[i + 1..]).filter(|x| x.0 == 0 && x.1 == 1) {
-                let at = i + 1 + a;
-                let many = super::super::lexicon::plural(text(&out[at]));
-                out[at] = super::words::word(&many, &out[i + b]);
-                out[i] = super::words::word("all", &out[i].clone());
-            }
+        if listed
+            && text(&out[i]) == "every"
+            && out.iter().any(|t| removes(Some(t)))
+            && let Some((a, b)) = first_noun(&out[i + 1..]).filter(|x| x.0 == 0 && x.1 == 1)
+        {
+            let at = i + 1 + a;
+            let many = super::super::lexicon::plural(text(&out[at]));
+            out[at] = super::words::word(&many, &out[i + b]);
+            out[i] = super::words::word("all", &out[i].clone());
         }
     }
     out
