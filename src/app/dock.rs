@@ -447,7 +447,7 @@ fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     let column = join(
         tiles,
         LinearDir::Vertical,
-        &[(objects, 2.1), (prompt, 1.75), (past, 0.85)],
+        &[(objects, 2.35), (prompt, 1.7), (past, 0.8)],
     );
     let parts = [(tools, 232.0), (center, 1100.0), (column, 268.0)];
     join(tiles, LinearDir::Horizontal, &parts)
