@@ -294,7 +294,6 @@ impl Editor<'_> {
     }
 }
 
-/// A box of another kind where one stands or stood.
 /// "by a single truck": one for all of them.
 fn said_one(words: &str) -> bool {
     let words = words.to_lowercase();
@@ -303,6 +302,7 @@ fn said_one(words: &str) -> bool {
         .any(|w| words.contains(w))
 }
 
+/// A box of another kind where one stands or stood.
 pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Option<SceneBox> {
     let size_m = DVec3::from_array(spec.size_m.or(spec.class.typical_size_m())?);
     let center_m = old
