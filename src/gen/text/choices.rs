@@ -4,7 +4,7 @@
 use super::ellipsis::{ends, is_noun, number};
 use super::lexicon::{Sense, look_up, plural};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 
 /// What a phrase begins with, so far as a choice is concerned.
 #[derive(PartialEq)]
@@ -116,9 +116,7 @@ fn not_but(tokens: &[Token]) -> Vec<Token> {
 
 /// "none of the three cars is on the left": there are three cars.
 fn none_of(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let clause = begins(
             &tokens[i..],
             "none of the|none of these|none of those|not one of the|not a single one of the",
@@ -142,19 +140,11 @@ fn none_of(tokens: &[Token]) -> Vec<Token> {
             });
             (tokens[i + n..verb].iter().any(is_noun) && goes_on).then_some((i + n, verb, end))
         });
-        match clause {
-            Some((from, verb, end)) => {
-                out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
-                out.extend_from_slice(&tokens[from..verb]);
-                i = end;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (from, verb, end) = clause?;
+        out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
+        out.extend_from_slice(&tokens[from..verb]);
+        Some(end)
+    })
 }
 
 #[cfg(test)]

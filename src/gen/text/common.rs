@@ -3,7 +3,7 @@
 
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 
 const COURTESY: &str = "if it is not too much trouble|if its not too much trouble|if it isnt too much trouble|if that is not too much trouble|if thats not too much trouble|if that isnt too much trouble|if it is no trouble|if its no trouble|if you dont mind|if you do not mind|if possible|if it is possible|if its possible|if thats possible|if that is possible|if it is ok|if its ok|if thats ok|if that is okay|if thats okay|if you would be so kind|if you please|if i may ask|if i may|if it is not asking too much|if thats not asking too much|if it is no bother|if its no bother|if youd be so kind|when you get a chance|when you have a moment|if it isnt asking too much";
 const REMINDERS: &str = "dont forget to|do not forget to|dont forget about|do not forget about|dont forget|do not forget|not to forget|not forgetting|lets not forget|let us not forget";
@@ -87,93 +87,62 @@ fn ordinals(tokens: &[Token]) -> Vec<Token> {
 /// What is only polite, with the commas that set it off.
 fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
     let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        match begins(&tokens[i..], COURTESY) {
-            Some(n) => {
-                i += n;
-                if comma(tokens.get(i)) && (comma(out.last()) || out.is_empty()) {
-                    i += 1;
-                    let inside = out.len() > 1
-                        && matches!(out[out.len() - 2].text.as_str(), "and" | "but" | "with" | "or");
-                    if inside {
-                        out.pop();
-                    }
-                }
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
+    rewritten(tokens, |i, out| {
+        let mut i = i + begins(&tokens[i..], COURTESY)?;
+        if comma(tokens.get(i)) && (comma(out.last()) || out.is_empty()) {
+            i += 1;
+            let inside =
+                out.len() > 1 && matches!(out[out.len() - 2].text.as_str(), "and" | "but" | "with" | "or");
+            if inside {
+                out.pop();
             }
         }
-    }
-    out
+        Some(i)
+    })
 }
 
 /// "and that is all the traffic I want": what was named is everything, and no more of it.
 fn without_closing(tokens: &[Token]) -> Vec<Token> {
     const MORE: &str = "the|i|we|there|you|that|of|for|to|it|please|folks|really";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let said = begins(&tokens[i..], CLOSING).filter(|n| {
             let next = &tokens[i + n..];
             let ends = next.first().is_none_or(|t| t.kind != TokenKind::Word);
             // ("that is all in our lane" says where)
             !out.is_empty() && (ends || begins(next, MORE).is_some())
         });
-        let Some(n) = said else {
-            out.push(tokens[i].clone());
-            i += 1;
-            continue;
-        };
-        i += n;
-        while i < tokens.len() && !matches!(tokens[i].kind, TokenKind::Stop | TokenKind::Comma) {
-            i += 1;
-        }
+        let from = i + said?;
+        let end =
+            (from..tokens.len()).find(|k| matches!(tokens[*k].kind, TokenKind::Stop | TokenKind::Comma));
         while out
             .last()
             .is_some_and(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "but"))
         {
             out.pop();
         }
-    }
-    out
+        Some(end.unwrap_or(tokens.len()))
+    })
 }
 
 /// "no fewer than six": at least six, and not none.
 fn bounds(tokens: &[Token]) -> Vec<Token> {
     const LEAST: &str = "no fewer than|no less than|not fewer than|not less than|nothing less than";
     const MOST: &str = "no more than|not more than|no greater number than";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let bound = [(LEAST, "least"), (MOST, "most")]
+    rewritten(tokens, |i, out| {
+        let (n, which) = [(LEAST, "least"), (MOST, "most")]
             .iter()
             .find_map(|(said, word)| begins(&tokens[i..], said).map(|n| (n, *word)))
-            .filter(|(n, _)| tokens.get(i + n).is_some_and(is_number));
-        match bound {
-            Some((n, which)) => {
-                out.extend(["at", which].map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            .filter(|(n, _)| tokens.get(i + n).is_some_and(is_number))?;
+        out.extend(["at", which].map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 /// "a family of five": five people.
 fn of_so_many(tokens: &[Token]) -> Vec<Token> {
     const GROUP: &str =
         "family of|group of|party of|team of|crew of|band of|gang of|bunch of|crowd of|class of";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], GROUP).filter(|n| {
             let many = tokens.get(i + n).is_some_and(is_number);
             let bare = tokens.get(i + n + 1).is_none_or(|t| {
@@ -184,48 +153,34 @@ fn of_so_many(tokens: &[Token]) -> Vec<Token> {
             });
             many && bare
         });
-        match n {
-            Some(n) => {
-                if out
-                    .last()
-                    .is_some_and(|t| matches!(t.text.as_str(), "a" | "the" | "one" | "another"))
-                {
-                    out.pop();
-                }
-                out.push(tokens[i + n].clone());
-                out.push(word("people", &tokens[i]));
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+        let n = n?;
+        if out
+            .last()
+            .is_some_and(|t| matches!(t.text.as_str(), "a" | "the" | "one" | "another"))
+        {
+            out.pop();
         }
-    }
-    out
+        out.push(tokens[i + n].clone());
+        out.push(word("people", &tokens[i]));
+        Some(i + n + 1)
+    })
 }
 
 /// "his own car": his car.
 fn own_thing(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    for (i, t) in tokens.iter().enumerate() {
+    rewritten(tokens, |i, out| {
         let whose = out
             .last()
             .is_some_and(|b| matches!(b.text.as_str(), "his" | "her" | "their" | "its"));
         let thing = tokens.get(i + 1).is_some_and(super::ellipsis::is_noun);
-        if !(t.text == "own" && whose && thing) {
-            out.push(t.clone());
-        }
-    }
-    out
+        (tokens[i].text == "own" && whose && thing).then_some(i + 1)
+    })
 }
 
 /// ", unable to pass,": why somebody does what is told says nothing of where.
 fn without_asides(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = "unable|ready|willing|eager|keen|hoping|hesitant|reluctant|afraid|impatient|unwilling|intending|unsure|obliged|determined|prepared|anxious|desperate|wanting|meaning|wishing|refusing|failing";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let aside = begins(&tokens[i..], LEAD)
             .filter(|_| out.last().is_some_and(|t| t.kind == TokenKind::Comma))
             .filter(|n| tokens.get(i + n).is_some_and(|t| t.text == "to"));
@@ -244,22 +199,14 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
                     "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives"
                 )
             });
-            i += n + usize::from(verb);
-            continue;
+            return Some(i + n + usize::from(verb));
         }
         let plain = |k: usize| !tokens[i..k].iter().any(super::ellipsis::is_noun);
-        match end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k)) {
-            Some(end) => {
-                out.pop();
-                i = end;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let end =
+            end.filter(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Stop) && plain(*k))?;
+        out.pop();
+        Some(end)
+    })
 }
 
 /// "on both the sides": on both sides; "both the bus and the car": the bus and the car.
@@ -332,35 +279,22 @@ fn sides_in_short(tokens: &[Token]) -> Vec<Token> {
 fn this_one(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = ", but this one|, and this one|, only this one|, this one|but this one|, but that one|, and that one|, this one though|, however this one";
     const VERB: &str = "is|are|has|stands|drives|comes|waits|rides|parks|sits|walks|follows|faces|goes|should be|should|must be|moves|heads";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        match begins(&tokens[i..], LEAD)
-            .filter(|n| begins(&tokens[i + n..], VERB).is_some() && !out.is_empty())
-        {
-            Some(n) => {
-                out.push(word("which", &tokens[i]));
-                i += n;
-                // "which should be behind us" is which is
-                if let Some(m) = begins(&tokens[i..], "should be|must be|shall be|is to be") {
-                    out.push(word("is", &tokens[i]));
-                    i += m;
-                }
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+    rewritten(tokens, |i, out| {
+        let n = begins(&tokens[i..], LEAD)
+            .filter(|n| begins(&tokens[i + n..], VERB).is_some() && !out.is_empty())?;
+        out.push(word("which", &tokens[i]));
+        // "which should be behind us" is which is
+        let should = begins(&tokens[i + n..], "should be|must be|shall be|is to be");
+        if should.is_some() {
+            out.push(word("is", &tokens[i + n]));
         }
-    }
-    out
+        Some(i + n + should.unwrap_or(0))
+    })
 }
 
 /// "we make out the back of a bus": a bus. "at the back of a bus" is a place.
 fn part_for_whole(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let whole = begins(&tokens[i..], PARTS).filter(|n| {
             tokens
                 .get(i + n)
@@ -383,23 +317,17 @@ fn part_for_whole(tokens: &[Token]) -> Vec<Token> {
                     )
                 })
         });
-        i += whole.unwrap_or(0);
-        out.push(tokens[i].clone());
-        i += 1;
-    }
-    out
+        let thing = i + whole?;
+        out.push(tokens[thing].clone());
+        Some(thing + 1)
+    })
 }
 
 /// "some ten metres", "some twenty cars": about so many.
 fn some_so_many(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    for (i, t) in tokens.iter().enumerate() {
-        let about = t.text == "some" && tokens.get(i + 1).is_some_and(is_number);
-        if !about {
-            out.push(t.clone());
-        }
-    }
-    out
+    rewritten(tokens, |i, _| {
+        (tokens[i].text == "some" && tokens.get(i + 1).is_some_and(is_number)).then_some(i + 1)
+    })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use super::description::Anchor;
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 use crate::scene::graph::LaneRole;
 
 /// A text with what its clauses leave out.
@@ -193,23 +193,13 @@ fn place_again(sentence: &[Token], before: &[Token]) -> Vec<Token> {
 /// "on each of the two pavements" is "on each pavement".
 fn each_of_both(sentence: &[Token]) -> Vec<Token> {
     const EACH: &str = "each of the two|each of the|each one of the two|each one of the|either of the two|either of the|each of both|each of our two";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < sentence.len() {
+    rewritten(sentence, |i, out| {
         let n = begins(&sentence[i..], EACH).unwrap_or(0);
         let singular = sentence.get(i + n).and_then(|t| t.text.strip_suffix('s'));
-        match singular.filter(|s| n > 0 && (is_strip(s) || *s == "side")) {
-            Some(s) => {
-                out.extend(["each", s].map(|w| word(w, &sentence[i])));
-                i += n + 1;
-            }
-            None => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let s = singular.filter(|s| n > 0 && (is_strip(s) || *s == "side"))?;
+        out.extend(["each", s].map(|w| word(w, &sentence[i])));
+        Some(i + n + 1)
+    })
 }
 
 /// "another pair at the right" is "two more".

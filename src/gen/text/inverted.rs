@@ -4,7 +4,7 @@
 use super::ellipsis::{is_noun, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 
 /// A prompt in plain order.
 pub fn ordered(tokens: &[Token]) -> Vec<Token> {
@@ -171,9 +171,7 @@ fn without_contact_clause(tokens: &[Token]) -> Vec<Token> {
     let be = |t: Option<&Token>| {
         t.is_some_and(|t| matches!(t.text.as_str(), "is" | "are" | "was" | "were" | "has" | "have"))
     };
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let subject = matches!(tokens[i].text.as_str(), "it" | "he" | "she" | "they");
         let led = out.last().is_some_and(is_noun);
         let doing = be(tokens.get(i + 1)) && tokens.get(i + 2).is_some_and(|t| t.text.ends_with("ing"));
@@ -181,13 +179,10 @@ fn without_contact_clause(tokens: &[Token]) -> Vec<Token> {
             .get(i + 3)
             .is_some_and(|t| matches!(t.text.as_str(), "for" | "to" | "at" | "on" | "with" | "behind"));
         if subject && led && doing && prep && be(tokens.get(i + 4)) {
-            i += 4;
-            continue;
+            return Some(i + 4);
         }
-        out.push(tokens[i].clone());
-        i += 1;
-    }
-    out
+        None
+    })
 }
 
 /// "the lane ahead of it": the lane, and ahead of it.
@@ -213,9 +208,7 @@ fn way_of_another(tokens: &[Token]) -> Vec<Token> {
 fn parker(tokens: &[Token]) -> Vec<Token> {
     const WHO: &str = "some fool|some idiot|some moron|some jerk|some genius|some clown|some joker|some maniac|some driver|some guy|some bloke|some motorist|a fool|an idiot|somebody|someone|a driver|a motorist|its driver|the driver|the owner|its owner|some fellow|some person|some dimwit|some twit|some lunatic";
     const LEFT: &str = "has parked|have parked|parked|has left|left|has abandoned|abandoned|has dumped|dumped|has ditched|has double parked|has stuck|has put|put|has leaving";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let whole = begins(&tokens[i..], WHO).and_then(|n| {
             let verb = begins(&tokens[i + n..], LEFT)?;
             let k = i + n + verb;
@@ -238,32 +231,24 @@ fn parker(tokens: &[Token]) -> Vec<Token> {
             });
             (his && !more).then_some((k, noun))
         });
-        match whole {
-            Some((his, noun)) => {
-                let many = number(&tokens[his]).filter(|n| *n > 1);
-                out.push(if many.is_some() {
-                    tokens[his].clone()
-                } else {
-                    word("a", &tokens[i])
-                });
-                out.extend_from_slice(&tokens[his + 1..=noun]);
-                let stands = tokens.get(noun + 1).is_some_and(|t| {
-                    matches!(
-                        t.text.as_str(),
-                        "standing" | "parked" | "abandoned" | "lying" | "unattended" | "waiting" | "behind"
-                    )
-                });
-                let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
-                out.extend(state.iter().map(|w| word(w, &tokens[i])));
-                i = noun + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (his, noun) = whole?;
+        let many = number(&tokens[his]).filter(|n| *n > 1);
+        out.push(if many.is_some() {
+            tokens[his].clone()
+        } else {
+            word("a", &tokens[i])
+        });
+        out.extend_from_slice(&tokens[his + 1..=noun]);
+        let stands = tokens.get(noun + 1).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "standing" | "parked" | "abandoned" | "lying" | "unattended" | "waiting" | "behind"
+            )
+        });
+        let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
+        out.extend(state.iter().map(|w| word(w, &tokens[i])));
+        Some(noun + 1)
+    })
 }
 
 /// "a lorry lets two girls go over the zebra": it waits for two girls who go over it.
@@ -347,9 +332,7 @@ fn shown(tokens: &[Token]) -> Vec<Token> {
         )
     };
     let me = |t: Option<&Token>| t.is_some_and(|t| matches!(t.text.as_str(), "me" | "us"));
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let found = begins(&tokens[i..], SHOWS).and_then(|n| {
             let mut k = i + n;
             let mut ego = me(tokens.get(k));
@@ -374,19 +357,11 @@ fn shown(tokens: &[Token]) -> Vec<Token> {
             };
             (own && ego).then_some((way, k))
         });
-        match found {
-            Some((way, end)) => {
-                out.extend(way.split(' ').map(|w| word(w, &tokens[i])));
-                out.push(word("me", &tokens[i]));
-                i = end;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (way, end) = found?;
+        out.extend(way.split(' ').map(|w| word(w, &tokens[i])));
+        out.push(word("me", &tokens[i]));
+        Some(end)
+    })
 }
 
 /// "watches from the pavement", "directs the traffic from the centre": who looks on is there.

@@ -5,7 +5,7 @@ use super::ellipsis::{digits, ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::shares::opens;
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 use crate::scene::Class;
 
 /// A text with its lists in plain words.
@@ -40,10 +40,8 @@ fn without_times(tokens: &[Token]) -> Vec<Token> {
 /// "as for pedestrians, I want five": five pedestrians.
 fn as_for(tokens: &[Token]) -> Vec<Token> {
     const WANT: &str = "i want|we want|i need|we need|there should be|there are|there must be|i would like|we would like|id like|wed like|let there be|i see|we see|there will be|make it";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let found = begins(
+    rewritten(tokens, |i, out| {
+        let (from, comma, want, none) = begins(
             &tokens[i..],
             "as for|as to|as regards|regarding|concerning|as far as",
         )
@@ -58,24 +56,15 @@ fn as_for(tokens: &[Token]) -> Vec<Token> {
             let noun = tokens[from..comma].iter().any(is_noun);
             (noun && (none || number(many).is_some()) && ends(tokens.get(want + 1)))
                 .then_some((from, comma, want, none))
+        })?;
+        out.push(if none {
+            word("no", &tokens[want])
+        } else {
+            tokens[want].clone()
         });
-        match found {
-            Some((from, comma, want, none)) => {
-                out.push(if none {
-                    word("no", &tokens[want])
-                } else {
-                    tokens[want].clone()
-                });
-                out.extend_from_slice(&tokens[from..comma]);
-                i = want + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        out.extend_from_slice(&tokens[from..comma]);
+        Some(want + 1)
+    })
 }
 
 /// "10 to 20 m ahead": 15 m; "from 5 to 25 m ahead" is all along there.
@@ -139,9 +128,7 @@ fn added_and_taken(tokens: &[Token]) -> Vec<Token> {
 /// "a coach in each of the other two lanes": one in the left lane, one in the right lane.
 fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
     const EACH: &str = "in each of the other two lanes|in each of the other lanes|in each of the two other lanes|in each of the neighbouring lanes|in each of the neighboring lanes|in each of the adjacent lanes|in each of the lanes beside us|in each of the lanes beside me|in each of the lanes next to us|in each of the lanes next to me|in each neighbouring lane|in each neighboring lane|in each adjacent lane|in both other lanes|in both the other lanes|in both of the other lanes|in both neighbouring lanes|in both neighboring lanes|in both adjacent lanes|in the lanes on both sides of us|in the lanes on both sides of me|in the lanes to both sides of us|in the lanes on either side of us|in the lanes on either side of me|in the lane on each side of us|in the lane on each side of me|in the lane on either side of us|in the lane on either side of me";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         // who is there: "a coach", "two parked cars"
         let beside = || {
             let a = begins(
@@ -173,53 +160,35 @@ fn in_each_lane(tokens: &[Token]) -> Vec<Token> {
                 np.iter().filter(|t| is_noun(t)).count() == 1 && np.iter().all(|t| t.kind != TokenKind::Stop);
             plain.then(|| (n, np.to_vec()))
         });
-        match lead {
-            Some((n, np)) => {
-                let at = &tokens[i];
-                out.extend(["in", "the", "left", "lane", "and"].map(|w| word(w, at)));
-                out.extend(np.iter().map(|t| Token {
-                    span: at.span,
-                    ..t.clone()
-                }));
-                out.extend(["in", "the", "right", "lane"].map(|w| word(w, at)));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (n, np) = lead?;
+        let at = &tokens[i];
+        out.extend(["in", "the", "left", "lane", "and"].map(|w| word(w, at)));
+        out.extend(np.iter().map(|t| Token {
+            span: at.span,
+            ..t.clone()
+        }));
+        out.extend(["in", "the", "right", "lane"].map(|w| word(w, at)));
+        Some(i + n)
+    })
 }
 
 /// "the truck is parked, and so is the bus" in a word of its own.
 fn so_is(tokens: &[Token]) -> Vec<Token> {
     const SO: &str = "so is|so are|so was|so were|so does|so do|so did|so has|so have|so stands|so stand|as is|as are|as does|as do|just as is|likewise is|likewise are";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
     let mut named = false;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         named |= is_noun(&tokens[i]);
         let led = opens(tokens, i) && named;
-        match begins(&tokens[i..], SO).filter(|n| {
+        let n = begins(&tokens[i..], SO).filter(|n| {
             led && tokens[i + n..]
                 .iter()
                 .take(5)
                 .take_while(|t| !ends(Some(t)))
                 .any(is_noun)
-        }) {
-            Some(n) => {
-                out.push(word("soistoo", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.push(word("soistoo", &tokens[i]));
+        Some(i + n)
+    })
 }
 
 /// "taxis that wait for passengers": who is waited for in general is not there.
@@ -227,9 +196,7 @@ fn waited_for(tokens: &[Token]) -> Vec<Token> {
     const WAIT: &str = "wait for|waits for|waiting for|waited for|looking for|hoping for";
     const WHAT: &str = "for the road to clear|for the street to clear|for the road to be clear|for the road to be free|for the way to be free|for the lights to change|for the light to change|for the lights to turn green|for the light to turn green|for the traffic lights to change|for the traffic to clear|for the traffic to pass|for the traffic to ease|for a gap|for a gap in the traffic|for a chance to cross|for the green light|for green|for a green light|for the green man|for the signal|for the signal to change|for a break in the traffic|for their turn|for its turn|for his turn|for her turn|for better weather|for a lift";
     const WHOM: &str = "passengers|customers|clients|guests|fares|orders|business|work|riders";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let waits = tokens[..i].iter().rev().take(6).any(|t| {
             matches!(
                 t.text.as_str(),
@@ -237,50 +204,29 @@ fn waited_for(tokens: &[Token]) -> Vec<Token> {
             )
         });
         if let Some(n) = begins(&tokens[i..], WHAT).filter(|_| waits) {
-            i += n;
-            continue;
+            return Some(i + n);
         }
         let n = begins(&tokens[i..], WAIT).filter(|n| {
             begins(&tokens[i + n..], WHOM).is_some_and(|m| {
                 ends(tokens.get(i + n + m))
                     || is_noun(&tokens[i + n]) && !is_noun(tokens.get(i + n + m).unwrap_or(&tokens[i]))
             })
-        });
-        match n {
-            Some(n) => {
-                out.push(tokens[i].clone());
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.push(tokens[i].clone());
+        Some(i + n + 1)
+    })
 }
 
 /// "two mopeds whose riders are waiting": which are.
 fn riders_wait(tokens: &[Token]) -> Vec<Token> {
     let two_wheels = |t: &Token| matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Bicycle | Class::Motorcycle));
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(
             &tokens[i..],
             "whose rider|whose riders|whose driver|whose drivers",
         )
-        .filter(|_| out.iter().rev().take(2).any(two_wheels));
-        match n {
-            Some(n) => {
-                out.push(word("which", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        .filter(|_| out.iter().rev().take(2).any(two_wheels))?;
+        out.push(word("which", &tokens[i]));
+        Some(i + n)
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::ellipsis::{digits, ends, is_unit, number};
 use super::tokens::{Token, TokenKind};
-use super::wording::begins;
+use super::wording::{begins, rewritten};
 
 /// Distances as multiples of the one that was named last.
 const MULTIPLES: [(f64, &str); 4] = [
@@ -28,10 +28,8 @@ const MULTIPLES: [(f64, &str); 4] = [
 pub(super) fn farther_by(sentence: &[Token], before: &[Token]) -> Vec<Token> {
     const MORE: &str = "another|a further|a good|yet another";
     const ON: &str = "further on|farther on|further ahead|farther ahead|further up|further along|beyond that|beyond|on|further|farther|further down|further down the road|further up the road";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < sentence.len() {
-        let said: Vec<&Token> = before.iter().chain(&out).collect();
+    rewritten(sentence, |i, out| {
+        let said: Vec<&Token> = before.iter().chain(out.iter()).collect();
         let last = said
             .windows(2)
             .rposition(|w| number(w[0]).is_some() && is_unit(w[1]))
@@ -51,28 +49,20 @@ pub(super) fn farther_by(sentence: &[Token], before: &[Token]) -> Vec<Token> {
             });
             free.then_some((n + 2 + on, first + metres, way.unwrap_or("ahead of")))
         });
-        match found {
-            Some((n, metres, way)) => {
-                out.push(digits(metres, &sentence[i]));
-                out.push(sentence[i + n - 1].clone());
-                if let Some(unit) = out.last_mut() {
-                    unit.text = "m".into();
-                    unit.kind = TokenKind::Word;
-                }
-                out.extend(
-                    way.split(' ')
-                        .chain(["me"])
-                        .map(|w| super::wording::word(w, &sentence[i])),
-                );
-                i += n;
-            }
-            None => {
-                out.push(sentence[i].clone());
-                i += 1;
-            }
+        let (n, metres, way) = found?;
+        out.push(digits(metres, &sentence[i]));
+        out.push(sentence[i + n - 1].clone());
+        if let Some(unit) = out.last_mut() {
+            unit.text = "m".into();
+            unit.kind = TokenKind::Word;
         }
-    }
-    out
+        out.extend(
+            way.split(' ')
+                .chain(["me"])
+                .map(|w| super::wording::word(w, &sentence[i])),
+        );
+        Some(i + n)
+    })
 }
 
 /// "the same distance behind me": as many metres as were named last.
@@ -81,7 +71,7 @@ pub(super) fn same_distance(sentence: &[Token], before: &[Token]) -> Vec<Token> 
     let mut out: Vec<Token> = Vec::new();
     let mut i = 0;
     while i < sentence.len() {
-        let said: Vec<&Token> = before.iter().chain(&out).collect();
+        let said: Vec<&Token> = before.iter().chain(out.iter()).collect();
         let metres = said
             .windows(2)
             .rev()

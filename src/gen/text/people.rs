@@ -3,7 +3,7 @@
 use super::ellipsis::is_noun;
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 
 fn title(t: &Token) -> Option<&'static str> {
     match t.text.as_str() {
@@ -35,13 +35,11 @@ fn in_vehicle(tokens: &[Token]) -> Option<(usize, Vec<Token>, usize)> {
 /// "a man in his red car": a red car.
 fn inside(tokens: &[Token]) -> Vec<Token> {
     const IN: &str = "in his|in her|in their|in a|in an|driving his|driving her|driving a|driving an|at the wheel of a|at the wheel of his|at the wheel of her|who drives a|who is driving a";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let person = out.len() > 1
             && matches!(look_up(&out[out.len() - 1].text), Some(Sense::Noun(n, false)) if n.classes[0] == crate::scene::Class::Pedestrian)
             && matches!(out[out.len() - 2].text.as_str(), "a" | "an" | "another" | "one");
-        let car = begins(&tokens[i..], IN).filter(|_| person).and_then(|n| {
+        let (from, end) = begins(&tokens[i..], IN).filter(|_| person).and_then(|n| {
             let end = (i + n..tokens.len().min(i + n + 4)).find(|k| is_vehicle(&tokens[*k]))?;
             // ("in a car park" is a place)
             let whole = !matches!(tokens.get(end + 1), Some(t) if matches!(t.text.as_str(), "park" | "lane" | "stop" | "station" | "bay" | "rank"));
@@ -49,20 +47,11 @@ fn inside(tokens: &[Token]) -> Vec<Token> {
                 .iter()
                 .all(|t| t.kind == TokenKind::Word && !super::rephrase::is_place_word(t));
             (plain && whole).then_some((i + n, end + 1))
-        });
-        match car {
-            Some((from, end)) => {
-                out.pop();
-                out.extend_from_slice(&tokens[from..end]);
-                i = end;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.pop();
+        out.extend_from_slice(&tokens[from..end]);
+        Some(end)
+    })
 }
 
 /// A prompt in which everybody with a title is what is seen of him.

@@ -3,7 +3,7 @@
 use super::ellipsis::{ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 use crate::scene::Class;
 
 const ABOUT: &str = "is about to overtake|are about to overtake|about to overtake|is going to overtake|are going to overtake|is preparing to overtake|are preparing to overtake|prepares to overtake|wants to overtake|want to overtake|is trying to overtake|are trying to overtake|tries to overtake|intends to overtake|would like to overtake|is waiting to overtake|cannot overtake|cant overtake|is about to pass|wants to pass|is unable to overtake|is trying to pass";
@@ -32,9 +32,7 @@ fn waits_for_bus(tokens: &[Token]) -> Vec<Token> {
     const WAIT: &str =
         "wait for|waits for|waiting for|waited for|queue for|queueing for|queuing for|are queueing for";
     const WHAT: &str = "the bus|a bus|their bus|his bus|her bus|the tram|a tram|the school bus|the next bus|a taxi|their taxi|the coach|the night bus|a lift";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let found = begins(&tokens[i..], WAIT).and_then(|n| {
             let what = begins(&tokens[i + n..], WHAT)?;
             let noun = &tokens[i + n + what - 1].text;
@@ -47,18 +45,10 @@ fn waits_for_bus(tokens: &[Token]) -> Vec<Token> {
                 || begins(&tokens[i + n + what..], "on|at|in|near|under|behind|beside|next").is_some();
             (!named && who && rests).then_some((n, n + what))
         });
-        match found {
-            Some((n, all)) => {
-                out.extend_from_slice(&tokens[i..i + n - 1]);
-                i += all;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (n, all) = found?;
+        out.extend_from_slice(&tokens[i..i + n - 1]);
+        Some(i + all)
+    })
 }
 
 /// "one in front of our car and one behind it": behind us.
@@ -93,9 +83,7 @@ fn behind_our_car(tokens: &[Token]) -> Vec<Token> {
 
 /// "the road has two taxis at its right edge": at the right edge of the road.
 fn its_edge(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let road = out
             .iter()
             .rev()
@@ -106,7 +94,7 @@ fn its_edge(tokens: &[Token]) -> Vec<Token> {
                     "road" | "street" | "carriageway" | "highway" | "motorway"
                 )
             });
-        let edge = begins(&tokens[i..], "at its|on its|along its")
+        let n = begins(&tokens[i..], "at its|on its|along its")
             .filter(|_| road)
             .filter(|n| {
                 tokens
@@ -125,52 +113,32 @@ fn its_edge(tokens: &[Token]) -> Vec<Token> {
                                 | "sidewalk"
                         )
                     })
-            });
-        match edge {
-            Some(n) => {
-                out.push(tokens[i].clone());
-                out.push(word("the", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.push(tokens[i].clone());
+        out.push(word("the", &tokens[i]));
+        Some(i + n)
+    })
 }
 
 /// "has reached the left pavement": is on it.
 fn arrived(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], REACHED);
-        let place = n.filter(|n| {
+        let n = n.filter(|n| {
             tokens[i + n..].iter().take(5).any(|t| {
                 matches!(look_up(&t.text), Some(Sense::Place(..)))
                     || matches!(t.text.as_str(), "side" | "lane")
             })
+        })?;
+        let strip = tokens[i + n..].iter().take(5).any(|t| {
+            matches!(
+                t.text.as_str(),
+                "pavement" | "sidewalk" | "footpath" | "kerb" | "curb" | "side" | "lane"
+            )
         });
-        match place {
-            Some(n) => {
-                let strip = tokens[i + n..].iter().take(5).any(|t| {
-                    matches!(
-                        t.text.as_str(),
-                        "pavement" | "sidewalk" | "footpath" | "kerb" | "curb" | "side" | "lane"
-                    )
-                });
-                out.extend(["is", if strip { "on" } else { "at" }].map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        out.extend(["is", if strip { "on" } else { "at" }].map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 /// "far behind it": behind it; how far is left open.
@@ -203,9 +171,7 @@ fn far_from_other(tokens: &[Token]) -> Vec<Token> {
 
 /// "with its rear lights on": says nothing of where it is.
 fn without_lights(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, _| {
         let end = begins(
             &tokens[i..],
             "with its|with his|with her|with their|with the|with all|with",
@@ -218,24 +184,15 @@ fn without_lights(tokens: &[Token]) -> Vec<Token> {
                 .all(|t| t.kind == TokenKind::Word && !is_noun(t) && !super::rephrase::is_place_word(t));
             let lit = begins(tokens.get(lamp + 1..)?, LIT)?;
             (plain && ends(tokens.get(lamp + 1 + lit))).then_some(lamp + 1 + lit)
-        });
-        match end {
-            Some(end) => i = end,
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        Some(end)
+    })
 }
 
 /// "its driver, a man in a yellow vest, stands": the driver stands.
 fn without_who(tokens: &[Token]) -> Vec<Token> {
     let person = |t: &Token| matches!(look_up(&t.text), Some(Sense::Noun(n, false)) if n.classes[0] == Class::Pedestrian);
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let led = tokens[i].kind == TokenKind::Comma && out.last().is_some_and(person);
         let end = (led && begins(tokens.get(i + 1..).unwrap_or(&[]), "a|an").is_some())
             .then(|| {
@@ -260,16 +217,9 @@ fn without_who(tokens: &[Token]) -> Vec<Token> {
                     }))
                 .then_some(end + 1)
             })
-            .flatten();
-        match end {
-            Some(end) => i = end,
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            .flatten()?;
+        Some(end)
+    })
 }
 
 /// "he cycles 5 m ahead": is cycling; "she walks there", where nobody was named: a woman does.
@@ -315,12 +265,10 @@ fn gap(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = "the distance between us and|the distance between me and|the gap between us and|the gap between me and|the distance from us to|the distance from me to|our distance to|my distance to|the distance to|the gap to|our distance from|the space between us and|the distance between the ego vehicle and|the distance from the ego vehicle to|the gap between the ego vehicle and";
     const AGAIN: &str = "between us and|between me and|that to|the one to|to";
     const IS: &str = "is only about|is only|is about|is roughly|is just|is exactly|is|it is only|it is|amounts to|measures|was|it is about|was only|was about|comes to";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
     let mut open = false;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let again = open && i > 0 && (tokens[i - 1].kind != TokenKind::Word || tokens[i - 1].text == "and");
-        let found = begins(&tokens[i..], LEAD)
+        let (from, verb, metres) = begins(&tokens[i..], LEAD)
             .or_else(|| again.then(|| begins(&tokens[i..], AGAIN)).flatten())
             .and_then(|n| {
                 let far = |k: usize| {
@@ -337,40 +285,31 @@ fn gap(tokens: &[Token]) -> Vec<Token> {
                     .iter()
                     .any(is_noun)
                     .then_some((i + n, verb, metres))
-            });
-        match found {
-            Some((from, verb, metres)) => {
-                open = true;
-                // ("the car behind it": behind us, for it is our distance)
-                let back = begins(&tokens[verb.saturating_sub(2)..verb], "behind it|ahead it").is_some();
-                let to = if back && tokens[verb - 2].text == "behind" {
-                    verb - 1
-                } else {
-                    verb
-                };
-                // where it is comes after the metres: "the bus 18 m ahead"
-                let place = (from..to)
-                    .rev()
-                    .take_while(|k| !is_noun(&tokens[*k]))
-                    .last()
-                    .unwrap_or(to);
-                out.extend_from_slice(&tokens[from..place]);
-                out.push(word("is", &tokens[from]));
-                out.extend_from_slice(&tokens[metres..metres + 2]);
-                if place < to {
-                    out.extend_from_slice(&tokens[place..to]);
-                } else {
-                    out.push(word("away", &tokens[from]));
-                }
-                i = metres + 2;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+            })?;
+        open = true;
+        // ("the car behind it": behind us, for it is our distance)
+        let back = begins(&tokens[verb.saturating_sub(2)..verb], "behind it|ahead it").is_some();
+        let to = if back && tokens[verb - 2].text == "behind" {
+            verb - 1
+        } else {
+            verb
+        };
+        // where it is comes after the metres: "the bus 18 m ahead"
+        let place = (from..to)
+            .rev()
+            .take_while(|k| !is_noun(&tokens[*k]))
+            .last()
+            .unwrap_or(to);
+        out.extend_from_slice(&tokens[from..place]);
+        out.push(word("is", &tokens[from]));
+        out.extend_from_slice(&tokens[metres..metres + 2]);
+        if place < to {
+            out.extend_from_slice(&tokens[place..to]);
+        } else {
+            out.push(word("away", &tokens[from]));
         }
-    }
-    out
+        Some(metres + 2)
+    })
 }
 
 #[cfg(test)]

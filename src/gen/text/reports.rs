@@ -4,7 +4,7 @@
 use super::ellipsis::{ends, is_noun, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 
 /// A prompt without the manners of reports.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
@@ -22,9 +22,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
 /// "said vehicle", "the aforementioned van": the one that was named.
 fn said_before(tokens: &[Token]) -> Vec<Token> {
     const SAID: &str = "the said|the aforementioned|the aforesaid|the above mentioned|the abovementioned|the above named|the afore mentioned|the before mentioned|the latter|aforementioned|aforesaid";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], SAID)
             .or_else(|| begins(&tokens[i..], "said"))
             .filter(|n| tokens.get(i + n).is_some_and(is_noun))
@@ -34,19 +32,10 @@ fn said_before(tokens: &[Token]) -> Vec<Token> {
                     || out.last().is_none_or(|t| {
                         !is_noun(t) && !matches!(t.text.as_str(), "i" | "he" | "she" | "they" | "it" | "who")
                     })
-            });
-        match n {
-            Some(n) => {
-                out.push(word("the", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.push(word("the", &tokens[i]));
+        Some(i + n)
+    })
 }
 
 /// "Witness: I was behind a bus": who speaks is not in the scene.
@@ -78,9 +67,7 @@ fn without_speaker(tokens: &[Token]) -> Vec<Token> {
 /// "1 van. Position: behind us.": what a form says in a field of its own is said of what it named last.
 fn fields(tokens: &[Token]) -> Vec<Token> {
     const FIELD: &str = "position|location|place|placement|whereabouts|state|status|heading|direction|distance|orientation|lane|its position|its location|its lane|its heading|its distance|motion|movement|travel direction|direction of travel";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let field = (out
             .last()
             .is_some_and(|t| matches!(t.kind, TokenKind::Stop | TokenKind::Comma)))
@@ -98,23 +85,15 @@ fn fields(tokens: &[Token]) -> Vec<Token> {
                     || matches!(look_up(&t.text), Some(Sense::State(..) | Sense::Place(..)))
             })
         });
-        match field.filter(|_| before && told) {
-            Some(n) => {
-                if let Some(last) = out.last_mut() {
-                    *last = Token {
-                        kind: TokenKind::Comma,
-                        ..word(",", &tokens[i])
-                    };
-                }
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+        let n = field.filter(|_| before && told)?;
+        if let Some(last) = out.last_mut() {
+            *last = Token {
+                kind: TokenKind::Comma,
+                ..word(",", &tokens[i])
+            };
         }
-    }
-    out
+        Some(i + n + 1)
+    })
 }
 
 /// "My lane: blocked by a fence.": my lane is blocked.
@@ -226,9 +205,7 @@ fn sides_of_road(tokens: &[Token]) -> Vec<Token> {
 /// "its passengers, six in number, wait": its six passengers.
 fn in_number(tokens: &[Token]) -> Vec<Token> {
     let tokens = replaced(tokens, "totalling|totaling|numbering", "of them");
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(&tokens, |i, out| {
         let comma = out
             .last()
             .is_some_and(|t| t.kind == TokenKind::Comma || t.text == "(");
@@ -239,25 +216,15 @@ fn in_number(tokens: &[Token]) -> Vec<Token> {
         )
         .filter(|n| counted && ends(tokens.get(i + 1 + n)));
         let noun = out.len() > 1 && is_noun(&out[out.len() - 2]);
-        match tail.filter(|_| noun) {
-            Some(n) => {
-                out.pop();
-                let at = out.len() - 1;
-                out.insert(at, tokens[i].clone());
-                i += 1 + n;
-                i += usize::from(
-                    tokens
-                        .get(i)
-                        .is_some_and(|t| t.kind == TokenKind::Comma || t.text == ")"),
-                );
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let n = tail.filter(|_| noun)?;
+        out.pop();
+        let at = out.len() - 1;
+        out.insert(at, tokens[i].clone());
+        let closed = tokens
+            .get(i + 1 + n)
+            .is_some_and(|t| t.kind == TokenKind::Comma || t.text == ")");
+        Some(i + 1 + n + usize::from(closed))
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::description::Anchor;
 use super::ellipsis::{digits, ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 use crate::scene::graph::LaneRole;
 
 /// A text with its shares in numbers.
@@ -35,25 +35,14 @@ pub(super) fn opens(tokens: &[Token], i: usize) -> bool {
 /// "the cones, of which there are seven": seven of them.
 fn of_which_there_are(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = "of which there are|of whom there are|of which i see|of which we see|of which there is|of which i need|of which i want";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], LEAD).filter(|n| {
             tokens.get(i + n).is_some_and(|t| number(t).is_some()) && ends(tokens.get(i + n + 1))
-        });
-        match n {
-            Some(n) => {
-                out.push(tokens[i + n].clone());
-                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.push(tokens[i + n].clone());
+        out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+        Some(i + n + 1)
+    })
 }
 
 /// "Of the four cars, two are parked": the four cars, two of them.
@@ -108,29 +97,19 @@ fn own_group(rest: &[Token]) -> Option<((u32, &[Token]), usize)> {
 
 /// "one of the two men crosses, the other waits": the two men, one of them.
 fn some_of_so_many(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let many = number(&tokens[i]).filter(|_| opens(tokens, i));
-        let own = many.and_then(|m| Some((m, own_group(&tokens[i + 1..]).filter(|g| g.0.0 > m)?)));
-        match own {
-            Some((_, ((_, noun), len))) => {
-                out.extend_from_slice(noun);
-                out.push(Token {
-                    kind: TokenKind::Comma,
-                    ..word(",", &tokens[i])
-                });
-                out.push(tokens[i].clone());
-                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
-                i += 1 + len;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        let (_, ((_, noun), len)) =
+            many.and_then(|m| Some((m, own_group(&tokens[i + 1..]).filter(|g| g.0.0 > m)?)))?;
+        out.extend_from_slice(noun);
+        out.push(Token {
+            kind: TokenKind::Comma,
+            ..word(",", &tokens[i])
+        });
+        out.push(tokens[i].clone());
+        out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+        Some(i + 1 + len)
+    })
 }
 
 /// "half of them": so many.
@@ -299,26 +278,15 @@ fn is_strip(word: &str) -> bool {
 
 /// "on the two pavements": on both.
 fn two_strips(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let two = begins(&tokens[i..], "the two|our two|these two|the 2").filter(|n| {
+    rewritten(tokens, |i, out| {
+        let n = begins(&tokens[i..], "the two|our two|these two|the 2").filter(|n| {
             tokens
                 .get(i + n)
                 .is_some_and(|t| t.text.ends_with('s') && is_strip(&t.text))
-        });
-        match two {
-            Some(n) => {
-                out.push(word("both", &tokens[i]));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.push(word("both", &tokens[i]));
+        Some(i + n)
+    })
 }
 
 /// "on both sides, two each", "four per side": on each side.
@@ -326,10 +294,8 @@ fn per_side(tokens: &[Token]) -> Vec<Token> {
     const PER: &str = "per side|a side|each side|to each side|to a side|at each side|along each side|per kerb|per curb|per pavement|per sidewalk|for each side|per edge|either side|each kerb|each pavement|each sidewalk|on each of them|on either of them|to either side|on each one";
     const EACH: &str = "each|apiece|on each|on either|along each|at each|per each";
     const BOTH: &str = "both sides|each side|either side|both kerbs|both curbs|both pavements|both sidewalks|both edges|both footpaths|both shoulders|both verges|left and right|opposite sides|opposite pavements|opposite sidewalks";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
     let mut sides = false;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         if tokens[i].kind == TokenKind::Stop && tokens[i].text != ";" {
             sides = false;
         }
@@ -338,19 +304,10 @@ fn per_side(tokens: &[Token]) -> Vec<Token> {
         let counted = out.last().is_some_and(|t| number(t).is_some()) && out.len() > 1;
         let n = begins(&tokens[i..], PER)
             .or_else(|| begins(&tokens[i..], EACH).filter(|n| sides && ends(tokens.get(i + n))))
-            .filter(|_| counted);
-        match n {
-            Some(n) => {
-                out.extend(["on", "each", "side"].map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            .filter(|_| counted)?;
+        out.extend(["on", "each", "side"].map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 /// "first at 10 m, then at 20 m": one at 10 m, one at 20 m.

@@ -2,18 +2,16 @@
 
 use super::ellipsis::{is_noun, number};
 use super::tokens::Token;
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 
 /// A prompt in which full spaces are what stands in them.
 pub fn filled(tokens: &[Token]) -> Vec<Token> {
     const LEAD: &str = "all of the|all the|all|each of the|the";
     const SPACES: &str = "parking spaces|parking bays|parking spots|parking slots|parking places|spaces|bays|spots|slots|parking boxes|marked spaces|marked bays";
     const FULL: &str = "are occupied by|are taken by|are filled by|are filled with|are occupied with|are used by|are full of|are all occupied by|are all taken by|hold|contain|have";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let lead = begins(&tokens[i..], LEAD).unwrap_or(0);
-        let found = tokens
+        let k = tokens
             .get(i + lead)
             .and_then(number)
             .filter(|n| *n > 1)
@@ -28,24 +26,15 @@ pub fn filled(tokens: &[Token]) -> Vec<Token> {
                 k += begins(tokens.get(k..)?, FULL)?;
                 tokens.get(k).filter(|t| is_noun(t))?;
                 Some(k)
-            });
-        match found {
-            Some(k) => {
-                out.extend([
-                    tokens[i + lead].clone(),
-                    word("parked", &tokens[i]),
-                    tokens[k].clone(),
-                ]);
-                out.extend(["are", "in", "the", "car", "park"].map(|w| word(w, &tokens[i])));
-                i = k + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.extend([
+            tokens[i + lead].clone(),
+            word("parked", &tokens[i]),
+            tokens[k].clone(),
+        ]);
+        out.extend(["are", "in", "the", "car", "park"].map(|w| word(w, &tokens[i])));
+        Some(k + 1)
+    })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::ellipsis::{is_noun, number};
 use super::inverted::{is_fresh, opens};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 
 /// A prompt that tells it plainly.
 pub fn plainly(tokens: &[Token]) -> Vec<Token> {
@@ -16,32 +16,21 @@ pub fn plainly(tokens: &[Token]) -> Vec<Token> {
 /// "traffic, namely four cars and a truck": what follows lists it.
 fn namely(tokens: &[Token]) -> Vec<Token> {
     const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|in the shape of|consisting of|made up of|composed of|comprising|which consists of|which consist of|that consists of|which is made up of|which is composed of|which comprises|meaning|that is|i e|ie|in other words|being";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let before = out.iter().rev().find(|t| t.kind != TokenKind::Comma);
         let sorts = before.is_some_and(|t| {
             matches!(look_up(&t.text), Some(Sense::Noun(n, many)) if n.classes.len() > 2 && many || t.text == "traffic")
         });
-        let n = begins(&tokens[i..], NAMELY).filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh));
-        match n {
-            Some(n) => {
-                while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
-                    out.pop();
-                }
-                out.push(Token {
-                    kind: TokenKind::Mark,
-                    ..word(":", &tokens[i])
-                });
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+        let n = begins(&tokens[i..], NAMELY).filter(|n| sorts && tokens.get(i + n).is_some_and(is_fresh))?;
+        while out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+            out.pop();
         }
-    }
-    out
+        out.push(Token {
+            kind: TokenKind::Mark,
+            ..word(":", &tokens[i])
+        });
+        Some(i + n)
+    })
 }
 
 /// "the coach that I am driving behind": which is in front of me.
@@ -55,10 +44,8 @@ fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
         ),
         ("ahead of|in front of|leading", "behind me"),
     ];
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let found = begins(&tokens[i..], "that|which|whom|who")
+    rewritten(tokens, |i, out| {
+        let (n, place) = begins(&tokens[i..], "that|which|whom|who")
             .map_or(Some(0), Some)
             .filter(|_| out.last().is_some_and(is_noun))
             .and_then(|that| {
@@ -86,19 +73,10 @@ fn whom_we_follow(tokens: &[Token]) -> Vec<Token> {
                         )
                 });
                 over.then_some((n, place))
-            });
-        match found {
-            Some((n, place)) => {
-                out.extend(place.split(' ').map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.extend(place.split(' ').map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 fn is_place(t: &Token) -> bool {
@@ -253,25 +231,14 @@ fn led_by_others(tokens: &[Token]) -> Vec<Token> {
 fn put_up(tokens: &[Token]) -> Vec<Token> {
     const WHO: &str = "someone|somebody|some idiot|some fool|some guy|they|the police|the workers|the builders|the council|people|the firemen|workmen|the road workers|the authorities|the city";
     const PUT: &str = "has put up|have put up|put up|has set up|have set up|set up|has placed|have placed|placed|has erected|have erected|erected|has put|have put|has left|have left|has installed|have installed|has deployed|have deployed|has laid out|have laid out|has put out|have put out|put out|have positioned|has positioned";
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let whole = begins(&tokens[i..], WHO)
+    rewritten(tokens, |i, out| {
+        let k = begins(&tokens[i..], WHO)
             .filter(|_| opens(tokens, i))
             .and_then(|n| {
                 let k = i + n + begins(&tokens[i + n..], PUT)?;
                 (number(tokens.get(k)?)? > 1 && tokens[k + 1..].iter().take(4).any(is_noun)).then_some(k)
-            });
-        match whole {
-            Some(k) => {
-                out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
-                i = k;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.extend(["there", "are"].map(|w| word(w, &tokens[i])));
+        Some(k)
+    })
 }

@@ -4,7 +4,7 @@
 use super::ellipsis::{ends, is_noun, is_unit, number};
 use super::lexicon::{Sense, look_up};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, word};
+use super::wording::{begins, rewritten, word};
 
 const DONE: &str =
     "followed|preceded|overtaken|trailed|tailed|chased|accompanied|escorted|flanked|pursued|tailgated|led";
@@ -91,10 +91,8 @@ fn nearest_of_all(tokens: &[Token]) -> Vec<Token> {
 
 /// "a family of four walks": four people; "a group of four cars" names them.
 fn of_so_many(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let found = begins(
+    rewritten(tokens, |i, out| {
+        let n = begins(
             &tokens[i..],
             "a family of|a group of|a party of|the family of|a crowd of|a team of|a gang of|a queue of",
         )
@@ -108,27 +106,16 @@ fn of_so_many(tokens: &[Token]) -> Vec<Token> {
                     .take_while(|t| t.kind == TokenKind::Word && !super::rephrase::is_place_word(t))
                     .any(is_noun);
             many && !named
-        });
-        match found {
-            Some(n) => {
-                out.push(tokens[i + n].clone());
-                out.push(word("people", &tokens[i]));
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.push(tokens[i + n].clone());
+        out.push(word("people", &tokens[i]));
+        Some(i + n + 1)
+    })
 }
 
 /// "in between, on the road: one worker": between them.
 fn in_between(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], "in between").filter(|n| {
             let next = tokens.get(i + n);
             let alone = ends(next)
@@ -139,28 +126,17 @@ fn in_between(tokens: &[Token]) -> Vec<Token> {
                     ) && !tokens[i + n..].iter().take(8).any(|t| t.text == "and")
                 });
             alone && i > 0
-        });
-        match n {
-            Some(n) => {
-                out.extend(["between", "them"].map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+        })?;
+        out.extend(["between", "them"].map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 /// "five people, among them two children, wait": two of them children.
 fn among_them(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         let led = out.last().is_some_and(|t| t.kind == TokenKind::Comma);
-        let many = begins(
+        let n = begins(
             &tokens[i..],
             "among them|amongst them|among whom|among which|including",
         )
@@ -182,28 +158,19 @@ fn among_them(tokens: &[Token]) -> Vec<Token> {
                 .iter()
                 .take_while(|t| t.kind == TokenKind::Word || matches!(t.kind, TokenKind::Number(_)));
             tokens.get(i + n + 1).is_some_and(is_noun) && !list.clone().any(|t| t.text == "and")
+        })?;
+        let one = matches!(tokens[i + n].text.as_str(), "a" | "an");
+        out.push(if one {
+            word("one", &tokens[i])
+        } else {
+            tokens[i + n].clone()
         });
-        match many {
-            Some(n) => {
-                let one = matches!(tokens[i + n].text.as_str(), "a" | "an");
-                out.push(if one {
-                    word("one", &tokens[i])
-                } else {
-                    tokens[i + n].clone()
-                });
-                out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
-                if one {
-                    out.push(tokens[i + n].clone());
-                }
-                i += n + 1;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+        out.extend(["of", "them"].map(|w| word(w, &tokens[i])));
+        if one {
+            out.push(tokens[i + n].clone());
         }
-    }
-    out
+        Some(i + n + 1)
+    })
 }
 
 /// "the taxi is nearer to us than the bus": behind it, where both are ahead of us.
@@ -217,10 +184,8 @@ fn nearer_than(tokens: &[Token]) -> Vec<Token> {
     let turned = tokens.iter().enumerate().any(|(i, t)| {
         t.text == "oncoming" || begins(&tokens[i..], "behind us|behind me|towards us|towards me").is_some()
     });
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let n = begins(&tokens[i..], NEARER)
+    rewritten(tokens, |i, out| {
+        let (n, by) = begins(&tokens[i..], NEARER)
             .map(|n| (n, "behind"))
             .or_else(|| begins(&tokens[i..], FARTHER).map(|n| (n, "in front of")))
             .filter(|(n, _)| {
@@ -232,19 +197,10 @@ fn nearer_than(tokens: &[Token]) -> Vec<Token> {
                             "is" | "are" | "was" | "were" | "stands" | "drives" | "being"
                         )
                     })
-            });
-        match n {
-            Some((n, by)) => {
-                out.extend(by.split(' ').map(|w| word(w, &tokens[i])));
-                i += n;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.extend(by.split(' ').map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 /// "By two cars is the bus followed": the bus is followed by two cars.
@@ -333,36 +289,26 @@ fn followed_so_far(tokens: &[Token]) -> Vec<Token> {
 
 /// "it has a car right behind it": right behind it is a car.
 fn has_beside_it(tokens: &[Token]) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
-        let found = begins(&tokens[i..], "it has|it had|he has|she has|they have").and_then(|n| {
-            let end = (i + n..tokens.len().min(i + 16))
-                .find(|k| ends(tokens.get(*k)))
-                .unwrap_or(tokens.len().min(i + 16));
-            let clause = &tokens[i + n..end];
-            let back = clause
-                .last()
-                .is_some_and(|t| matches!(t.text.as_str(), "it" | "him" | "her" | "them"));
-            let noun = clause.iter().position(is_noun)?;
-            let place = clause.get(noun + 1..)?;
-            let placed = place.iter().any(super::rephrase::is_place_word) && !place.iter().any(is_noun);
-            (back && placed && place.len() <= 7).then_some((i + n, i + n + noun + 1, end))
-        });
-        match found {
-            Some((from, place, end)) => {
-                out.extend_from_slice(&tokens[place..end]);
-                out.push(word("is", &tokens[i]));
-                out.extend_from_slice(&tokens[from..place]);
-                i = end;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+    rewritten(tokens, |i, out| {
+        let (from, place, end) =
+            begins(&tokens[i..], "it has|it had|he has|she has|they have").and_then(|n| {
+                let end = (i + n..tokens.len().min(i + 16))
+                    .find(|k| ends(tokens.get(*k)))
+                    .unwrap_or(tokens.len().min(i + 16));
+                let clause = &tokens[i + n..end];
+                let back = clause
+                    .last()
+                    .is_some_and(|t| matches!(t.text.as_str(), "it" | "him" | "her" | "them"));
+                let noun = clause.iter().position(is_noun)?;
+                let place = clause.get(noun + 1..)?;
+                let placed = place.iter().any(super::rephrase::is_place_word) && !place.iter().any(is_noun);
+                (back && placed && place.len() <= 7).then_some((i + n, i + n + noun + 1, end))
+            })?;
+        out.extend_from_slice(&tokens[place..end]);
+        out.push(word("is", &tokens[i]));
+        out.extend_from_slice(&tokens[from..place]);
+        Some(end)
+    })
 }
 
 /// "one stands to the left of it, another one to the right": of it again.
@@ -370,10 +316,8 @@ fn side_again(tokens: &[Token]) -> Vec<Token> {
     const SIDE: &str = "to the left of|to the right of|on the left of|on the right of|left of|right of|on the left side of|on the right side of|in front of|ahead of";
     const AGAIN: &str = "to the left|to the right|on the left|on the right|to its left|to its right|on the left side|on the right side";
     const OTHER: &str = "another one|another|the other one|the other|one|two|three|a second one|a second|the second|the second one|two others";
-    let mut out: Vec<Token> = Vec::new();
     let mut of: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(tokens, |i, out| {
         if tokens[i].kind == TokenKind::Stop {
             of.clear();
         }
@@ -397,10 +341,9 @@ fn side_again(tokens: &[Token]) -> Vec<Token> {
                 of = what[..end].to_vec();
             }
             out.extend_from_slice(&tokens[i..i + n]);
-            i += n;
-            continue;
+            return Some(i + n);
         }
-        let again = begins(&tokens[i..], OTHER)
+        let (n, side) = begins(&tokens[i..], OTHER)
             .filter(|_| !of.is_empty())
             .and_then(|n| {
                 let stands = begins(
@@ -411,25 +354,16 @@ fn side_again(tokens: &[Token]) -> Vec<Token> {
                 let side = begins(&tokens[i + n + stands..], AGAIN)?;
                 let after = i + n + stands + side;
                 ends(tokens.get(after)).then_some((n + stands, side))
-            });
-        match again {
-            Some((n, side)) => {
-                out.extend_from_slice(&tokens[i..i + n + side]);
-                out.push(word("of", &tokens[i]));
-                // what it was of may have been named with "the": a pronoun would mean what came last
-                out.extend(of.iter().map(|t| Token {
-                    span: tokens[i].span,
-                    ..t.clone()
-                }));
-                i += n + side;
-            }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
-        }
-    }
-    out
+            })?;
+        out.extend_from_slice(&tokens[i..i + n + side]);
+        out.push(word("of", &tokens[i]));
+        // what it was of may have been named with "the": a pronoun would mean what came last
+        out.extend(of.iter().map(|t| Token {
+            span: tokens[i].span,
+            ..t.clone()
+        }));
+        Some(i + n + side)
+    })
 }
 
 #[cfg(test)]

@@ -55,16 +55,17 @@ pub fn begins(tokens: &[Token], phrases: &'static str) -> Option<usize> {
         .max()
 }
 
-/// Puts a phrase in the place of every one of these (joined by bars); nothing, if it is empty.
-pub fn replaced(tokens: &[Token], phrases: &'static str, by: &str) -> Vec<Token> {
-    let mut out = Vec::new();
+/// Goes through the tokens once. Where `turn` finds what it looks for at a place, it puts what shall stand there at the end
+/// of the tokens so far and tells where to go on; every other token is kept as it is.
+pub fn rewritten(
+    tokens: &[Token],
+    mut turn: impl FnMut(usize, &mut Vec<Token>) -> Option<usize>,
+) -> Vec<Token> {
+    let mut out = Vec::with_capacity(tokens.len());
     let mut i = 0;
     while i < tokens.len() {
-        match begins(&tokens[i..], phrases) {
-            Some(n) => {
-                out.extend(by.split_whitespace().map(|w| word(w, &tokens[i])));
-                i += n;
-            }
+        match turn(i, &mut out) {
+            Some(next) => i = next,
             None => {
                 out.push(tokens[i].clone());
                 i += 1;
@@ -72,6 +73,15 @@ pub fn replaced(tokens: &[Token], phrases: &'static str, by: &str) -> Vec<Token>
         }
     }
     out
+}
+
+/// Puts a phrase in the place of every one of these (joined by bars); nothing, if it is empty.
+pub fn replaced(tokens: &[Token], phrases: &'static str, by: &str) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let n = begins(&tokens[i..], phrases)?;
+        out.extend(by.split_whitespace().map(|w| word(w, &tokens[i])));
+        Some(i + n)
+    })
 }
 
 const EACH: &str = "one|each|each one|every one|each of them|one of them|one car|each car|one vehicle|each vehicle|one truck|one bus|one person";

@@ -1,6 +1,7 @@
 //! More and fewer of what is there: "people minus two", "one more of the people", "there used to be two buses, now there is none".
 
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::words::{first_noun, is, leads, led, number, text, trimmed};
 
@@ -131,41 +132,29 @@ fn of_number(np: &[Token], many: &Token) -> Vec<Token> {
 
 /// "one more of the people and one less of the cars".
 pub(super) fn more_of_the(tokens: Vec<Token>) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(&tokens, |i, out| {
         let way = is(tokens.get(i + 1), &["more", "less", "fewer"]) && number(&tokens[i]).is_some();
         let of = tokens
             .get(i + 2..)
             .and_then(|t| leads(t, &["of the", "of those", "of these"]));
-        let np = of.filter(|_| way).and_then(|n| {
+        let (n, b) = of.filter(|_| way).and_then(|n| {
             first_noun(&tokens[i + 2 + n..])
                 .filter(|x| x.0 < 3)
                 .map(|x| (n, x.1))
-        });
-        match np {
-            Some((n, b)) => {
-                let np = &tokens[i + 2 + n..i + 2 + n + b];
-                if is(tokens.get(i + 1), &["more"]) {
-                    let add =
-                        i == 0 || is(tokens.get(i - 1), &["and"]) || tokens[i - 1].kind == TokenKind::Comma;
-                    if add {
-                        out.extend(led("add", &tokens[i], &[]));
-                    }
-                    out.extend_from_slice(&tokens[i..i + 2]);
-                    out.extend(of_number(np, &tokens[i]));
-                } else {
-                    out.push(tokens[i].clone());
-                    out.extend(of_number(np, &tokens[i]));
-                    out.extend(led("fewer", &tokens[i], &[]));
-                }
-                i += 2 + n + b;
+        })?;
+        let np = &tokens[i + 2 + n..i + 2 + n + b];
+        if is(tokens.get(i + 1), &["more"]) {
+            let add = i == 0 || is(tokens.get(i - 1), &["and"]) || tokens[i - 1].kind == TokenKind::Comma;
+            if add {
+                out.extend(led("add", &tokens[i], &[]));
             }
-            None => {
-                out.push(tokens[i].clone());
-                i += 1;
-            }
+            out.extend_from_slice(&tokens[i..i + 2]);
+            out.extend(of_number(np, &tokens[i]));
+        } else {
+            out.push(tokens[i].clone());
+            out.extend(of_number(np, &tokens[i]));
+            out.extend(led("fewer", &tokens[i], &[]));
         }
-    }
-    out
+        Some(i + 2 + n + b)
+    })
 }

@@ -4,6 +4,7 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::words::{first_noun, is, leads, led, noun_at, number, text, word};
 
@@ -145,9 +146,7 @@ fn by_relative(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "the nearer cab", "the middle car", "Second car ahead".
 fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let mut out: Vec<Token> = Vec::new();
-    let mut i = 0;
-    while i < tokens.len() {
+    rewritten(&tokens, |i, out| {
         let the = is(tokens.get(i.wrapping_sub(1)), &["the", "that", "my"]);
         let noun = |k: usize| {
             // its adjectives may stand between
@@ -169,8 +168,7 @@ fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .filter(|(_, n)| the && noun(i + n).is_some());
         if let Some((pick, n)) = taken {
             out.push(word(pick, &tokens[i]));
-            i += n;
-            continue;
+            return Some(i + n);
         }
         // the middle one in order of distance
         let end = noun(i + 1);
@@ -179,8 +177,7 @@ fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             let nth = ["first", "second", "third", "fourth"].get(many.div_ceil(2).wrapping_sub(1));
             if let Some(nth) = nth.filter(|_| many % 2 == 1 && many > 1) {
                 out.push(word(nth, &tokens[i]));
-                i += 1;
-                continue;
+                return Some(i + 1);
             }
         }
         let opens = i == 0 || tokens[i - 1].kind != TokenKind::Word;
@@ -188,10 +185,8 @@ fn comparative(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         if opens && nth {
             out.push(word("the", &tokens[i]));
         }
-        out.push(tokens[i].clone());
-        i += 1;
-    }
-    out
+        None
+    })
 }
 
 /// "behind the waiting one": the waiting car, if a car was spoken of.
