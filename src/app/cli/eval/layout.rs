@@ -267,8 +267,21 @@ pub(super) fn place(prompt: &str, seed: u64, how: &How) -> (Scene, Laid) {
     (scene, laid)
 }
 
+/// Each box in a few words: class, where its centre is (m), which way it looks (deg), how fast it is (m/s).
+fn in_short(scene: &Scene) -> Vec<String> {
+    let boxes = scene.frame().boxes.values();
+    boxes
+        .map(|b| {
+            let (p, yaw) = (b.center_m, b.yaw_rad.to_degrees());
+            let speed = b.velocity_mps.length();
+            format!("{} {:.1} {:.1} {yaw:.0} {speed:.0}", b.class.label(), p.x, p.y)
+        })
+        .collect()
+}
+
 impl Tally {
-    pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64) {
+    /// Judges the scene that came of a case; `told` says of a failed one what was read and where the edit began.
+    pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64, told: impl FnOnce() -> Value) {
         self.cases += 1;
         self.wall_s.push(wall_s);
         self.slowest.push((wall_s, case.text.clone()));
@@ -321,7 +334,9 @@ impl Tally {
         self.drivable = sum(self.drivable, judge.on_drivable());
         self.headings = sum(self.headings, judge.headings());
         if !wrong.is_empty() {
-            self.failed.push(json!({ "text": case.text, "wrong": wrong }));
+            let after = in_short(scene);
+            self.failed
+                .push(json!({ "text": case.text, "wrong": wrong, "after": after, "told": told() }));
         }
     }
 
@@ -366,7 +381,7 @@ impl Eval {
             let seed = TEST_SEED + case.line;
             let Some(base) = &case.base else {
                 let (scene, laid) = place(&case.text, seed, &how);
-                prompts.add(case, &scene, laid.wall_s);
+                prompts.add(case, &scene, laid.wall_s, || Value::Null);
                 continue;
             };
             let (scene, _) = place(base, seed, &how);
@@ -382,11 +397,13 @@ impl Eval {
                 }
             }
             let list: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
+            let before = in_short(&scene);
             let mut document = Document::new(scene);
             document
                 .apply_all("Edit by text", &list)
                 .with_context(|| format!("{:?}", case.text))?;
-            edits.add(case, document.scene(), wall_s);
+            let told = || json!({ "before": before, "phrases": reading.phrases, "notes": reading.notes, "not_understood": reading.not_understood, "questions": reading.questions });
+            edits.add(case, document.scene(), wall_s, told);
         }
         let both = |f: fn(&Tally) -> f64| f(&prompts).min(f(&edits));
         let bars: Vec<Bar> = vec![

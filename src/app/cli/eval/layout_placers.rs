@@ -48,7 +48,7 @@ impl Eval {
                 progress.at(name, i, n);
                 let seed = TEST_SEED + case.line;
                 let (scene, laid) = place(&case.text, seed, &how);
-                tally.add(case, &scene, laid.wall_s);
+                tally.add(case, &scene, laid.wall_s, || Value::Null);
                 figures.add(&RoadMap::new(&laid.road.layout), &laid.placement.boxes);
                 objects += laid.placement.boxes.len();
                 if let Some(d) = &laid.diffused {
