@@ -48,7 +48,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = both_the(&out);
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
-    let out = this_one(&out);
+    let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));
     super::carried::plain(some_so_many(&part_for_whole(&out)))
 }
 

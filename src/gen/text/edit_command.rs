@@ -147,12 +147,12 @@ pub(super) fn imperatives(
             to -= 1;
         }
         let slice = super::back::resolved(&all[*from..to], *n, last_noun.as_ref());
-        let into = slice.iter().any(|t| t.text == "into");
-        let role = if into { Some(Verb::Replace) } else { *verb };
+        let mut c = command(text, &slice, *n, *verb);
+        let becomes = c.by.is_some() || slice.iter().any(|t| t.text == "into");
+        let role = if becomes { Some(Verb::Replace) } else { *verb };
         if let Some(noun) = super::back::named(&slice[*n..], role) {
             *last_noun = Some(noun);
         }
-        let mut c = command(text, &slice, *n, *verb);
         let start = all[*from].span.start;
         c.change = rephrased.changes.iter().find(|(at, _)| *at == start).map(|x| x.1);
         c.nth = rephrased

@@ -3,7 +3,7 @@
 
 use super::ellipsis::{ends, is_noun, is_strip, is_unit, number};
 use super::tokens::{Token, TokenKind};
-use super::wording::{begins, replaced, word};
+use super::wording::{begins, replaced, rewritten, word};
 
 /// "the lane to my left has a bus in it, the one to my right a taxi": a lane again, which has something again.
 pub(super) fn one_lane(sentence: &[Token]) -> Vec<Token> {
@@ -45,6 +45,36 @@ pub(super) fn one_lane(sentence: &[Token]) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "on the left sidewalk ... on the right one", "three lanes, and I drive in the middle one": on the right sidewalk, in the middle
+/// lane.
+pub(super) fn strip_named_before(tokens: &[Token]) -> Vec<Token> {
+    const STRIPS: &str = "sidewalk|sidewalks|pavement|pavements|footpath|footpaths|lane|lanes|kerb|kerbs|curb|curbs|roadside|edge|shoulder|shoulders|verge|verges";
+    const IN: &str = "on|onto|to|in|into|at|along|down";
+    const SIDE: &str =
+        "left|right|middle|centre|center|opposite|oncoming|left hand|right hand|leftmost|rightmost";
+    const NEXT: &str =
+        "and|but|while|too|instead|as|now|again|ahead|behind|is|are|with|where|i|we|beside|next|in|of";
+    let mut strip: Option<String> = None;
+    rewritten(tokens, |i, out| {
+        let t = &tokens[i];
+        if begins(&tokens[i..], STRIPS).is_some() {
+            strip = Some(t.text.trim_end_matches('s').to_string());
+        } else if is_noun(t) && out.last().is_some_and(|b| b.text == "the") {
+            strip = None; // ("the bus in the left lane and the car behind the right one")
+        }
+        let led = (1..=2).any(|n| {
+            i >= n + 2
+                && begins(&tokens[i - n - 2..], IN).is_some()
+                && tokens[i - n - 1].text == "the"
+                && begins(&tokens[i - n..i], SIDE) == Some(n)
+        });
+        let ends = ends(tokens.get(i + 1)) || begins(&tokens[i + 1..], NEXT).is_some();
+        let strip = strip.as_ref().filter(|_| t.text == "one" && led && ends)?;
+        out.push(word(strip, t));
+        Some(i + 1)
+    })
 }
 
 /// "the left lane contains two cars, and the right lane a truck": which has it again.

@@ -405,7 +405,17 @@ impl Placer<'_> {
             }
         }
         // Several in one lane: a place that breaks what was said is none.
-        let broken = |b: &SceneBox| stated.iter().filter(|(e, _)| !self.edge_holds(e, b)).count();
+        // (one that only misses the metres is better than none: "three cars 12 m ahead" are three)
+        let broken = |b: &SceneBox| {
+            let whole = |e: &Edge| Edge {
+                distance_m: None,
+                ..*e
+            };
+            stated
+                .iter()
+                .filter(|(e, _)| !self.edge_holds(&whole(e), b))
+                .count()
+        };
         match best {
             // (where none at all holds, a wrong place is better than none, and is reported)
             Some((_, b)) if broken(&b) > 0 && self.a_twin_holds(&siblings, o.class, &stated) => None,
@@ -506,7 +516,8 @@ fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
     let line = ends[1] - ends[0];
     let (dir, length) = (line.normalize_or_zero(), line.length());
     let along = dir.dot(p - ends[0]) - length / 2.0;
-    dir.perp_dot(p - ends[0]).abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+    // (the middle is where a reader looks first)
+    dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
 }
 
 /// How far a place misses what was said in metres, and how far off the line of what it is behind or between.

@@ -261,6 +261,9 @@ fn judge(
         .iter()
         .any(|o| o.class == crate::scene::Class::Pedestrian);
     wishes += usize::from(people && walkway < 500);
+    // a street has sidewalks, unless it is said to have none
+    let street = d.road.kind != Some(Road::Highway) && !d.road.no_sidewalk;
+    wishes += usize::from(street && walkway < 500);
     // Many objects need room.
     wishes += usize::from(nodes > 10 && role(LaneRole::Left) + role(LaneRole::Right) < 8);
     let strip = layout.count(BevLayer::CarparkArea);

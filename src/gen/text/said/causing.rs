@@ -4,7 +4,9 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::frame::unwrapped;
-use super::words::{command_of, find, first_noun, is, is_place, leads, led, number, text, trimmed, word};
+use super::words::{
+    command_of, find, first_noun, is, is_finite, is_place, leads, led, number, text, trimmed, word,
+};
 
 /// "I want the cyclist on the pavement and another person beside him": the person is new.
 pub(super) fn wished_beside(tokens: Vec<Token>) -> Vec<Token> {
@@ -44,10 +46,23 @@ pub(super) fn command(t: &Token) -> Option<String> {
 
 /// "have the taxi replaced by a bus", "I'd like every bus removed, the motorcycle kept, and a lorry put behind us".
 pub(super) fn caused(tokens: Vec<Token>) -> Vec<Token> {
-    let (inner, mood) = unwrapped(&tokens);
     if is(tokens.first(), &["let", "lets"]) {
         return tokens;
     }
+    // "have the pedestrian stand 8 m ahead, facing me": let
+    let does = first_noun(&tokens)
+        .filter(|n| n.0 < 5)
+        .and_then(|n| tokens.get(n.1));
+    if is(tokens.first(), &["have"])
+        && is(
+            tokens.get(1),
+            &["the", "both", "my", "all", "that", "these", "those"],
+        )
+        && does.is_some_and(|t| is_finite(text(t), true) && command_of(text(t)).is_none())
+    {
+        return led("let", &tokens[0], &[&tokens[1..]]);
+    }
+    let (inner, mood) = unwrapped(&tokens);
     let lead = is(inner.first(), &["have", "get", "see", "want"])
         || leads(inner, &["to have", "to see", "to get"]).is_some();
     let from = match (lead, mood.caused) {

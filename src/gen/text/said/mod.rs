@@ -21,6 +21,7 @@ mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
+mod newcomers;
 mod of_several;
 mod orders;
 mod parting;
@@ -44,6 +45,7 @@ mod strips;
 mod subject;
 mod sums;
 mod swap;
+mod tails;
 mod terse;
 #[cfg(test)]
 mod tests;
@@ -166,7 +168,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
-    let out = plainly::plain(out, talk);
+    let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
     let out = terse::plain(exchanges::plain(out, talk), talk);

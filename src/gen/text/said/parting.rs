@@ -76,6 +76,7 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
             let spoken = styled
                 || has_noun(&body[from..i])
+                || is(body.get(from), &["nothing", "nobody", "everybody", "everyone", "everything"])
                 || is(body.get(from), &PRONOUNS)
                 || is(body.get(from + 1), &["it", "them", "him", "her"])
                 || body[i..next].iter().any(|t| text(t) == "so") && opens_order(rest)
@@ -382,7 +383,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     let verb = super::super::rephrase::is_verb(first)
         && !is_place(inner)
         && !matches!(text(first), "up" | "face" | "facing" | "about");
-    verb && inner.get(1).is_some_and(|t| {
+    // "take away all the pedestrians"
+    let off = usize::from(is(inner.get(1), &["away", "off", "out"]));
+    verb && inner.get(1 + off).is_some_and(|t| {
         matches!(
             text(t),
             "the"

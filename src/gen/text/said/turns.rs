@@ -24,7 +24,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&out, WHEELS, "all vehicles and all bicycles");
     let out = replaced(
         &out,
-        "for the night|for tonight|for the day|for today|for the time being|for good",
+        "for the night|for tonight|for the day|for today|for the time being|for good|this time|this time round|this time around",
         "",
     );
     let out = there_instead(verb_last(out, talk));

@@ -222,14 +222,6 @@ pub fn turned(main: &[Token], parts: &[&Part]) -> Option<Turn> {
         }
         t
     };
-    let goes = |w: &str| {
-        look_up(w).is_some_and(|s| {
-            matches!(
-                s,
-                Sense::State(..) | Sense::Filler | Sense::Attribute(_) | Sense::And
-            )
-        })
-    };
     // a place besides the direction is where it goes, and the lane says how it faces
     let place = (0..stripped.len()).any(|i| {
         matches!(
@@ -273,7 +265,6 @@ pub fn turned(main: &[Token], parts: &[&Part]) -> Option<Turn> {
                 "face" | "faces" | "facing" | "towards" | "toward" | "to"
             ))
     });
-    let _ = goes;
     if (other.is_some() || ours.is_some()) && !place {
         if ours.is_some() && other.is_none() {
             return Some(Turn::WithEgo);
@@ -281,7 +272,17 @@ pub fn turned(main: &[Token], parts: &[&Part]) -> Option<Turn> {
         // (a turn back and going the other way are one and the same)
         return Some(Turn::By(std::f64::consts::PI));
     }
-    if !verb || parts.len() > 1 && place {
+    // ("stand 8 m ahead, facing me" says where as well)
+    let measured = (1..main.len()).any(|i| {
+        super::words::unit_at(&main[i..]).is_some_and(|n| {
+            number(&main[i - 1]).is_some()
+                && matches!(
+                    super::words::longest(&main[i + n..]),
+                    Some((Sense::EgoRel(_) | Sense::Rel(_), _))
+                )
+        })
+    });
+    if !verb || measured || parts.len() > 1 && place {
         return None;
     }
     // ("turn around" is one word of the lexicon)
