@@ -174,7 +174,7 @@ pub fn lay_out_graph(
             }
         },
     };
-    let road = match &how.keep {
+    let mut road = match &how.keep {
         Keep::Road(layout) => Chosen {
             template: "kept",
             layout: (**layout).clone(),
@@ -217,7 +217,7 @@ pub fn lay_out_graph(
             }
         }
     };
-    let (placement, diffused) = match net {
+    let (mut placement, mut diffused) = match net {
         None => (
             place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others),
             None,
@@ -233,6 +233,18 @@ pub fn lay_out_graph(
             }
         },
     };
+    // (a crowd that overfills a road overfills the next, too, and takes the longest to place)
+    let few = placement.boxes.len() <= FEW_BOXES;
+    if matches!(how.keep, Keep::Nothing)
+        && road.template != "remembered"
+        && few
+        && !placement.left_out.is_empty()
+    {
+        let other = better_road(&description, &graphed, &how.others, &road, &placement, seed);
+        if let Some((other, found)) = other {
+            (road, placement, diffused) = (other, found, None);
+        }
+    }
     Laid {
         description,
         graphed,
@@ -243,6 +255,40 @@ pub fn lay_out_graph(
         notes,
         wall_s: started.elapsed().as_secs_f64(),
     }
+}
+
+/// Other variations of the road that are tried where something finds no place.
+const OTHER_ROADS: u64 = 2;
+/// Boxes up to which they are tried.
+const FEW_BOXES: usize = 24;
+
+/// Another variation of the road on which more of what was said can stand, placed by rules; `None` if there is none.
+fn better_road(
+    description: &Description,
+    graphed: &Graphed,
+    others: &[SceneBox],
+    road: &Chosen,
+    placement: &Placement,
+    seed: u64,
+) -> Option<(Chosen, Placement)> {
+    let mut least = placement.cost();
+    let mut best = None;
+    for k in 1..=OTHER_ROADS {
+        if least == 0 {
+            break;
+        }
+        let seed = seed ^ (k << 32);
+        let other = road::choose(description, &graphed.graph, seed);
+        if other.missing.len() > road.missing.len() {
+            continue;
+        }
+        let found = place_with(&graphed.graph, &other.layout, seed, &graphed.sizes_m, others);
+        if found.cost() < least {
+            least = found.cost();
+            best = Some((other, found));
+        }
+    }
+    best
 }
 
 fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {

@@ -31,6 +31,13 @@ pub struct Placement {
     pub unmet: Vec<usize>,
 }
 
+impl Placement {
+    /// How far it is from all that was said: something left out counts as four statements that do not hold.
+    pub fn cost(&self) -> usize {
+        self.left_out.len() * 4 + self.unmet.len()
+    }
+}
+
 /// Boxes for the objects of a graph on a layout.
 pub fn place(graph: &SceneGraph, layout: &BevLayout, seed: u64) -> Vec<SceneBox> {
     place_with(graph, layout, seed, &BTreeMap::new(), &[]).boxes
@@ -70,12 +77,11 @@ pub fn place_from(
             exact: if attempt == 0 { 0.8 } else { 0.1 },
         };
         let found = placer.run();
-        let cost = |p: &Placement| p.left_out.len() * 4 + p.unmet.len();
         let full = found.boxes.len() > 60; // more orders help nothing in a crowd
-        if best.as_ref().is_none_or(|b| cost(&found) < cost(b)) {
+        if best.as_ref().is_none_or(|b| found.cost() < b.cost()) {
             best = Some(found);
         }
-        if full || best.as_ref().is_some_and(|b| cost(b) == 0) {
+        if full || best.as_ref().is_some_and(|b| b.cost() == 0) {
             break;
         }
     }

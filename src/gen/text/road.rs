@@ -37,7 +37,6 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         _ => Road::Straight,
     });
     // A crossing, a car park, a sidewalk: some templates never have them.
-    let needs_people_room = d.road.crossing || d.road.sidewalk;
     let kind = match kind {
         Road::Highway | Road::Curve | Road::Roundabout if d.road.crossing => {
             if d.road.kind == Some(Road::Highway) {
@@ -49,7 +48,6 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         Road::Suburb if needs.contains(&LaneRole::Left) || needs.contains(&LaneRole::Right) => Road::Straight,
         k => k,
     };
-    let _ = needs_people_room;
     let name = template::TEMPLATES
         .iter()
         .copied()

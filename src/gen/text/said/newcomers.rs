@@ -22,7 +22,7 @@ fn opens(tokens: &[Token], i: usize) -> bool {
 }
 
 fn is_fresh(t: Option<&Token>) -> bool {
-    is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some())
+    is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some() && text(t) != "both")
 }
 
 /// "send a bus along the cross street", "bring a police car up behind me": whom "the" is not said of comes new.
