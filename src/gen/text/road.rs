@@ -229,6 +229,14 @@ fn judge(
             _ => 2 * (usize::from(!left) + usize::from(!right)),
         };
     }
+    // a motorway has lanes to change to: to the left, and to the right as well unless it has but two
+    if d.road.kind == Some(Road::Highway) && d.road.own_lane.is_none() {
+        let two = d
+            .road
+            .lanes
+            .is_some_and(|n| if d.road.one_way { n < 3 } else { n < 5 });
+        wishes += usize::from(role(LaneRole::Left) <= 8) + usize::from(!two && role(LaneRole::Right) <= 8);
+    }
     if let Some(lanes) = d.road.lanes {
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
         wishes += usize::from((lanes as usize).div_ceil(2) != forward);
