@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Talk, chosen, except, said, worded};
+use super::said::{Left, Piece, Talk, apart, chosen, except, said, told_once, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -252,7 +252,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: labelled_apart(super::said::told_once(super::common::plain(&tokens(text)))),
+            tokens: apart(labelled_apart(told_once(super::common::plain(&tokens(text))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

@@ -4,6 +4,7 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod apart;
 mod causing;
 mod colours;
 mod company;
@@ -70,6 +71,7 @@ use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, Class, SceneBox};
+pub use apart::apart;
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,

@@ -1,0 +1,345 @@
+//! Where one sentence of an edit is two: "turn the bus around, and remove the pedestrians". Many turns of speech are known by how a
+//! sentence begins or ends, so two plain clauses that neither share words nor point at each other are read one after the other.
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::rephrase::is_verb;
+use super::super::tokens::{Token, TokenKind};
+use super::lists::{HELPERS, NEGATED};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, noun_at, number, text};
+
+/// Words that point at what the other clause says, or share it: such a sentence is read as a whole.
+const SHARED: &[&str] = &[
+    "it",
+    "its",
+    "itself",
+    "he",
+    "him",
+    "his",
+    "she",
+    "her",
+    "they",
+    "them",
+    "their",
+    "theirs",
+    "hers",
+    "there",
+    "one",
+    "ones",
+    "once",
+    "other",
+    "others",
+    "another",
+    "rest",
+    "else",
+    "same",
+    "too",
+    "instead",
+    "so",
+    "likewise",
+    "both",
+    "each",
+    "neither",
+    "nor",
+    "either",
+    "respectively",
+    "former",
+    "latter",
+    "not",
+    "who",
+    "whose",
+    "which",
+    "whom",
+    "where",
+    "if",
+    "unless",
+    "until",
+    "because",
+    "since",
+    "like",
+    "first",
+    "second",
+    "third",
+    "last",
+    "place",
+    "such",
+    "only",
+    "everything",
+    "everyone",
+    "everybody",
+    "nothing",
+    "nobody",
+    "however",
+    "again",
+    "back",
+    "vice",
+    "between",
+    "swap",
+    "swapped",
+    "trade",
+    "remaining",
+    "equally",
+    "alike",
+    "joins",
+    "joined",
+    "that",
+];
+
+/// What a sentence may begin with before its first clause.
+const POLITE: &[&str] = &[
+    "please", "kindly", "now", "then", "ok", "okay", "and", "just", "also", "next", "finally",
+];
+
+/// Verbs of commands that nothing but a command begins with when an object follows.
+const ORDERS: &[&str] = &[
+    "add",
+    "remove",
+    "delete",
+    "erase",
+    "put",
+    "place",
+    "move",
+    "shift",
+    "turn",
+    "rotate",
+    "make",
+    "replace",
+    "swap",
+    "take",
+    "get",
+    "clear",
+    "drop",
+    "bring",
+    "send",
+    "double",
+    "halve",
+    "insert",
+    "exchange",
+    "change",
+    "set",
+    "let",
+    "have",
+    "give",
+    "push",
+    "pull",
+    "slide",
+    "park",
+    "paint",
+    "reduce",
+    "increase",
+    "include",
+    "spawn",
+    "station",
+    "position",
+    "relocate",
+    "lose",
+    "kill",
+    "wipe",
+    "throw",
+    "kick",
+    "convert",
+    "discard",
+    "eliminate",
+    "keep",
+    "leave",
+    "stick",
+    "drive",
+    "steer",
+    "lead",
+    "show",
+    "build",
+    "create",
+    "switch",
+];
+
+fn is_link(t: &Token) -> bool {
+    t.kind == TokenKind::Comma
+        || is(
+            Some(t),
+            &["and", "then", "also", "please", "additionally", "plus"],
+        )
+}
+
+/// The tokens with a full stop wherever a sentence falls apart into clauses that each stand alone.
+pub fn apart(mut tokens: Vec<Token>) -> Vec<Token> {
+    let mut from = 0;
+    while from < tokens.len() {
+        let end = (from..tokens.len())
+            .find(|i| tokens[*i].kind == TokenKind::Stop)
+            .unwrap_or(tokens.len());
+        match boundary(&tokens[from..end]) {
+            Some((a, b)) => {
+                let stop = Token {
+                    kind: TokenKind::Stop,
+                    text: ".".into(),
+                    span: tokens[from + a].span,
+                };
+                tokens.splice(from + a..from + b, [stop]);
+                from += a + 1;
+            }
+            None => from = end + 1,
+        }
+    }
+    tokens
+}
+
+/// The first link in a sentence with a clause of its own on both sides: its first token and one past its last.
+fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
+    let odd = |t: &Token| matches!(t.kind, TokenKind::Mark | TokenKind::Symbol);
+    if sentence.len() > 60 || sentence.iter().any(odd) {
+        return None;
+    }
+    (2..sentence.len()).find_map(|a| {
+        if !is_link(&sentence[a]) || is_link(&sentence[a - 1]) {
+            return None;
+        }
+        let b = (a..sentence.len()).find(|k| !is_link(&sentence[*k]))?;
+        let (left, right) = (&sentence[..a], &sentence[b..]);
+        let shares = |t: &Token| is(Some(t), SHARED);
+        let plain = !left.iter().any(shares) && !right.iter().any(shares);
+        (plain && stands_alone(left) && opens(right)).then_some((a, b))
+    })
+}
+
+/// True if these words are a whole clause: a command with its object, a subject with its verb, "no cars".
+fn stands_alone(clause: &[Token]) -> bool {
+    let polite = clause.iter().take_while(|t| is(Some(t), POLITE)).count();
+    let clause = &clause[polite..];
+    let orders = orders_something(clause);
+    let wants = leads(
+        clause,
+        &[
+            "i want",
+            "i need",
+            "we need",
+            "we want",
+            "i would like",
+            "id like",
+            "there is",
+            "there are",
+            "there should be",
+            "no",
+        ],
+    )
+    .is_some()
+        && has_noun(clause);
+    orders || wants || says(clause)
+}
+
+fn is_determiner(t: &Token) -> bool {
+    is(
+        Some(t),
+        &[
+            "the", "a", "an", "all", "every", "my", "our", "some", "any", "half", "no", "this", "these",
+            "those", "twice",
+        ],
+    ) || number(t).is_some()
+}
+
+/// "remove the bus", "take away two cars", "make half the cones barriers".
+fn orders_something(clause: &[Token]) -> bool {
+    let Some(first) = clause.first() else {
+        return false;
+    };
+    if !is(Some(first), ORDERS) || !is_verb(first) && !is(Some(first), &["have", "let", "station", "lose"]) {
+        return false;
+    }
+    let off = usize::from(is(
+        clause.get(1),
+        &["away", "off", "out", "up", "down", "over", "in"],
+    )) + 2 * usize::from(is(clause.get(1), &["rid"]));
+    let object = &clause[(1 + off).min(clause.len())..];
+    let named = object.first().is_some_and(is_determiner) || noun_at(object).is_some();
+    named && first_noun(object).is_some_and(|n| n.0 < 6) && !is_place(object)
+}
+
+/// A subject with its verb: "the bus should be yellow", "two pedestrians wait on the left".
+fn says(clause: &[Token]) -> bool {
+    let Some((a, b)) = first_noun(clause).filter(|n| n.0 < 5) else {
+        return false;
+    };
+    if !clause.first().is_some_and(is_determiner)
+        || clause[..a]
+            .iter()
+            .any(|t| is_place(std::slice::from_ref(t)) && number(t).is_none())
+    {
+        return false;
+    }
+    // (its place may stand before the verb)
+    let fresh = is(clause.first(), &["a", "an", "some"]) || number(&clause[0]).is_some();
+    let near = clause.len().min(b + if fresh { 1 } else { 7 });
+    let verb = (b..near).find(|k| {
+        let w = text(&clause[*k]);
+        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
+    });
+    verb.is_some_and(|k| k + 1 < clause.len() || is_finite(text(&clause[k]), false))
+}
+
+/// True if a clause of its own begins here and goes on to the end.
+fn opens(clause: &[Token]) -> bool {
+    if clause.len() < 2 {
+        return false;
+    }
+    let absent = is(clause.first(), &["no"]) && first_noun(clause).is_some_and(|n| n.0 < 3);
+    // "two fewer pedestrians", "half the cones"
+    let number_changes =
+        number(&clause[0]).is_some() && is(clause.get(1), &["fewer", "less"]) && has_noun(clause)
+            || leads(clause, &["half the", "half of the", "twice the", "double the"]).is_some()
+                && has_noun(clause);
+    let wants = leads(
+        clause,
+        &[
+            "i want",
+            "i need",
+            "we need",
+            "we want",
+            "i would like",
+            "id like",
+            "there is",
+            "there are",
+            "there should be",
+            "there must be",
+        ],
+    )
+    .is_some()
+        && has_noun(clause);
+    // ("the weather" and the light are told with what they are said of)
+    let sky = clause
+        .iter()
+        .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
+    absent
+        || number_changes
+        || wants
+        || orders_something(clause)
+        || says(clause) && !sky && find(clause, &["while", "but"]).is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::tokens::tokens;
+    use super::*;
+
+    #[test]
+    fn clauses_that_stand_alone() {
+        let said = |t: &str| {
+            let list: Vec<String> = apart(tokens(t)).into_iter().map(|t| t.text).collect();
+            list.join(" ")
+        };
+        assert_eq!(
+            said("turn the bus around, and also no pedestrians please"),
+            "turn the bus around . no pedestrians please"
+        );
+        assert_eq!(
+            said("delete a parked car and then the bus should be yellow"),
+            "delete a parked car . the bus should be yellow"
+        );
+        for whole in [
+            "remove the bus and the truck",
+            "take the barrier and put it behind me",
+            "the bus and the truck should go",
+            "one stays and one crosses",
+            "put a cone between the bus and the truck",
+        ] {
+            assert_eq!(said(whole), whole);
+        }
+    }
+}
