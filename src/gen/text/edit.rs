@@ -307,8 +307,12 @@ impl Editor<'_> {
                     .into_iter()
                     .filter(|id| self.boxes.contains_key(id))
                     .collect();
-                let added = if c.in_place && self.put_in_place(c) {
-                    true
+                let put = c.in_place.then(|| self.put_in_place(c)).flatten();
+                let added = if let Some(put) = put {
+                    if put {
+                        done.push("moved".into());
+                    }
+                    false
                 } else if c.in_place && !(self.gone.is_empty() && self.left.is_empty()) {
                     self.add_in_place(d)
                 } else if c.in_place && !there.is_empty() {

@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Talk, chosen, except, said, worded};
+use super::said::{Left, Piece, Room, Talk, chosen, except, room_of, said, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -246,6 +246,8 @@ pub(super) struct Reader<'t> {
     left: Left,
     /// What the sentences before named, one of a kind.
     named: Vec<Class>,
+    /// What the sentence before left room for.
+    room: Room,
 }
 
 impl<'t> Reader<'t> {
@@ -257,6 +259,7 @@ impl<'t> Reader<'t> {
             last_noun: None,
             left: Left::default(),
             named: Vec::new(),
+            room: Room::default(),
         }
     }
 
@@ -329,6 +332,7 @@ impl<'t> Reader<'t> {
             )
             .is_some(),
             carried: false,
+            room: self.room,
             last: of_last.map(|c| c.label()),
         };
         let asked = self.tokens[from..end]
@@ -383,6 +387,7 @@ impl<'t> Reader<'t> {
                 out[i].verb = Verb::Note;
             }
         }
+        self.room = out.iter().rev().find_map(|c| room_of(c.verb)).unwrap_or(self.room);
         let quiet = out.iter().all(|c| c.verb == Verb::Note);
         self.left = Left::of(&pointed, asked, quiet, std::mem::take(&mut self.left));
         if let Some((_, np)) = cut {

@@ -52,6 +52,7 @@ mod topics;
 mod totals;
 mod turns;
 mod untouched;
+mod vacated;
 mod wanted;
 mod ways;
 mod which;
@@ -84,6 +85,7 @@ pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use vacated::{Room, room_of};
 pub use which::spared;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
@@ -101,6 +103,8 @@ pub struct Talk<'a> {
     pub carried: bool,
     /// The sentence speaks of "the other" of several, too.
     pub others: bool,
+    /// What went before leaves room to be pointed at.
+    pub room: Room,
 }
 
 impl Talk<'_> {
@@ -227,6 +231,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     understood |= parted.len() > 1 && parted.iter().any(|c| parting::only_sky(c));
     let mut lead: Option<Token> = None;
     let mut previous: Vec<Token> = Vec::new();
+    let mut room = talk.room;
     for clause in parted {
         // "put the truck on the left and the car on the right"
         let mut clause = clause.to_vec();
@@ -254,6 +259,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         let talk = Talk {
             last: before.clone(),
             others,
+            room,
             ..*talk
         };
         // "the workers have gone home, so leave them out": said twice
@@ -276,6 +282,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
                 out.push(Piece::Plain(tokens));
             }
         }
+        room = vacated::room_after(&out).unwrap_or(room);
         if let Some((a, b)) = first_noun(clause) {
             let run: Vec<&str> = clause[a..b].iter().map(text).collect();
             before = Some(run.join(" "));
@@ -370,7 +377,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(vec![Piece::Plain(gone)]);
     }
-    if let Some(found) = half(inner) {
+    if let Some(found) = vacated::filled(inner, talk).or_else(|| half(inner)) {
         return Some(found);
     }
     // "there are too many parked cars"
