@@ -254,7 +254,10 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: labelled_apart(super::said::told_once(super::common::plain(&tokens(text)))),
+            tokens: labelled_apart(super::parker::parker(
+                &super::said::told_once(super::common::plain(&tokens(text))),
+                true,
+            )),
             at: 0,
             last_noun: None,
             left: Left::default(),

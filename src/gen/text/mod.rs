@@ -38,6 +38,7 @@ mod mention;
 mod names;
 mod order;
 pub mod parse;
+mod parker;
 mod people;
 pub mod place;
 mod plain_turns;

@@ -268,6 +268,7 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
             || is_place(next)
             || next.first().is_some_and(|t| {
                 text(t).ends_with("ing")
+                    || super::words::is_finite(text(t), true)
                     || matches!(
                         text(t),
                         "there" | "right" | "just" | "that" | "who" | "parked" | "too"

@@ -235,13 +235,13 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     for clause in parted {
         // "put the truck on the left and the car on the right"
         let mut clause = clause.to_vec();
-        let bare = is(clause.first(), &["the", "that", "both", "my"])
+        let bare = is(clause.first(), &parting::WHOLE)
             && first_noun(&clause).is_some_and(|n| n.0 < 4 && is_place(&clause[n.1..]))
             && !clause
                 .iter()
                 .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
         if let (true, Some(verb)) = (bare, &lead) {
-            clause.insert(0, verb.clone());
+            clause.insert(0, words::word(text(verb), &clause[0]));
         }
         if colours::goes_on(&clause, &previous) {
             clause.insert(0, words::word("paint", &clause[0]));
@@ -249,12 +249,15 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
         previous = unwrapped(&clause).0.to_vec();
         let verb = previous.first().cloned();
-        lead = verb.filter(|v| {
-            matches!(
-                text(v),
-                "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
-            )
-        });
+        let told = parting::carried_on(&clause, talk).then(|| words::word("put", &clause[0]));
+        lead = verb
+            .filter(|v| {
+                matches!(
+                    text(v),
+                    "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
+                )
+            })
+            .or(told);
         let clause = &clause[..];
         let talk = Talk {
             last: before.clone(),
