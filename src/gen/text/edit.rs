@@ -534,7 +534,10 @@ impl Editor<'_> {
         }
         all.retain(|id| !spared.contains(id));
         // "remove everything else": but what was spoken of
-        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else") {
+        let others = |m: &Mention| m.plural && m.uncounted && m.spec.noun.starts_with("other ");
+        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else")
+            || c.targets.iter().any(others)
+        {
             all.retain(|id| !self.last.contains(id));
         }
         all.sort_unstable();

@@ -89,7 +89,10 @@ pub fn lacking(tokens: &[Token]) -> Vec<Token> {
         let someone = out.last().is_some_and(is_noun);
         (tokens[i].text == "without" && someone).then_some(())?;
         let article = tokens.get(i + 1).is_some_and(|t| {
-            matches!(t.text.as_str(), "a" | "an" | "any" | "his" | "her" | "their" | "its")
+            matches!(
+                t.text.as_str(),
+                "a" | "an" | "any" | "his" | "her" | "their" | "its"
+            )
         });
         let from = i + 1 + usize::from(article);
         let end = (from + 1..tokens.len().min(from + 4)).find(|k| {
@@ -97,7 +100,16 @@ pub fn lacking(tokens: &[Token]) -> Vec<Token> {
             t.kind != TokenKind::Word
                 || matches!(
                     t.text.as_str(),
-                    "is" | "are" | "was" | "were" | "has" | "have" | "and" | "who" | "that" | "should" | "must"
+                    "is" | "are"
+                        | "was"
+                        | "were"
+                        | "has"
+                        | "have"
+                        | "and"
+                        | "who"
+                        | "that"
+                        | "should"
+                        | "must"
                 )
                 || is_place_word(t)
                 || is_finite(&t.text, false)
@@ -123,15 +135,27 @@ mod tests {
     #[test]
     fn what_is_parked_counts_not_who_parked_it() {
         let said = |t: &str, edits| text(parker(&tokens(t), edits));
-        assert_eq!(said("Some driver has parked his car here", true), "a car is parked here");
-        assert_eq!(said("Two drivers have left their cars here", false), "two cars are parked here");
-        assert_eq!(said("the driver has parked the van", true), "the driver has parked the van");
+        assert_eq!(
+            said("Some driver has parked his car here", true),
+            "a car is parked here"
+        );
+        assert_eq!(
+            said("Two drivers have left their cars here", false),
+            "two cars are parked here"
+        );
+        assert_eq!(
+            said("the driver has parked the van", true),
+            "the driver has parked the van"
+        );
     }
 
     #[test]
     fn what_somebody_lacks_is_left_out() {
         let said = |t: &str| text(lacking(&tokens(t)));
         assert_eq!(said("Someone without a light is running"), "someone is running");
-        assert_eq!(said("a car without a trailer is waiting"), "a car without a trailer is waiting");
+        assert_eq!(
+            said("a car without a trailer is waiting"),
+            "a car without a trailer is waiting"
+        );
     }
 }

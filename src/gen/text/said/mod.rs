@@ -21,6 +21,7 @@ mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
+mod newcomers;
 mod of_several;
 mod orders;
 mod parting;
@@ -117,6 +118,13 @@ impl Talk<'_> {
         fitting(self.map, self.boxes, m, &mentions).len()
     }
 
+    /// True if no box can be what is named with an article or a number.
+    pub fn has_none(&self, np: &[Token]) -> bool {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let m = mentions.iter().find(|m| !m.is_anchor && !m.gone);
+        m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
+    }
+
     /// How far the boxes are that fit these words, m, if they are all as far.
     fn range(&self, np: &[Token]) -> Option<f64> {
         let (_, mentions) = parse(self.text, &tag(np));
@@ -177,7 +185,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
     let out = likewise::plain(out, talk);
-    let out = gifts::plain(turns::plain(out, talk), talk);
+    let out = newcomers::plain(gifts::plain(turns::plain(out, talk), talk), talk);
     if out.is_empty() {
         return stop.to_vec();
     }

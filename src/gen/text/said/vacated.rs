@@ -61,7 +61,12 @@ fn pointed(body: &[Token], room: Room) -> Option<usize> {
             return room == Room::Gone && rest.len() == 1;
         }
         // "to the vacated spot", "into the gap it left", "in the place of the car"
-        let to = leads(rest, &["to", "into", "in", "on", "onto", "at", "over to", "up to", "fill", "fills"]);
+        let to = leads(
+            rest,
+            &[
+                "to", "into", "in", "on", "onto", "at", "over to", "up to", "fill", "fills",
+            ],
+        );
         let of = to
             .and_then(|n| {
                 let own = is(
@@ -74,8 +79,21 @@ fn pointed(body: &[Token], room: Room) -> Option<usize> {
                 let free = leads(
                     &rest[n..],
                     &[
-                        "old", "former", "previous", "vacated", "free", "freed", "empty", "now empty", "same", "now free",
-                        "very same", "resulting", "vacant", "original", "exact",
+                        "old",
+                        "former",
+                        "previous",
+                        "vacated",
+                        "free",
+                        "freed",
+                        "empty",
+                        "now empty",
+                        "same",
+                        "now free",
+                        "very same",
+                        "resulting",
+                        "vacant",
+                        "original",
+                        "exact",
                     ],
                 );
                 n + free.unwrap_or(0)
@@ -86,12 +104,18 @@ fn pointed(body: &[Token], room: Room) -> Option<usize> {
             return of.is_empty()
                 || of.len() < 6
                     && !has_noun(of)
-                    && is(of.first(), &["it", "he", "she", "they", "that", "which", "where", "left"]);
+                    && is(
+                        of.first(),
+                        &["it", "he", "she", "they", "that", "which", "where", "left"],
+                    );
         }
         // "where the car was"
         is(rest.first(), &["where"])
             && is(rest.get(1), &["the", "that", "those", "it", "he", "she", "they"])
-            && rest.iter().skip(2).any(|t| matches!(text(t), "was" | "were" | "stood" | "had" | "used" | "drove"))
+            && rest
+                .iter()
+                .skip(2)
+                .any(|t| matches!(text(t), "was" | "were" | "stood" | "had" | "used" | "drove"))
             && first_noun(&rest[1..]).is_none_or(|x| x.0 < 3)
     })
 }
@@ -102,13 +126,23 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return None;
     }
     let mut body = trimmed(inner);
-    while body.len() > 3 && is(body.last(), &["instead", "now", "please", "then", "too", "afterwards"]) {
+    while body.len() > 3
+        && is(
+            body.last(),
+            &["instead", "now", "please", "then", "too", "afterwards"],
+        )
+    {
         body = trimmed(&body[..body.len() - 1]);
     }
     let i = pointed(body, talk.room)?;
     let head = trimmed(&body[..i]);
     let (a, b) = first_noun(head)?;
-    let det = (0..a).find(|k| is(head.get(*k), &["the", "my", "that", "this", "both", "those", "these", "all"]));
+    let det = (0..a).find(|k| {
+        is(
+            head.get(*k),
+            &["the", "my", "that", "this", "both", "those", "these", "all"],
+        )
+    });
     let verbal = |t: &Token| {
         let w = text(t);
         MOVES.contains(&w)
@@ -117,7 +151,10 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             || ADVERBS.contains(&w)
             || is_verb(t)
             || is_finite(w, true)
-            || matches!(w, "over" | "up" | "forward" | "right" | "exactly" | "straight" | "down" | "take" | "takes")
+            || matches!(
+                w,
+                "over" | "up" | "forward" | "right" | "exactly" | "straight" | "down" | "take" | "takes"
+            )
     };
     let from = det.unwrap_or(0);
     if head.iter().any(|t| t.kind == TokenKind::Comma) || !head[..from].iter().all(verbal) {
