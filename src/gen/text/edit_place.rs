@@ -350,6 +350,7 @@ impl Editor<'_> {
         if ids.iter().any(|id| spots.iter().any(|s| s.id == *id)) || ids.is_empty() {
             return Some(false);
         }
+        let said = c.text.to_lowercase();
         for (k, id) in ids.iter().enumerate() {
             let Some(b) = self.boxes.get(id).copied() else {
                 continue;
@@ -367,6 +368,16 @@ impl Editor<'_> {
                 center_m: new.center_m,
                 yaw_rad: new.yaw_rad,
             });
+            // Where something stood it stands, too.
+            let says = |list: [&str; 2]| list.iter().any(|w| said.contains(w));
+            let stands = says(["park", " stand"]) || to.velocity_mps.length() < 0.5 && !says([" driv", " rid"]);
+            if stands && b.velocity_mps.length() > 0.5 {
+                let object = SceneBox {
+                    velocity_mps: DVec2::ZERO,
+                    ..new
+                };
+                self.push(TextEdit::Replace { id: *id, object });
+            }
         }
         self.last = ids;
         Some(true)

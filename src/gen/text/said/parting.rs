@@ -251,14 +251,17 @@ pub(super) fn carried_on(clause: &[Token], talk: &Talk<'_>) -> bool {
 /// "the taxi is at the kerb and two people stand next to it": after a whole clause of its own a number of something new does.
 fn tells_of_new(rest: &[Token], before: &[Token], talk: &Talk<'_>) -> bool {
     let (inner, mood) = unwrapped(rest);
+    let let_ = usize::from(is(inner.first(), &["let", "have"]));
+    let inner = &inner[let_..];
+    let caused = mood.caused || let_ == 1;
     let fresh = inner
         .first()
-        .is_some_and(|t| number(t).is_some() || matches!(text(t), "some" | "several" | "many"));
+        .is_some_and(|t| number(t).is_some() || matches!(text(t), "some" | "several" | "many" | "somebody" | "someone"));
     if !fresh || mood.denied || is(inner.get(1), &["of", "more", "others"]) {
         return false;
     }
     let near = &inner[..inner.len().min(14)];
-    let does = subject(near, talk, mood.caused).is_some_and(|s| {
+    let does = subject(near, talk, caused).is_some_and(|s| {
         let verb = text(&near[s.pred]);
         s.kind == Kind::Fresh && words::is_finite(verb, true) && !verb.ends_with("ed")
     });

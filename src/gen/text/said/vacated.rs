@@ -9,7 +9,7 @@ use super::super::tokens::{Span, Token, TokenKind};
 use super::super::words::edits::Verb;
 use super::forms::takes_place;
 use super::lists::{ADVERBS, HELPERS, IN_PLACE, MOTION, MOVES};
-use super::words::{first_noun, has_noun, is, is_finite, leads, text, trimmed};
+use super::words::{first_noun, has_noun, is, is_finite, leads, number, text, trimmed};
 use super::{Piece, Talk};
 
 /// What went before leaves room.
@@ -158,6 +158,16 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     };
     let from = det.unwrap_or(0);
     if head.iter().any(|t| t.kind == TokenKind::Comma) || !head[..from].iter().all(verbal) {
+        return None;
+    }
+    // ("the blue one is still parked there", "everything else is there" tell of what stays)
+    let points = is(body.get(i), &["there"]);
+    let stays = head.iter().any(|t| matches!(text(t), "still" | "already" | "always"));
+    let comes = head[..from].iter().any(|t| is_verb(t) || MOVES.contains(&text(t)))
+        || head[b..].iter().any(|t| MOTION.contains(&text(t)) || is_finite(text(t), true));
+    let fresh = head[..a].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "some"]))
+        || is(head.get(a), &["somebody", "someone"]);
+    if stays || points && !(fresh || det.is_some() && comes) {
         return None;
     }
     let Some(from) = det else {
