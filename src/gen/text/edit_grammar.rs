@@ -390,7 +390,11 @@ impl<'t> Reader<'t> {
                 out[i].verb = Verb::Note;
             }
         }
-        self.room = out.iter().rev().find_map(|c| room_of(c.verb)).unwrap_or(self.room);
+        self.room = out
+            .iter()
+            .rev()
+            .find_map(|c| room_of(c.verb))
+            .unwrap_or(self.room);
         let quiet = out.iter().all(|c| c.verb == Verb::Note);
         self.left = Left::of(&pointed, asked, quiet, std::mem::take(&mut self.left));
         if let Some((_, np)) = cut {

@@ -305,7 +305,9 @@ impl Editor<'_> {
         while rest > 0
             && let Some(old) = spots.last()
             && let Some(object) = super::edit_count::in_place_of(old, spec, self.next_id())
-            && let Some(object) = self.clear_of_others(object).filter(|o| o.center_m.distance(old.center_m) < 9.0)
+            && let Some(object) = self
+                .clear_of_others(object)
+                .filter(|o| o.center_m.distance(old.center_m) < 9.0)
         {
             rest -= 1;
             self.last.push(object.id);
@@ -370,7 +372,8 @@ impl Editor<'_> {
             });
             // Where something stood it stands, too.
             let says = |list: [&str; 2]| list.iter().any(|w| said.contains(w));
-            let stands = says(["park", " stand"]) || to.velocity_mps.length() < 0.5 && !says([" driv", " rid"]);
+            let stands =
+                says(["park", " stand"]) || to.velocity_mps.length() < 0.5 && !says([" driv", " rid"]);
             if stands && b.velocity_mps.length() > 0.5 {
                 let object = SceneBox {
                     velocity_mps: DVec2::ZERO,

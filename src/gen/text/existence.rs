@@ -50,7 +50,9 @@ pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
         };
         // "there is not a single car": none
         let rest = trimmed(rest);
-        if rest.first().is_some_and(|t| matches!(text(t), "single" | "solitary" | "sole" | "one"))
+        if rest
+            .first()
+            .is_some_and(|t| matches!(text(t), "single" | "solitary" | "sole" | "one"))
             && let Some((_, b)) = first_noun(rest)
         {
             let mut np = rest[1..b].to_vec();

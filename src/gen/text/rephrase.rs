@@ -367,9 +367,12 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     }
     // ("clear the car away" is no weather)
     let clears = first.text == "clear"
-        && rest
-            .get(1)
-            .is_some_and(|t| matches!(t.text.as_str(), "the" | "my" | "both" | "those" | "these" | "that"));
+        && rest.get(1).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "the" | "my" | "both" | "those" | "these" | "that"
+            )
+        });
     if (is_verb(first) || clears)
         && first.text != "let"
         && !(first.text == "get" && rest.len() > 2)

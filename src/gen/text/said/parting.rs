@@ -10,7 +10,9 @@ use super::subject::{Kind, subject};
 use super::words::{self, find, first_noun, has_noun, is, is_place, leads, number, text};
 
 /// Words before what is meant as a whole.
-pub(super) const WHOLE: [&str; 9] = ["the", "that", "both", "my", "all", "every", "each", "those", "these"];
+pub(super) const WHOLE: [&str; 9] = [
+    "the", "that", "both", "my", "all", "every", "each", "those", "these",
+];
 
 /// Where a sentence falls apart: after a comma, "and" or "but", where a subject with its verb or an imperative begins.
 pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
@@ -143,7 +145,8 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 i = next.max(i + 1);
                 continue;
             }
-            let goes_on = text(t) == "and" || t.kind == TokenKind::Comma || matches!(text(t), "while" | "whereas");
+            let goes_on =
+                text(t) == "and" || t.kind == TokenKind::Comma || matches!(text(t), "while" | "whereas");
             if !lead
                 && !lifts
                 && !named
@@ -240,7 +243,9 @@ pub(super) fn carried_on(clause: &[Token], talk: &Talk<'_>) -> bool {
             && s.pred > 1
             && !mood.denied
             && is(inner.first(), &WHOLE)
-            && !pred.iter().any(|t| NEGATED.contains(&text(t)) || t.kind == TokenKind::Comma)
+            && !pred
+                .iter()
+                .any(|t| NEGATED.contains(&text(t)) || t.kind == TokenKind::Comma)
             && (1..pred.len()).any(|i| is_place(&pred[i..]))
             && super::predicate::parts(pred, s.plural || mood.caused)
                 .iter()
@@ -254,9 +259,9 @@ fn tells_of_new(rest: &[Token], before: &[Token], talk: &Talk<'_>) -> bool {
     let let_ = usize::from(is(inner.first(), &["let", "have"]));
     let inner = &inner[let_..];
     let caused = mood.caused || let_ == 1;
-    let fresh = inner
-        .first()
-        .is_some_and(|t| number(t).is_some() || matches!(text(t), "some" | "several" | "many" | "somebody" | "someone"));
+    let fresh = inner.first().is_some_and(|t| {
+        number(t).is_some() || matches!(text(t), "some" | "several" | "many" | "somebody" | "someone")
+    });
     if !fresh || mood.denied || is(inner.get(1), &["of", "more", "others"]) {
         return false;
     }

@@ -11,8 +11,12 @@ const SUN: &str = "rain over|sun out|snow over|fog gone|rain gone|snow gone|the 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     // ("let it snow over the street" is no end of it)
-    let over = find(&tokens, &["rain over", "snow over"])
-        .is_some_and(|x| is(tokens.get(x.0 + x.1), &["the", "our", "my", "this", "that", "all"]));
+    let over = find(&tokens, &["rain over", "snow over"]).is_some_and(|x| {
+        is(
+            tokens.get(x.0 + x.1),
+            &["the", "our", "my", "this", "that", "all"],
+        )
+    });
     let out = if over {
         tokens
     } else {

@@ -162,10 +162,18 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     // ("the blue one is still parked there", "everything else is there" tell of what stays)
     let points = is(body.get(i), &["there"]);
-    let stays = head.iter().any(|t| matches!(text(t), "still" | "already" | "always"));
-    let comes = head[..from].iter().any(|t| is_verb(t) || MOVES.contains(&text(t)))
-        || head[b..].iter().any(|t| MOTION.contains(&text(t)) || is_finite(text(t), true));
-    let fresh = head[..a].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "some"]))
+    let stays = head
+        .iter()
+        .any(|t| matches!(text(t), "still" | "already" | "always"));
+    let comes = head[..from]
+        .iter()
+        .any(|t| is_verb(t) || MOVES.contains(&text(t)))
+        || head[b..]
+            .iter()
+            .any(|t| MOTION.contains(&text(t)) || is_finite(text(t), true));
+    let fresh = head[..a]
+        .iter()
+        .any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "some"]))
         || is(head.get(a), &["somebody", "someone"]);
     if stays || points && !(fresh || det.is_some() && comes) {
         return None;
