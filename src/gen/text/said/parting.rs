@@ -437,7 +437,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     let verb = super::super::rephrase::is_verb(first)
         && !is_place(inner)
         && !matches!(text(first), "up" | "face" | "facing" | "about");
-    verb && inner.get(1).is_some_and(|t| {
+    // ("set up four cones")
+    let particle = usize::from(is(inner.get(1), &["up", "down", "in", "out"]));
+    verb && inner.get(1 + particle).is_some_and(|t| {
         matches!(
             text(t),
             "the"

@@ -175,7 +175,8 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         .iter()
         .any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "some"]))
         || is(head.get(a), &["somebody", "someone"]);
-    if stays || points && !(fresh || det.is_some() && comes) {
+    // (of two that come there only one would find room)
+    if stays || has_noun(&head[b..]) || points && !(fresh || det.is_some() && comes) {
         return None;
     }
     let Some(from) = det else {
