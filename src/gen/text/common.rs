@@ -45,7 +45,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
         "",
     );
     let out = replaced(&out, CROSSES_OURS, "cross street");
-    let out = both_the(&out);
+    let out = super::parker::lacking(&both_the(&out));
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
     let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));

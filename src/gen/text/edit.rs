@@ -307,8 +307,12 @@ impl Editor<'_> {
                     .into_iter()
                     .filter(|id| self.boxes.contains_key(id))
                     .collect();
-                let added = if c.in_place && self.put_in_place(c) {
-                    true
+                let put = c.in_place.then(|| self.put_in_place(c)).flatten();
+                let added = if let Some(put) = put {
+                    if put {
+                        done.push("moved".into());
+                    }
+                    false
                 } else if c.in_place && !(self.gone.is_empty() && self.left.is_empty()) {
                     self.add_in_place(d)
                 } else if c.in_place && !there.is_empty() {
@@ -530,7 +534,10 @@ impl Editor<'_> {
         }
         all.retain(|id| !spared.contains(id));
         // "remove everything else": but what was spoken of
-        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else") {
+        let others = |m: &Mention| m.plural && m.uncounted && m.spec.noun.starts_with("other ");
+        if c.targets.iter().any(super::mention::means_all) && c.text.to_lowercase().contains(" else")
+            || c.targets.iter().any(others)
+        {
             all.retain(|id| !self.last.contains(id));
         }
         all.sort_unstable();

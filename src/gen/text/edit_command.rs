@@ -58,6 +58,11 @@ fn verb_at(tokens: &[Token], i: usize) -> Option<(Verb, usize)> {
     sure.then_some(found)
 }
 
+/// The verb that these words begin with.
+pub(super) fn verb_of(tokens: &[Token]) -> Option<Verb> {
+    verb_at(tokens, 0).map(|v| v.0)
+}
+
 fn begins(tokens: &[Token], i: usize) -> bool {
     let polite = [
         "and",

@@ -309,11 +309,19 @@ pub(super) fn in_place_of(old: &SceneBox, spec: &ObjectSpec, id: BoxId) -> Optio
         .center_m
         .truncate()
         .extend(old.center_m.z - old.size_m.z / 2.0 + size_m.z / 2.0);
+    let moves = old.velocity_mps.length();
+    let most = match spec.class {
+        Class::TrafficCone | Class::Barrier => 0.0,
+        Class::Pedestrian => 2.0,
+        Class::Bicycle => 6.0,
+        _ => moves,
+    };
     Some(SceneBox {
         id,
         class: spec.class,
         size_m,
         center_m,
+        velocity_mps: old.velocity_mps * (most.min(moves) / moves.max(0.1)),
         label: super::names::label_of(spec),
         ..*old
     })

@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Talk, apart, chosen, except, said, told_once, worded};
+use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -246,17 +246,23 @@ pub(super) struct Reader<'t> {
     left: Left,
     /// What the sentences before named, one of a kind.
     named: Vec<Class>,
+    /// What the sentence before left room for.
+    room: Room,
 }
 
 impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: apart(labelled_apart(told_once(super::common::plain(&tokens(text))))),
+            tokens: apart(labelled_apart(super::parker::parker(
+                &told_once(super::common::plain(&tokens(text))),
+                true,
+            ))),
             at: 0,
             last_noun: None,
             left: Left::default(),
             named: Vec::new(),
+            room: Room::default(),
         }
     }
 
@@ -329,6 +335,7 @@ impl<'t> Reader<'t> {
             )
             .is_some(),
             carried: false,
+            room: self.room,
             last: of_last.map(|c| c.label()),
         };
         let asked = self.tokens[from..end]
@@ -383,6 +390,11 @@ impl<'t> Reader<'t> {
                 out[i].verb = Verb::Note;
             }
         }
+        self.room = out
+            .iter()
+            .rev()
+            .find_map(|c| room_of(c.verb))
+            .unwrap_or(self.room);
         let quiet = out.iter().all(|c| c.verb == Verb::Note);
         self.left = Left::of(&pointed, asked, quiet, std::mem::take(&mut self.left));
         if let Some((_, np)) = cut {

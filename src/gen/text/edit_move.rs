@@ -100,8 +100,8 @@ impl Editor<'_> {
                     };
                     named |= r.anchor != before;
                 }
-                // The other side is that on which it is not.
-                if b.center_m.y > 0.0
+                // The other side is that on which it is not (a little left in its lane is no side).
+                if b.center_m.y > 1.0
                     && !named
                     && [
                         "opposite",

@@ -301,6 +301,18 @@ impl Editor<'_> {
             self.last.push(id);
             self.push(TextEdit::Add { object });
         }
+        // More than were taken away stand right before and behind them, if there is room.
+        while rest > 0
+            && let Some(old) = spots.last()
+            && let Some(object) = super::edit_count::in_place_of(old, spec, self.next_id())
+            && let Some(object) = self
+                .clear_of_others(object)
+                .filter(|o| o.center_m.distance(old.center_m) < 9.0)
+        {
+            rest -= 1;
+            self.last.push(object.id);
+            self.push(TextEdit::Add { object });
+        }
         if rest == 0 {
             return true;
         }
@@ -319,39 +331,59 @@ impl Editor<'_> {
         added || !done.is_empty()
     }
 
-    /// "the motorcycle takes its place": what is there already is moved to where another has stood.
-    pub(super) fn put_in_place(&mut self, c: &super::edit_grammar::Command) -> bool {
-        let ([old], [m]) = (
-            if self.left.is_empty() {
-                &self.gone[..]
-            } else {
-                &self.left[..]
-            },
-            c.targets.as_slice(),
-        ) else {
-            return false;
+    /// "the motorcycle takes its place": what is there already is moved to where others have stood. `None` if it is about
+    /// something new.
+    pub(super) fn put_in_place(&mut self, c: &super::edit_grammar::Command) -> Option<bool> {
+        let m = c.targets.first().filter(|m| m.definite)?;
+        let spots = if self.left.is_empty() {
+            self.gone.clone()
+        } else {
+            self.left.clone()
         };
-        if !m.definite {
-            return false;
+        let ids = match super::select::choose(&self.map, &self.boxes, m, &c.mentions) {
+            super::select::Chosen::These(ids) => ids,
+            super::select::Chosen::None(_) => return None,
+            _ => self.targets(c, false).unwrap_or_default(),
+        };
+        let Some(old) = spots.get(spots.len() / 2) else {
+            self.note(format!("{:?}: where to was not understood", c.text));
+            return Some(false);
+        };
+        if ids.iter().any(|id| spots.iter().any(|s| s.id == *id)) || ids.is_empty() {
+            return Some(false);
         }
-        let super::select::Chosen::These(ids) = super::select::choose(&self.map, &self.boxes, m, &c.mentions)
-        else {
-            return false;
-        };
-        let (old, [id]) = (*old, ids.as_slice()) else {
-            return false;
-        };
-        let Some(b) = self.boxes.get(id).filter(|b| b.id != old.id) else {
-            return false;
-        };
-        let center_m = old.center_m.truncate().extend(b.center_m.z);
-        self.push(TextEdit::Move {
-            id: *id,
-            center_m,
-            yaw_rad: old.yaw_rad,
-        });
-        self.last = vec![*id];
-        true
+        let said = c.text.to_lowercase();
+        for (k, id) in ids.iter().enumerate() {
+            let Some(b) = self.boxes.get(id).copied() else {
+                continue;
+            };
+            let to = if spots.len() < ids.len() { old } else { &spots[k] };
+            let to = if ids.len() == 1 { old } else { to };
+            let new = SceneBox {
+                center_m: to.center_m.truncate().extend(b.center_m.z),
+                yaw_rad: to.yaw_rad,
+                ..b
+            };
+            let new = self.clear_of_others(new).unwrap_or(new);
+            self.push(TextEdit::Move {
+                id: *id,
+                center_m: new.center_m,
+                yaw_rad: new.yaw_rad,
+            });
+            // Where something stood it stands, too.
+            let says = |list: [&str; 2]| list.iter().any(|w| said.contains(w));
+            let stands =
+                says(["park", " stand"]) || to.velocity_mps.length() < 0.5 && !says([" driv", " rid"]);
+            if stands && b.velocity_mps.length() > 0.5 {
+                let object = SceneBox {
+                    velocity_mps: DVec2::ZERO,
+                    ..new
+                };
+                self.push(TextEdit::Replace { id: *id, object });
+            }
+        }
+        self.last = ids;
+        Some(true)
     }
 
     /// The strip or lane that a box stands in, as a relation.

@@ -2,6 +2,7 @@
 //! here", "nobody should be on the crossing".
 
 use super::exchange::{begins_with, trimmed};
+use super::lexicon::{Sense, look_up, plural};
 use super::said::lists::{HELPERS, NEGATED};
 use super::said::words::{first_noun, has_noun, led as command, number, text};
 use super::tokens::{Token, TokenKind};
@@ -47,7 +48,22 @@ pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
         } else {
             rest
         };
-        return Some(command("remove", first, &[trimmed(rest)]));
+        // "there is not a single car": none
+        let rest = trimmed(rest);
+        if rest
+            .first()
+            .is_some_and(|t| matches!(text(t), "single" | "solitary" | "sole" | "one"))
+            && let Some((_, b)) = first_noun(rest)
+        {
+            let mut np = rest[1..b].to_vec();
+            if let Some(last) = np.last_mut()
+                && matches!(look_up(&last.text), Some(Sense::Noun(_, false)))
+            {
+                last.text = plural(&last.text);
+            }
+            return Some(command("remove all the", first, &[&np, &rest[b..]]));
+        }
+        return Some(command("remove", first, &[rest]));
     }
     // The article belongs to what is wished for.
     let total = clause[..k].iter().any(|t| text(t) == "total");

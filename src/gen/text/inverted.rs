@@ -24,7 +24,7 @@ pub fn ordered(tokens: &[Token]) -> Vec<Token> {
     let out = beyond(&out);
     let out = without_contact_clause(&out);
     let out = way_of_another(&out);
-    let out = lets_go(&parker(&out));
+    let out = lets_go(&super::parker::parker(&out, false));
     let out = labels(&out);
     let out = shown(&out);
     let out = watched_from(&out);
@@ -202,53 +202,6 @@ fn way_of_another(tokens: &[Token]) -> Vec<Token> {
         out.push(t.clone());
     }
     out
-}
-
-/// "some fool has parked his van there": a van is parked; who parked it is not there, if nothing more is said of him.
-fn parker(tokens: &[Token]) -> Vec<Token> {
-    const WHO: &str = "some fool|some idiot|some moron|some jerk|some genius|some clown|some joker|some maniac|some driver|some guy|some bloke|some motorist|a fool|an idiot|somebody|someone|a driver|a motorist|its driver|the driver|the owner|its owner|some fellow|some person|some dimwit|some twit|some lunatic";
-    const LEFT: &str = "has parked|have parked|parked|has left|left|has abandoned|abandoned|has dumped|dumped|has ditched|has double parked|has stuck|has put|put|has leaving";
-    rewritten(tokens, |i, out| {
-        let whole = begins(&tokens[i..], WHO).and_then(|n| {
-            let verb = begins(&tokens[i + n..], LEFT)?;
-            let k = i + n + verb;
-            // ("somebody left a trailer standing there": what is left there is told, not who left it)
-            let his = tokens.get(k).is_some_and(|t| {
-                matches!(t.text.as_str(), "his" | "her" | "their" | "a" | "an" | "the") || number(t).is_some()
-            });
-            let noun = (k + 1..tokens.len().min(k + 5)).find(|j| is_noun(&tokens[*j]))?;
-            let more = tokens.get(noun + 1..).is_some_and(|rest| {
-                rest.iter()
-                    .take_while(|t| !matches!(t.kind, TokenKind::Stop))
-                    .zip(rest.iter().skip(1))
-                    .any(|(a, b)| {
-                        a.text == "and"
-                            && matches!(
-                                b.text.as_str(),
-                                "is" | "stands" | "walks" | "now" | "has" | "he" | "she"
-                            )
-                    })
-            });
-            (his && !more).then_some((k, noun))
-        });
-        let (his, noun) = whole?;
-        let many = number(&tokens[his]).filter(|n| *n > 1);
-        out.push(if many.is_some() {
-            tokens[his].clone()
-        } else {
-            word("a", &tokens[i])
-        });
-        out.extend_from_slice(&tokens[his + 1..=noun]);
-        let stands = tokens.get(noun + 1).is_some_and(|t| {
-            matches!(
-                t.text.as_str(),
-                "standing" | "parked" | "abandoned" | "lying" | "unattended" | "waiting" | "behind"
-            )
-        });
-        let state: &[&str] = if stands { &["is"] } else { &["is", "parked"] };
-        out.extend(state.iter().map(|w| word(w, &tokens[i])));
-        Some(noun + 1)
-    })
 }
 
 /// "a lorry lets two girls go over the zebra": it waits for two girls who go over it.

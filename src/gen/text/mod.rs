@@ -37,6 +37,7 @@ mod measures;
 mod mention;
 mod names;
 mod order;
+mod parker;
 pub mod parse;
 mod people;
 pub mod place;

@@ -104,6 +104,8 @@ pub fn singular(noun: &str) -> &str {
 }
 
 fn is_generic(noun: &str) -> bool {
+    // ("other vehicles" are any that were not spoken of)
+    let noun = noun.strip_prefix("other ").unwrap_or(noun);
     noun.is_empty() || GENERIC.split('|').any(|w| w == noun)
 }
 
@@ -190,6 +192,13 @@ fn is_called(name: &str, noun: &str) -> bool {
         return names.iter().any(|n| is_called(&name, n));
     }
     part(&name, noun) || part(noun, &name) || of_name.iter().any(|g| of_noun.contains(g))
+}
+
+/// True if a box may be what is named: it is of its classes, and called nothing else.
+pub fn may_be(b: &SceneBox, m: &Mention) -> bool {
+    let noun = singular(&m.spec.noun);
+    m.classes.contains(&b.class)
+        && (is_generic(noun) || b.label.name.is_empty() || is_called(b.label.name.as_str(), noun))
 }
 
 /// Of the boxes of its classes those that a mention names by paint and name. Without any so called, those that are

@@ -365,7 +365,15 @@ fn one(body: &[Token]) -> (Vec<Token>, Option<Change>) {
     {
         return found;
     }
-    if is_verb(first)
+    // ("clear the car away" is no weather)
+    let clears = first.text == "clear"
+        && rest.get(1).is_some_and(|t| {
+            matches!(
+                t.text.as_str(),
+                "the" | "my" | "both" | "those" | "these" | "that"
+            )
+        });
+    if (is_verb(first) || clears)
         && first.text != "let"
         && !(first.text == "get" && rest.len() > 2)
         && first.text != "have"

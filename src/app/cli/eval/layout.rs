@@ -135,6 +135,14 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_2.jsonl"),
     ),
     (
+        "strangers_23.jsonl",
+        include_str!("../../../../tests/data/strangers_23.jsonl"),
+    ),
+    (
+        "causes_m.jsonl",
+        include_str!("../../../../tests/data/causes_m.jsonl"),
+    ),
+    (
         "variants.jsonl",
         include_str!("../../../../tests/data/variants.jsonl"),
     ),

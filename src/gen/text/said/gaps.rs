@@ -263,11 +263,14 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
         let next = &tokens[i + n..];
         let own = (0..next.len().min(4))
             .take_while(|k| next[*k].kind == TokenKind::Word && (*k == 0 || !is_place(&next[*k..])))
+            // ("another follow the truck" has no noun of its own)
+            .take_while(|k| !is(next.get(*k), &["the", "my", "our", "it", "a", "an"]))
             .any(|k| noun_at(&next[k..]).is_some());
         let ends = next.first().is_none_or(|t| t.kind != TokenKind::Word)
             || is_place(next)
             || next.first().is_some_and(|t| {
                 text(t).ends_with("ing")
+                    || super::words::is_finite(text(t), true)
                     || matches!(
                         text(t),
                         "there" | "right" | "just" | "that" | "who" | "parked" | "too"

@@ -5,6 +5,7 @@
 
 mod acts;
 mod apart;
+mod arrivals;
 mod causing;
 mod colours;
 mod company;
@@ -55,6 +56,7 @@ mod topics;
 mod totals;
 mod turns;
 mod untouched;
+mod vacated;
 mod wanted;
 mod ways;
 mod which;
@@ -88,6 +90,7 @@ pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use vacated::{Room, room_of};
 pub use which::spared;
 pub use worded::worded;
 use words::{find, first_noun, has_noun, is, is_place, leads, led, text, trimmed};
@@ -105,6 +108,8 @@ pub struct Talk<'a> {
     pub carried: bool,
     /// The sentence speaks of "the other" of several, too.
     pub others: bool,
+    /// What went before leaves room to be pointed at.
+    pub room: Room,
 }
 
 impl Talk<'_> {
@@ -115,6 +120,13 @@ impl Talk<'_> {
             return 0;
         };
         fitting(self.map, self.boxes, m, &mentions).len()
+    }
+
+    /// True if no box can be what is named with an article or a number.
+    pub fn has_none(&self, np: &[Token]) -> bool {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let m = mentions.iter().find(|m| !m.is_anchor && !m.gone);
+        m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
     }
 
     /// How far the boxes are that fit these words, m, if they are all as far.
@@ -177,7 +189,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
     let out = likewise::plain(out, talk);
-    let out = gifts::plain(turns::plain(out, talk), talk);
+    let out = arrivals::plain(gifts::plain(turns::plain(out, talk), talk), talk);
     if out.is_empty() {
         return stop.to_vec();
     }
@@ -231,16 +243,17 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
     understood |= parted.len() > 1 && parted.iter().any(|c| parting::only_sky(c));
     let mut lead: Option<Token> = None;
     let mut previous: Vec<Token> = Vec::new();
+    let mut room = talk.room;
     for clause in parted {
         // "put the truck on the left and the car on the right"
         let mut clause = clause.to_vec();
-        let bare = is(clause.first(), &["the", "that", "both", "my"])
+        let bare = is(clause.first(), &parting::WHOLE)
             && first_noun(&clause).is_some_and(|n| n.0 < 4 && is_place(&clause[n.1..]))
             && !clause
                 .iter()
                 .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
         if let (true, Some(verb)) = (bare, &lead) {
-            clause.insert(0, verb.clone());
+            clause.insert(0, words::word(text(verb), &clause[0]));
         }
         if colours::goes_on(&clause, &previous) {
             clause.insert(0, words::word("paint", &clause[0]));
@@ -248,16 +261,20 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         }
         previous = unwrapped(&clause).0.to_vec();
         let verb = previous.first().cloned();
-        lead = verb.filter(|v| {
-            matches!(
-                text(v),
-                "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
-            )
-        });
+        let told = parting::carried_on(&clause, talk).then(|| words::word("put", &clause[0]));
+        lead = verb
+            .filter(|v| {
+                matches!(
+                    text(v),
+                    "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
+                )
+            })
+            .or(told);
         let clause = &clause[..];
         let talk = Talk {
             last: before.clone(),
             others,
+            room,
             ..*talk
         };
         // "the workers have gone home, so leave them out": said twice
@@ -280,6 +297,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
                 out.push(Piece::Plain(tokens));
             }
         }
+        room = vacated::room_after(&out).unwrap_or(room);
         if let Some((a, b)) = first_noun(clause) {
             let run: Vec<&str> = clause[a..b].iter().map(text).collect();
             before = Some(run.join(" "));
@@ -374,7 +392,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(vec![Piece::Plain(gone)]);
     }
-    if let Some(found) = half(inner) {
+    if let Some(found) = vacated::filled(inner, talk).or_else(|| half(inner)) {
         return Some(found);
     }
     // "there are too many parked cars"

@@ -4,10 +4,15 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::frame::unwrapped;
-use super::lists::{HELPERS, MOVES, PRONOUNS};
+use super::lists::{HELPERS, MOVES, NEGATED, PRONOUNS};
 use super::predicate::in_place;
 use super::subject::{Kind, subject};
 use super::words::{self, find, first_noun, has_noun, is, is_place, leads, number, text};
+
+/// Words before what is meant as a whole.
+pub(super) const WHOLE: [&str; 9] = [
+    "the", "that", "both", "my", "all", "every", "each", "those", "these",
+];
 
 /// Where a sentence falls apart: after a comma, "and" or "but", where a subject with its verb or an imperative begins.
 pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]> {
@@ -141,16 +146,19 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 i = next.max(i + 1);
                 continue;
             }
+            let goes_on =
+                text(t) == "and" || t.kind == TokenKind::Comma || matches!(text(t), "while" | "whereas");
             if !lead
                 && !lifts
                 && !named
                 && !therefore
                 && spoken
                 && (instead
+                    || tells_of_new(rest, &body[from..i], talk)
                     || opens(
                         rest,
                         &Talk {
-                            carried: text(t) == "and" && carries(&body[from..i]),
+                            carried: goes_on && (carries(&body[from..i]) || carried_on(&body[from..i], talk)),
                             last: None,
                             ..*talk
                         },
@@ -225,6 +233,51 @@ pub(super) fn carries(clause: &[Token]) -> bool {
         inner.first(),
         &["put", "move", "place", "set", "bring", "shift", "send"],
     ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
+}
+
+/// True if a clause is "the truck goes over to the left lane": who is known is elsewhere.
+pub(super) fn carried_on(clause: &[Token], talk: &Talk<'_>) -> bool {
+    let (inner, mood) = unwrapped(clause);
+    subject(inner, talk, mood.caused).is_some_and(|s| {
+        let pred = &inner[s.pred..];
+        s.kind == Kind::Known
+            && s.pred > 1
+            && !mood.denied
+            && is(inner.first(), &WHOLE)
+            && !pred
+                .iter()
+                .any(|t| NEGATED.contains(&text(t)) || t.kind == TokenKind::Comma)
+            && (1..pred.len()).any(|i| is_place(&pred[i..]))
+            && super::predicate::parts(pred, s.plural || mood.caused)
+                .iter()
+                .all(|p| !p.is_gone() && !p.perfect)
+    })
+}
+
+/// "the taxi is at the kerb and two people stand next to it": after a whole clause of its own a number of something new does.
+fn tells_of_new(rest: &[Token], before: &[Token], talk: &Talk<'_>) -> bool {
+    let (inner, mood) = unwrapped(rest);
+    let let_ = usize::from(is(inner.first(), &["let", "have"]));
+    let inner = &inner[let_..];
+    let caused = mood.caused || let_ == 1;
+    let fresh = inner.first().is_some_and(|t| {
+        number(t).is_some() || matches!(text(t), "some" | "several" | "many" | "somebody" | "someone")
+    });
+    if !fresh || mood.denied || is(inner.get(1), &["of", "more", "others"]) {
+        return false;
+    }
+    let near = &inner[..inner.len().min(14)];
+    let does = subject(near, talk, caused).is_some_and(|s| {
+        let verb = text(&near[s.pred]);
+        s.kind == Kind::Fresh && words::is_finite(verb, true) && !verb.ends_with("ed")
+    });
+    let (inner, mood) = unwrapped(before);
+    let whole = inner.first().is_some_and(super::super::rephrase::is_verb) && has_noun(inner)
+        || subject(inner, talk, mood.caused).is_some_and(|s| {
+            let verb = &inner[s.pred];
+            HELPERS.contains(&text(verb)) || words::is_finite(text(verb), s.plural || mood.caused)
+        });
+    does && whole
 }
 
 /// "so let the bus stand there": what stands before only says why.
@@ -346,10 +399,12 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         return true;
     }
     // "... and the car in the right lane"
-    if is(near.first(), &["the", "that", "both", "my"])
+    if is(near.first(), &WHOLE)
         && first_noun(near).is_some_and(|n| n.0 < 4 && is_place(&near[n.1..]))
         && talk.carried
-        && !near.iter().any(|t| HELPERS.contains(&text(t)))
+        && !near
+            .iter()
+            .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false))
     {
         return true;
     }
@@ -383,9 +438,9 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     let verb = super::super::rephrase::is_verb(first)
         && !is_place(inner)
         && !matches!(text(first), "up" | "face" | "facing" | "about");
-    // "take away all the pedestrians"
-    let off = usize::from(is(inner.get(1), &["away", "off", "out"]));
-    verb && inner.get(1 + off).is_some_and(|t| {
+    // "take away all the pedestrians", "set up four cones"
+    let particle = usize::from(is(inner.get(1), &["away", "up", "down", "in", "out", "off"]));
+    verb && inner.get(1 + particle).is_some_and(|t| {
         matches!(
             text(t),
             "the"

@@ -10,7 +10,18 @@ const SUN: &str = "rain over|sun out|snow over|fog gone|rain gone|snow gone|the 
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = replaced(&tokens, SUN, "clear weather");
+    // ("let it snow over the street" is no end of it)
+    let over = find(&tokens, &["rain over", "snow over"]).is_some_and(|x| {
+        is(
+            tokens.get(x.0 + x.1),
+            &["the", "our", "my", "this", "that", "all"],
+        )
+    });
+    let out = if over {
+        tokens
+    } else {
+        replaced(&tokens, SUN, "clear weather")
+    };
     let out = just_verb(out);
     let out = fronted_exception(out);
     let out = others_go_on(out);

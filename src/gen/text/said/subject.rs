@@ -296,6 +296,10 @@ pub fn subject(tokens: &[Token], talk: &Talk<'_>, caused: bool) -> Option<Subjec
     {
         return None;
     }
+    // "clear the car away" is no clear car
+    if text(first) == "clear" && is(tokens.get(1), &["the", "my", "both", "those", "these", "that"]) {
+        return None;
+    }
     // "add four cars parked on the right"
     let orders = matches!(
         text(first),
