@@ -6,12 +6,12 @@ use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::MATES;
 use super::topics::singular_of;
-use super::words::{first_noun, has_noun, is, leads, led, number, text, trimmed};
+use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
 use crate::scene::Class;
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = joining(tokens, talk);
+    let out = same_place(joining(tokens, talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
     let out = boards(out, talk);
@@ -81,7 +81,7 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         };
         tokens
             .get(k + n)
-            .is_none_or(|t| mark(t) || is(Some(t), &["and", "so", "already"]))
+            .is_none_or(|t| mark(t) || is(Some(t), &["and", "so", "already"]) || is_place(&tokens[k + n..]))
             .then_some((i, k + n))
     });
     let Some((i, end)) = found else {
@@ -118,6 +118,37 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .collect();
     let add = led("add", &tokens[from], &[&lead, &more, &rest]);
     [&tokens[..from], &add, &tokens[end..]].concat()
+}
+
+/// "another child on the same sidewalk": more of them come to where the others are anyhow.
+fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["on the same", "in the same", "at the same", "along the same"]) else {
+        return tokens;
+    };
+    let strip = is(
+        tokens.get(i + n),
+        &[
+            "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "footpath", "lane", "verge", "shoulder",
+            "spot", "place", "corner",
+        ],
+    );
+    let mut end = i + n + 1;
+    end += leads(
+        &tokens[end.min(tokens.len())..],
+        &[
+            "of the road", "of the street", "as them", "as they", "as the others", "as the other", "as the rest",
+            "as him", "as her", "as the first", "as before", "too", "as well",
+        ],
+    )
+    .unwrap_or(0);
+    let from = tokens[..i].iter().rposition(mark).map_or(0, |k| k + 1);
+    let np = &tokens[from..i];
+    let more = np.iter().any(|t| is(Some(t), &["more", "another", "further", "additional", "extra"]));
+    let there = first_noun(np).is_some_and(|(a, b)| talk.fits(&np[a..b]) > 0);
+    if strip && more && there && tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and"])) {
+        return [&tokens[..i], &tokens[end..]].concat();
+    }
+    tokens
 }
 
 /// "put three more pedestrians with the two": three more of them; "the officer joined by two more": two more officers.

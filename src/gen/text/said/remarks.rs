@@ -777,6 +777,7 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
                 "closer to",
                 "nearer to",
                 "over to",
+                "to",
             ],
         )?;
         let metres = tokens.get(i + n).is_some_and(|t| number(t).is_some())
@@ -806,9 +807,10 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
     out[from].text = "move".into();
     // ("15 m ahead" alone is a step)
     let bare = i + n + 3;
-    if is(out.get(bare - 1), &["ahead", "behind"])
-        && out.get(bare).is_none_or(|t| mark(t) || is(Some(t), &["and"]))
-    {
+    let ahead = is(out.get(bare - 1), &["ahead"]) && !is(out.get(bare), &["of"]);
+    let behind = is(out.get(bare - 1), &["behind"])
+        && out.get(bare).is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
+    if ahead || behind {
         let us = led(
             if text(&out[bare - 1]) == "ahead" {
                 "of us"
