@@ -14,8 +14,67 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = same_place(joining(tokens, talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
-    let out = boards(out, talk);
+    let out = beside_it(as_one(boards(out, talk)));
     takes_away(out, talk)
+}
+
+/// "my son comes by bike: add him as a cyclist": add a cyclist.
+fn as_one(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["add", "put", "insert", "include", "place", "show", "draw"])
+            && is(tokens.get(i + 1), &["him", "her", "it", "them"])
+            && (*i == 0 || mark(&tokens[i - 1]) || is(tokens.get(i - 1), &["so", "and", "please"]))
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let late = leads(&tokens[i + 2..], &["in as", "there as", "into the scene as", "as"]);
+    let Some(new) = late.map(|n| &tokens[i + 2 + n..]) else {
+        return tokens;
+    };
+    let fresh = is(new.first(), &["a", "an", "another"]) || new.first().is_some_and(|t| number(t).is_some());
+    // who he is was only told; nothing is asked for before
+    let told = is(tokens.first(), &["my", "our", "his", "her", "a", "an", "here", "this", "that", "there"]);
+    if fresh && has_noun(new) && (i == 0 || told) {
+        return led("add", &tokens[i], &[new]);
+    }
+    tokens
+}
+
+/// "have the car stand on the right with an officer next to it": and add an officer next to it.
+fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
+    const BESIDE: &[&str] = &[
+        "next to", "beside", "by", "near", "close to", "behind", "in front of", "ahead of", "alongside", "right behind",
+        "right next to", "directly behind", "just behind", "to the left of", "to the right of",
+    ];
+    let Some(i) = (3..tokens.len()).find(|i| is(tokens.get(*i), &["with"])) else {
+        return tokens;
+    };
+    let new = &tokens[i + 1..];
+    let fresh = is(new.first(), &["a", "an"]) || new.first().is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(new).filter(|x| fresh && x.0 < 4) else {
+        return tokens;
+    };
+    let stands = leads(&new[b..], &["standing", "waiting", "walking", "parked", "driving", "right"]).unwrap_or(0);
+    let Some(n) = leads(&new[b + stands..], BESIDE) else {
+        return tokens;
+    };
+    let it = b + stands + n;
+    let points = is(new.get(it), &["it", "him", "her", "them"]) && new.get(it + 1).is_none_or(mark);
+    let moves = is(tokens.first(), &super::lists::MOVES);
+    let known = |k: usize| {
+        is(
+            tokens.get(k),
+            &["the", "my", "our", "both", "that", "this", "all", "it", "him", "her", "them"],
+        )
+    };
+    // (what is new has its company by itself)
+    let there = known(0) && first_noun(&tokens).is_some_and(|x| x.0 < 5) || moves && known(1);
+    if points && there {
+        let and = led("and add", &tokens[i], &[]);
+        return [trimmed(&tokens[..i]), &and, new].concat();
+    }
+    tokens
 }
 
 fn mark(t: &Token) -> bool {

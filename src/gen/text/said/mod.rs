@@ -537,8 +537,11 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     )
     .is_some()
         || parts.iter().all(|p| {
+            let verb = usize::from(p.main.first().is_some_and(|t| words::is_finite(text(t), true) || text(t).ends_with("ing")));
+            let close = ["too", "way too", "far too", "much too", "a bit too", "a little too", "dangerously", "uncomfortably"];
             p.begins(&["too far", "too close", "too near", "wrong", "in the wrong", "too"])
                 .is_some()
+                || leads(&p.main[verb..], &close).is_some_and(|n| is(p.main.get(verb + n), &["far", "close", "near", "closely", "tightly"]))
         });
     if complaint && !parts.iter().any(predicate::Part::is_gone) && matches!(s.kind, Kind::Known) {
         return Some(vec![remembered(&s.np, talk)]);

@@ -1,6 +1,7 @@
 //! What is asked for with its reason or condition: "I don't like that truck, use a bus", "if there's a lorry behind us, delete
 //! it", "half of the workers are on their break, remove them", "a motorcycle should be coming towards us, not a car".
 
+use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
@@ -124,12 +125,46 @@ const BETTER: &[&str] = &[
 
 /// The sentence as what is asked for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = disliked(tokens, talk);
+    let out = disliked(everybody_does(tokens), talk);
     let out = better(out, talk);
     let out = condition(out, talk);
     let out = some_then(out);
     let out = same_with(is_another(not_that(out, talk)), talk);
     with_gone(out, talk)
+}
+
+/// "everybody has got on the bus, so remove all the pedestrians": what is asked for.
+fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
+    let none = leads(&tokens, &["nobody", "no one", "noone", "no pedestrian", "no child"]);
+    let all = leads(&tokens, &["everybody", "everyone", "people", "they all", "they have all"]);
+    let Some(cut) = (2..tokens.len()).find(|k| {
+        tokens[*k].kind != TokenKind::Word && !matches!(tokens[*k].kind, TokenKind::Number(_))
+            || is(tokens.get(*k), &["so"])
+    }) else {
+        return tokens;
+    };
+    let remark = &tokens[..cut];
+    // what shall be so is asked for itself
+    let asks = remark
+        .iter()
+        .any(|t| is(Some(t), &["should", "must", "shall", "may", "can", "except", "but", "on", "in"]) && none.is_some())
+        && !remark.iter().any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
+    let mut rest = trimmed(&tokens[cut..]);
+    while is(rest.first(), &["so", "therefore", "please", "and", ":"]) {
+        rest = trimmed(&rest[1..]);
+    }
+    let removes = super::some_of::removes(rest.first())
+        && is(rest.get(1), &["the", "all", "both", "every", "those", "these"])
+        && first_noun(rest).is_some_and(|x| x.0 < 5);
+    let people = first_noun(rest).is_some_and(|(a, b)| {
+        super::words::longest(&rest[a..b]).is_some_and(
+            |l| matches!(l.0, Sense::Noun(n, _) if n.classes[0] == crate::scene::Class::Pedestrian),
+        )
+    });
+    if removes && (none.is_some() && !asks || all.is_some() && people) {
+        return rest.to_vec();
+    }
+    tokens
 }
 
 /// Something new that is asked for: "use a bus", "a bus would be better", "rather a bus".

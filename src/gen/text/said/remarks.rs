@@ -35,7 +35,7 @@ const LIKE: &[&str] = &[
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, LOOKS, "faces us");
     let out = replaced(&out, "please to", "please");
-    let out = gone_on(put_there(out));
+    let out = now_so_far(gone_on(put_there(out)));
     let out = as_before(reported(out));
     let out = replaced(&out, "the two on foot|both on foot", "the two pedestrians");
     let out = replaced(&out, "the three on foot", "the three pedestrians");
@@ -760,6 +760,33 @@ fn gone_on(tokens: Vec<Token>) -> Vec<Token> {
         rest.splice(3..3, us);
     }
     [&tokens[..i], &led("should be", &tokens[i], &[]), &rest].concat()
+}
+
+/// "has overtaken us and now rides 8 m ahead": ahead of us, not by so much.
+fn now_so_far(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find_map(|i| {
+        let now = is(tokens.get(i), &["now"]);
+        let done = is(tokens.get(i), &["and"])
+            && tokens[..i].iter().any(|t| is(Some(t), &["has", "have"]))
+            && has_noun(&tokens[..i]);
+        let metres = (i + 1..tokens.len().min(i + 5)).find(|k| number(&tokens[*k]).is_some())?;
+        let verb = tokens[i + 1..metres].iter().any(|t| {
+            super::words::is_finite(text(t), false) && !is(Some(t), &["moved", "backed", "rolled", "pulled", "pushed"])
+                || text(t).ends_with("ing")
+                || is(Some(t), &["is", "are", "drive", "ride", "walk", "stand", "wait"])
+        });
+        let end = metres + 2;
+        let ahead = is(tokens.get(end), &["ahead", "behind"])
+            && tokens.get(end + 1).is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
+        ((now || done) && verb && super::words::is_unit(tokens.get(metres + 1)) && ahead).then_some(end)
+    });
+    match found {
+        Some(end) => {
+            let us = if text(&tokens[end]) == "ahead" { "of us" } else { "us" };
+            [&tokens[..=end], &led(us, &tokens[end], &[]), &tokens[end + 1..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "pull the cones in to 15 m ahead": to there, not by so much.
