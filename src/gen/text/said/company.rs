@@ -51,7 +51,8 @@ fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let new = &tokens[i + 1..];
-    let fresh = is(new.first(), &["a", "an"]) || new.first().is_some_and(|t| number(t).is_some());
+    let own = is(new.first(), &["its", "his", "her", "their"]);
+    let fresh = own || is(new.first(), &["a", "an"]) || new.first().is_some_and(|t| number(t).is_some());
     let Some((_, b)) = first_noun(new).filter(|x| fresh && x.0 < 4) else {
         return tokens;
     };
@@ -71,8 +72,8 @@ fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
     // (what is new has its company by itself)
     let there = known(0) && first_noun(&tokens).is_some_and(|x| x.0 < 5) || moves && known(1);
     if points && there {
-        let and = led("and add", &tokens[i], &[]);
-        return [trimmed(&tokens[..i]), &and, new].concat();
+        let and = led(if own { "and add a" } else { "and add" }, &tokens[i], &[]);
+        return [trimmed(&tokens[..i]), &and, &new[usize::from(own)..]].concat();
     }
     tokens
 }
@@ -202,7 +203,10 @@ fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     .unwrap_or(0);
     let from = tokens[..i].iter().rposition(mark).map_or(0, |k| k + 1);
     let np = &tokens[from..i];
-    let more = np.iter().any(|t| is(Some(t), &["more", "another", "further", "additional", "extra"]));
+    let more = np.iter().any(|t| {
+        is(Some(t), &["more", "another", "further", "additional", "extra"])
+            || super::super::foremost::ordinal(text(t)).is_some() && is(np.first(), &["a", "an", "add", "put"])
+    });
     let there = first_noun(np).is_some_and(|(a, b)| talk.fits(&np[a..b]) > 0);
     if strip && more && there && tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and"])) {
         return [&tokens[..i], &tokens[end..]].concat();

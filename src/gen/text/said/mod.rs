@@ -431,6 +431,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     if let Some((i, n)) = in_place(inner)
+        // ("all cars and all bikes stay where they are" brings nothing)
+        && !(i > 0 && is(inner.get(i - 1), &["stay", "stays", "remain", "remains", "keep", "stand", "stands"]))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);

@@ -145,10 +145,11 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
     };
     let remark = &tokens[..cut];
     // what shall be so is asked for itself
-    let asks = remark
-        .iter()
-        .any(|t| is(Some(t), &["should", "must", "shall", "may", "can", "except", "but", "on", "in"]) && none.is_some())
-        && !remark.iter().any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
+    let named = remark.iter().position(|t| is(Some(t), &["the", "this", "that", "these", "those"]));
+    let does = named.is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
+        || remark.iter().any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
+    let asks = remark.iter().any(|t| is(Some(t), &["should", "must", "shall", "may", "can", "except", "but"]))
+        || !does && remark.iter().any(|t| is(Some(t), &["on", "in"]));
     let mut rest = trimmed(&tokens[cut..]);
     while is(rest.first(), &["so", "therefore", "please", "and", ":"]) {
         rest = trimmed(&rest[1..]);
@@ -161,6 +162,13 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
             |l| matches!(l.0, Sense::Noun(n, _) if n.classes[0] == crate::scene::Class::Pedestrian),
         )
     });
+    // "nobody takes the bus on Sundays, so remove it"
+    if let (Some(n), true, Some(k), false) = (none, removes_it(rest), named, asks)
+        && k == n + 1
+        && let Some((_, b)) = first_noun(&remark[k..]).filter(|x| x.0 < 4)
+    {
+        return led("remove the", &tokens[0], &[&remark[k + 1..k + b]]);
+    }
     if removes && (none.is_some() && !asks || all.is_some() && people) {
         return rest.to_vec();
     }

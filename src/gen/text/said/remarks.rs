@@ -3,7 +3,7 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::replaced;
+use super::super::wording::{replaced, rewritten};
 use super::Talk;
 use super::lists::HELPERS;
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
@@ -48,7 +48,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = left_there(watching(out));
     let out = that_makes(out);
     let out = theirs_instead(out);
-    let out = in_to(out);
+    let out = in_to(to_ahead(out));
     like_the_first(out, talk)
 }
 
@@ -762,6 +762,25 @@ fn gone_on(tokens: Vec<Token>) -> Vec<Token> {
     [&tokens[..i], &led("should be", &tokens[i], &[]), &rest].concat()
 }
 
+/// "drop back to 10 m ahead": a place ahead of us, no step.
+fn to_ahead(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let metres = is(tokens.get(i), &["to", "until"])
+            && tokens.get(i + 1).is_some_and(|t| number(t).is_some())
+            && super::words::is_unit(tokens.get(i + 2));
+        let next = tokens.get(i + 4);
+        let ends = next.is_none_or(|t| mark(t) || is(Some(t), &["and", "but", "in", "on"]));
+        let us = match tokens.get(i + 3).map(text).filter(|_| metres && ends)? {
+            "ahead" => "of us",
+            "behind" => "us",
+            _ => return None,
+        };
+        out.extend_from_slice(&tokens[i..i + 4]);
+        out.extend(led(us, &tokens[i], &[]));
+        Some(i + 4)
+    })
+}
+
 /// "has overtaken us and now rides 8 m ahead": ahead of us, not by so much.
 fn now_so_far(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find_map(|i| {
@@ -832,23 +851,6 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
     }
     let mut out = tokens.clone();
     out[from].text = "move".into();
-    // ("15 m ahead" alone is a step)
-    let bare = i + n + 3;
-    let ahead = is(out.get(bare - 1), &["ahead"]) && !is(out.get(bare), &["of"]);
-    let behind = is(out.get(bare - 1), &["behind"])
-        && out.get(bare).is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
-    if ahead || behind {
-        let us = led(
-            if text(&out[bare - 1]) == "ahead" {
-                "of us"
-            } else {
-                "us"
-            },
-            &tokens[i],
-            &[],
-        );
-        out.splice(bare..bare, us);
-    }
     [&out[..i], &led("to", &tokens[i], &[]), &out[i + n..]].concat()
 }
 
