@@ -92,7 +92,8 @@ impl Parser<'_> {
         // "ten cones, five on the left and five on the right": of the same ten
         let rest_of = |w: &usize| {
             let m = &self.mentions[*w];
-            !all && !self.edits
+            // (in an edit the group may be in the scene: its parts are told apart there)
+            !all && !(self.edits && m.definite)
                 && !m.gone
                 && (m.spec.relations.is_empty() || m.spec.count.n == count.n && !self.elsewhere(*w))
                 && m.spec.count.is_exact()
