@@ -220,17 +220,7 @@ pub fn holds(
                 R::Facing => toward > 0.75,
                 R::FacingAway => toward < -0.75,
                 R::Following => {
-                    // (who drives behind the ego vehicle follows that, nobody before it)
-                    let us = -at(b);
-                    let between = !is_ego
-                        && distance_m.is_none()
-                        && (fwd..0.0).contains(&axis.dot(us))
-                        && axis.perp_dot(us).abs() < 2.0;
-                    fwd < -half.x
-                        && lat.abs() < 2.0
-                        && -fwd < 36.0
-                        && heading.dot(b.heading()) > 0.88
-                        && !between
+                    fwd < -half.x && lat.abs() < 2.0 && -fwd < 36.0 && heading.dot(b.heading()) > 0.88
                 }
                 R::SameDirection => heading.dot(b.heading()) > 0.88,
                 R::OppositeDirection => heading.dot(b.heading()) < -0.88,

@@ -217,7 +217,8 @@ pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
         }
     }
     let noun = singular(&m.spec.noun);
-    if is_generic(noun) {
+    // ("everything" and "traffic" are whatever their parts are called)
+    if is_generic(noun) || m.classes.len() > 1 {
         return fit;
     }
     let pick = |keep: &dyn Fn(&SceneBox) -> bool| -> Vec<&'b SceneBox> {

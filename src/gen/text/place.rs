@@ -334,7 +334,7 @@ impl Placer<'_> {
             }
             // behind something ahead is rather between it and the ego vehicle
             let beyond = stated.iter().any(|(e, t)| {
-                e.relation == RelationKind::Behind
+                matches!(e.relation, RelationKind::Behind | RelationKind::Following)
                     && matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX && b.center_m.x > 6.0)
             });
             if beyond && s.p.x < 0.0 {

@@ -3,6 +3,7 @@
 
 use super::super::lexicon::plural;
 use super::super::tokens::{Token, TokenKind};
+use super::Talk;
 use super::words::{find, first_noun, is, is_place, leads, led, noun_at, number, text, trimmed, unit_at};
 
 const MORE: &[&str] = &[
@@ -69,11 +70,11 @@ const RIDERS: &[(&str, &[&str])] = &[
 ];
 
 /// The sentence with what it leaves out.
-pub fn filled(tokens: Vec<Token>) -> Vec<Token> {
+pub fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = people(tokens);
     let out = rider(out);
     let out = one_who(existing(out));
-    let out = more_elsewhere(more_of_it(out));
+    let out = more_elsewhere(more_of_it(out), talk);
     place_last(out)
 }
 
@@ -287,7 +288,7 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
 }
 
 /// "add two people on the left sidewalk and one on the right sidewalk": one more, none of the two.
-fn more_elsewhere(tokens: Vec<Token>) -> Vec<Token> {
+fn more_elsewhere(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const PUTS: &[&str] = &[
         "add", "insert", "include", "create", "show", "show me", "place", "put", "put in", "set up", "generate",
         "spawn", "i want", "i need", "we need", "i would like", "id like", "there are", "there is", "there should be",
@@ -327,8 +328,10 @@ fn more_elsewhere(tokens: Vec<Token>) -> Vec<Token> {
     if let Some(last) = many.last_mut() {
         last.text = plural(&last.text);
     }
-    let mut out: Vec<Token> = Vec::new();
-    for (i, t) in tokens.iter().enumerate() {
+    // (none of them is there yet: what there should be comes)
+    let lead = puts.filter(|_| talk.fits(&one) == 0).unwrap_or(0);
+    let mut out = if lead > 0 { led("add", &tokens[0], &[]) } else { Vec::new() };
+    for (i, t) in tokens.iter().enumerate().skip(lead) {
         out.push(t.clone());
         if let Some((_, n, _)) = shares.iter().find(|s| s.0 == i) {
             out.extend_from_slice(if *n == 1 { &one } else { &many });

@@ -432,7 +432,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     if let Some((i, n)) = in_place(inner)
         // ("all cars and all bikes stay where they are" brings nothing)
-        && !(i > 0 && is(inner.get(i - 1), &["stay", "stays", "remain", "remains", "keep", "stand", "stands"]))
+        && !(is(inner.get(i), &["where"]) && i > 0 && is(inner.get(i - 1), &["stay", "stays", "remain", "remains"]))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);

@@ -2,6 +2,7 @@
 //! is nearer", "of the motor vehicles only the one behind us remains".
 
 use super::super::foremost::ordinal;
+use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::Talk;
@@ -65,7 +66,9 @@ fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let of = leads(&tokens[one..], GROUPS).unwrap_or(0);
         let many = (of > 0).then(|| tokens.get(one + of).and_then(number)).flatten();
         let end = one + many.map_or(0, |_| of + 1);
-        let named = super::words::noun_at(&tokens[end.min(tokens.len())..]).is_some();
+        let described = |t: &Token| matches!(look_up(text(t)), Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_)));
+        let noun = tokens[end..].iter().take_while(|t| described(t)).count() + end;
+        let named = super::words::noun_at(&tokens[noun..]).is_some();
         (end > picks && !named && (of == 0 || many.is_some())).then_some((picks, end, many))
     };
     let Some((_, _, many)) = (1..first).find_map(one_of) else {

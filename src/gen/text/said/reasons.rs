@@ -146,7 +146,8 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
     let remark = &tokens[..cut];
     // what shall be so is asked for itself
     let named = remark.iter().position(|t| is(Some(t), &["the", "this", "that", "these", "those"]));
-    let does = named.is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
+    let any = none.filter(|n| is(remark.get(n + 1), &["a", "an"])).map(|n| n + 1);
+    let does = named.or(any).is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
         || remark.iter().any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
     let asks = remark.iter().any(|t| is(Some(t), &["should", "must", "shall", "may", "can", "except", "but"]))
         || !does && remark.iter().any(|t| is(Some(t), &["on", "in"]));
@@ -163,8 +164,9 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
         )
     });
     // "nobody takes the bus on Sundays, so remove it"
-    if let (Some(n), true, Some(k), false) = (none, removes_it(rest), named, asks)
-        && k == n + 1
+    if let (Some(n), true, false) = (none, removes_it(rest), asks)
+        && let k = n + 1
+        && is(remark.get(k), &["the", "this", "that", "these", "those", "a", "an", "my", "our"])
         && let Some((_, b)) = first_noun(&remark[k..]).filter(|x| x.0 < 4)
     {
         return led("remove the", &tokens[0], &[&remark[k + 1..k + b]]);
