@@ -128,13 +128,45 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         return Some(Vec::new()); // a remark
     }
     // "nobody takes the bus": what nobody does to something else is a remark
-    let does = clause[n..].iter().take_while(|t| HELPERS.contains(&text(t))).count() + n;
+    let does = clause[n..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count()
+        + n;
     let object = clause.get(does).is_some_and(|t| {
         matches!(
             text(t),
-            "takes" | "take" | "took" | "uses" | "use" | "used" | "needs" | "need" | "wants" | "want" | "drives" | "drive"
-                | "rides" | "ride" | "likes" | "like" | "owns" | "boards" | "catches" | "misses" | "missed" | "buys"
-                | "sees" | "watches" | "saw" | "noticed" | "notices" | "knows" | "moved" | "touched" | "touches"
+            "takes"
+                | "take"
+                | "took"
+                | "uses"
+                | "use"
+                | "used"
+                | "needs"
+                | "need"
+                | "wants"
+                | "want"
+                | "drives"
+                | "drive"
+                | "rides"
+                | "ride"
+                | "likes"
+                | "like"
+                | "owns"
+                | "boards"
+                | "catches"
+                | "misses"
+                | "missed"
+                | "buys"
+                | "sees"
+                | "watches"
+                | "saw"
+                | "noticed"
+                | "notices"
+                | "knows"
+                | "moved"
+                | "touched"
+                | "touches"
         )
     }) && clause
         .get(does + 1)

@@ -253,15 +253,38 @@ pub fn acts(
 /// "steps off the kerb", "pulls out of its lane": where it no longer is, and nothing of where it goes.
 fn steps_off(p: &Part) -> bool {
     let leaves = p
-        .begins(&["leaves the", "leave the", "leaves its", "leave its", "leaves his", "leave his", "leaves her", "leave her", "leave their"])
+        .begins(&[
+            "leaves the",
+            "leave the",
+            "leaves its",
+            "leave its",
+            "leaves his",
+            "leave his",
+            "leaves her",
+            "leave her",
+            "leave their",
+        ])
         .is_some();
     let from = (1..p.main.len().min(4)).find(|i| {
         let rest = &p.main[*i..];
-        super::words::leads(rest, &["off", "out of", "out from", "away from", "down from", "from"]).is_some_and(
-            |n| is(rest.get(n), &["the", "its", "his", "her", "their", "our", "my", "between", "behind"]),
+        super::words::leads(
+            rest,
+            &["off", "out of", "out from", "away from", "down from", "from"],
         )
+        .is_some_and(|n| {
+            is(
+                rest.get(n),
+                &[
+                    "the", "its", "his", "her", "their", "our", "my", "between", "behind",
+                ],
+            )
+        })
     });
-    let goes_to = from.is_some_and(|i| p.main[i + 1..].iter().any(|t| is(Some(t), &["to", "onto", "into", "in", "on"])));
+    let goes_to = from.is_some_and(|i| {
+        p.main[i + 1..]
+            .iter()
+            .any(|t| is(Some(t), &["to", "onto", "into", "in", "on"]))
+    });
     (leaves || from.is_some()) && !goes_to && metres_in(&p.main).is_none()
 }
 

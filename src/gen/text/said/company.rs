@@ -21,20 +21,30 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "my son comes by bike: add him as a cyclist": add a cyclist.
 fn as_one(tokens: Vec<Token>) -> Vec<Token> {
     let found = (0..tokens.len()).find(|i| {
-        is(tokens.get(*i), &["add", "put", "insert", "include", "place", "show", "draw"])
-            && is(tokens.get(i + 1), &["him", "her", "it", "them"])
+        is(
+            tokens.get(*i),
+            &["add", "put", "insert", "include", "place", "show", "draw"],
+        ) && is(tokens.get(i + 1), &["him", "her", "it", "them"])
             && (*i == 0 || mark(&tokens[i - 1]) || is(tokens.get(i - 1), &["so", "and", "please"]))
     });
     let Some(i) = found else {
         return tokens;
     };
-    let late = leads(&tokens[i + 2..], &["in as", "there as", "into the scene as", "as"]);
+    let late = leads(
+        &tokens[i + 2..],
+        &["in as", "there as", "into the scene as", "as"],
+    );
     let Some(new) = late.map(|n| &tokens[i + 2 + n..]) else {
         return tokens;
     };
     let fresh = is(new.first(), &["a", "an", "another"]) || new.first().is_some_and(|t| number(t).is_some());
     // who he is was only told; nothing is asked for before
-    let told = is(tokens.first(), &["my", "our", "his", "her", "a", "an", "here", "this", "that", "there"]);
+    let told = is(
+        tokens.first(),
+        &[
+            "my", "our", "his", "her", "a", "an", "here", "this", "that", "there",
+        ],
+    );
     if fresh && has_noun(new) && (i == 0 || told) {
         return led("add", &tokens[i], &[new]);
     }
@@ -44,8 +54,21 @@ fn as_one(tokens: Vec<Token>) -> Vec<Token> {
 /// "have the car stand on the right with an officer next to it": and add an officer next to it.
 fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
     const BESIDE: &[&str] = &[
-        "next to", "beside", "by", "near", "close to", "behind", "in front of", "ahead of", "alongside", "right behind",
-        "right next to", "directly behind", "just behind", "to the left of", "to the right of",
+        "next to",
+        "beside",
+        "by",
+        "near",
+        "close to",
+        "behind",
+        "in front of",
+        "ahead of",
+        "alongside",
+        "right behind",
+        "right next to",
+        "directly behind",
+        "just behind",
+        "to the left of",
+        "to the right of",
     ];
     let Some(i) = (3..tokens.len()).find(|i| is(tokens.get(*i), &["with"])) else {
         return tokens;
@@ -56,7 +79,11 @@ fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
     let Some((_, b)) = first_noun(new).filter(|x| fresh && x.0 < 4) else {
         return tokens;
     };
-    let stands = leads(&new[b..], &["standing", "waiting", "walking", "parked", "driving", "right"]).unwrap_or(0);
+    let stands = leads(
+        &new[b..],
+        &["standing", "waiting", "walking", "parked", "driving", "right"],
+    )
+    .unwrap_or(0);
     let Some(n) = leads(&new[b + stands..], BESIDE) else {
         return tokens;
     };
@@ -66,7 +93,9 @@ fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
     let known = |k: usize| {
         is(
             tokens.get(k),
-            &["the", "my", "our", "both", "that", "this", "all", "it", "him", "her", "them"],
+            &[
+                "the", "my", "our", "both", "that", "this", "all", "it", "him", "her", "them",
+            ],
         )
     };
     // (what is new has its company by itself)
@@ -182,22 +211,36 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "another child on the same sidewalk": more of them come to where the others are anyhow.
 fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["on the same", "in the same", "at the same", "along the same"]) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &["on the same", "in the same", "at the same", "along the same"],
+    ) else {
         return tokens;
     };
     let strip = is(
         tokens.get(i + n),
         &[
-            "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "footpath", "lane", "verge", "shoulder",
-            "spot", "place", "corner",
+            "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "footpath", "lane", "verge",
+            "shoulder", "spot", "place", "corner",
         ],
     );
     let mut end = i + n + 1;
     end += leads(
         &tokens[end.min(tokens.len())..],
         &[
-            "of the road", "of the street", "as them", "as they", "as the others", "as the other", "as the rest",
-            "as him", "as her", "as the first", "as before", "too", "as well",
+            "of the road",
+            "of the street",
+            "as them",
+            "as they",
+            "as the others",
+            "as the other",
+            "as the rest",
+            "as him",
+            "as her",
+            "as the first",
+            "as before",
+            "too",
+            "as well",
         ],
     )
     .unwrap_or(0);
@@ -205,7 +248,8 @@ fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let np = &tokens[from..i];
     let more = np.iter().any(|t| {
         is(Some(t), &["more", "another", "further", "additional", "extra"])
-            || super::super::foremost::ordinal(text(t)).is_some() && is(np.first(), &["a", "an", "add", "put"])
+            || super::super::foremost::ordinal(text(t)).is_some()
+                && is(np.first(), &["a", "an", "add", "put"])
     });
     let there = first_noun(np).is_some_and(|(a, b)| talk.fits(&np[a..b]) > 0);
     if strip && more && there && tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and"])) {

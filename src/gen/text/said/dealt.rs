@@ -40,8 +40,12 @@ fn the_other_too(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let goes = |k: usize| {
-        is(tokens.get(k), &["to", "onto", "into", "on", "in", "at", "behind", "ahead", "next", "beside"])
-            && is_place(&tokens[k..])
+        is(
+            tokens.get(k),
+            &[
+                "to", "onto", "into", "on", "in", "at", "behind", "ahead", "next", "beside",
+            ],
+        ) && is_place(&tokens[k..])
     };
     let ones = ["one of them", "the first one", "the first", "one"];
     // the group before, or one of it
@@ -55,7 +59,16 @@ fn the_other_too(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let found = (from + 2..tokens.len()).find_map(|k| {
         let link = closes(tokens.get(k - 1)) || is(tokens.get(k - 1), &["and"]);
-        let n = leads(&tokens[k..], &["the other one", "the other", "the second one", "the second", "one"])?;
+        let n = leads(
+            &tokens[k..],
+            &[
+                "the other one",
+                "the other",
+                "the second one",
+                "the second",
+                "one",
+            ],
+        )?;
         (link && goes(k + n)).then_some((k, k + n))
     });
     let Some((k, other)) = found.filter(|_| talk.fits(&tokens[a..b]) == 2) else {

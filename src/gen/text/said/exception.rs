@@ -56,9 +56,18 @@ fn own_clause(before: &[Token], after: &[Token]) -> bool {
         return false;
     };
     let verb = &after[b..];
-    let ends = verb.iter().position(|t| t.kind != TokenKind::Word).unwrap_or(verb.len());
+    let ends = verb
+        .iter()
+        .position(|t| t.kind != TokenKind::Word)
+        .unwrap_or(verb.len());
     let stays = verb[..ends].iter().any(|t| {
-        is(Some(t), &["stay", "stays", "remain", "remains", "kept", "left", "survive", "survives", "staying", "keep"])
+        is(
+            Some(t),
+            &[
+                "stay", "stays", "remain", "remains", "kept", "left", "survive", "survives", "staying",
+                "keep",
+            ],
+        )
     });
     verb.first().is_some_and(said) && !stays
 }
@@ -264,11 +273,20 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
         return [&objects, &led("except", &tokens[0], &[np]), &tokens[end..]].concat();
     }
     // "everything goes, but the bus stays"
-    let helped = tokens[close..].iter().take_while(|t| HELPERS.contains(&text(t))).count() + close;
+    let helped = tokens[close..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count()
+        + close;
     let stays = leads(&tokens[helped..], &["stays", "stay", "remains", "remain", "kept"])
         .filter(|_| before[whole + 1..].iter().any(goes))
         .map(|n| helped + n);
-    if !many || others || people || first_noun(np).is_none() || !(gone.is_some() || removing || stays.is_some()) {
+    if !many
+        || others
+        || people
+        || first_noun(np).is_none()
+        || !(gone.is_some() || removing || stays.is_some())
+    {
         return tokens;
     }
     let end = stays.unwrap_or(gone.map_or(close, |g| g + 1));

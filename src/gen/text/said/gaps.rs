@@ -290,9 +290,30 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
 /// "add two people on the left sidewalk and one on the right sidewalk": one more, none of the two.
 fn more_elsewhere(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const PUTS: &[&str] = &[
-        "add", "insert", "include", "create", "show", "show me", "place", "put", "put in", "set up", "generate",
-        "spawn", "i want", "i need", "we need", "i would like", "id like", "there are", "there is", "there should be",
-        "give me", "let there be", "draw", "bring in",
+        "add",
+        "insert",
+        "include",
+        "create",
+        "show",
+        "show me",
+        "place",
+        "put",
+        "put in",
+        "set up",
+        "generate",
+        "spawn",
+        "i want",
+        "i need",
+        "we need",
+        "i would like",
+        "id like",
+        "there are",
+        "there is",
+        "there should be",
+        "give me",
+        "let there be",
+        "draw",
+        "bring in",
     ];
     let Some((a, b)) = first_noun(&tokens) else {
         return tokens;
@@ -320,7 +341,11 @@ fn more_elsewhere(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let parts = shares.first().is_none_or(|s| s.2)
         && (shares.len() < 2 || shares.iter().map(|s| s.1).sum::<i64>() == total);
-    if shares.is_empty() || parts || !is_place(&tokens[b..]) || find(&tokens[b..], &["of them", "of these"]).is_some() {
+    if shares.is_empty()
+        || parts
+        || !is_place(&tokens[b..])
+        || find(&tokens[b..], &["of them", "of these"]).is_some()
+    {
         return tokens;
     }
     let one = noun_before(&tokens, b).unwrap_or_else(|| tokens[a..b].to_vec());
@@ -330,7 +355,11 @@ fn more_elsewhere(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     // (none of them is there yet: what there should be comes)
     let lead = puts.filter(|_| talk.fits(&one) == 0).unwrap_or(0);
-    let mut out = if lead > 0 { led("add", &tokens[0], &[]) } else { Vec::new() };
+    let mut out = if lead > 0 {
+        led("add", &tokens[0], &[])
+    } else {
+        Vec::new()
+    };
     for (i, t) in tokens.iter().enumerate().skip(lead) {
         out.push(t.clone());
         if let Some((_, n, _)) = shares.iter().find(|s| s.0 == i) {

@@ -328,19 +328,48 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "I would feel safer with a guard on the sidewalk": one is wanted.
 fn better_with(tokens: Vec<Token>) -> Vec<Token> {
     const BETTER: &[&str] = &[
-        "better", "safer", "happier", "calmer", "nicer", "easier", "more comfortable", "more at ease", "more realistic",
-        "livelier", "more interesting", "more lively", "perfect", "complete", "more secure", "much better", "much safer",
-        "a lot better", "even better", "far better", "more convincing", "prettier", "fuller", "less empty",
+        "better",
+        "safer",
+        "happier",
+        "calmer",
+        "nicer",
+        "easier",
+        "more comfortable",
+        "more at ease",
+        "more realistic",
+        "livelier",
+        "more interesting",
+        "more lively",
+        "perfect",
+        "complete",
+        "more secure",
+        "much better",
+        "much safer",
+        "a lot better",
+        "even better",
+        "far better",
+        "more convincing",
+        "prettier",
+        "fuller",
+        "less empty",
     ];
     let Some((i, n)) = find(&tokens, BETTER).filter(|x| (2..7).contains(&x.0)) else {
         return tokens;
     };
     let with = i + n;
-    let wishes = tokens[..i]
-        .iter()
-        .any(|t| is(Some(t), &["would", "id", "wed", "itd", "feel", "be", "might", "could"]));
+    let wishes = tokens[..i].iter().any(|t| {
+        is(
+            Some(t),
+            &["would", "id", "wed", "itd", "feel", "be", "might", "could"],
+        )
+    });
     let new = &tokens[(with + 1).min(tokens.len())..];
-    if wishes && !has_noun(&tokens[..i]) && is(tokens.get(with), &["with"]) && is_fresh(new.first()) && has_noun(new) {
+    if wishes
+        && !has_noun(&tokens[..i])
+        && is(tokens.get(with), &["with"])
+        && is_fresh(new.first())
+        && has_noun(new)
+    {
         return led("add", &tokens[0], &[new]);
     }
     tokens

@@ -50,14 +50,14 @@ const STAYS: &[&str] = &["remain", "remains", "stay", "stays", "survive", "survi
 
 /// The sentence with such a choice as one noun phrase.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = pick_of(of_the_group(tokens, talk));
+    let out = pick_of(tokens);
     let out = pick_of_them(out, talk);
     let out = only_the_one(out);
     group_first(out)
 }
 
 /// "the middle one of the three": of the three cars, if nothing else is there three times.
-fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let first = first_noun(&tokens).map_or(tokens.len(), |n| n.0);
     // the words for one of a group from here: how many tokens, and how many it has, if that is said
     let one_of = |i: usize| {
@@ -66,7 +66,12 @@ fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let of = leads(&tokens[one..], GROUPS).unwrap_or(0);
         let many = (of > 0).then(|| tokens.get(one + of).and_then(number)).flatten();
         let end = one + many.map_or(0, |_| of + 1);
-        let described = |t: &Token| matches!(look_up(text(t)), Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_)));
+        let described = |t: &Token| {
+            matches!(
+                look_up(text(t)),
+                Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))
+            )
+        };
         let noun = tokens[end..].iter().take_while(|t| described(t)).count() + end;
         let named = super::words::noun_at(&tokens[noun..]).is_some();
         (end > picks && !named && (of == 0 || many.is_some())).then_some((picks, end, many))
@@ -79,7 +84,9 @@ fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         *counts.entry(b.class).or_default() += 1;
     }
     counts.retain(|_, n| many.map_or(*n > 1, |m| *n == m));
-    let last = counts.keys().find(|c| talk.last.as_deref() == Some(c.label().as_str()));
+    let last = counts
+        .keys()
+        .find(|c| talk.last.as_deref() == Some(c.label().as_str()));
     let class = match (last, counts.len()) {
         (Some(c), _) => *c,
         (None, 1) if talk.last.is_none() => *counts.keys().next().unwrap_or(&Class::Car),

@@ -440,14 +440,16 @@ fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if text(first) == "make"
         && is(inner.get(1), &["the", "my", "that", "this"])
         && let Some(n) = first_noun(&inner[1..]).filter(|n| n.0 < 5)
-        && let Some(k) = (n.1 + 2..inner.len()).rev().find(|k| is(inner.get(*k), &["a", "an"]))
+        && let Some(k) = (n.1 + 2..inner.len())
+            .rev()
+            .find(|k| is(inner.get(*k), &["a", "an"]))
         && first_noun(&inner[k..]).is_some_and(|x| x.0 < 4 && k + x.1 == inner.len())
         && is_place(&inner[n.1 + 1..])
         && is(
             inner.get(k - 1),
             &[
-                "us", "me", "ego", "lane", "left", "right", "side", "sidewalk", "pavement", "roadside", "kerb", "curb",
-                "ahead", "road", "street", "crossing", "front",
+                "us", "me", "ego", "lane", "left", "right", "side", "sidewalk", "pavement", "roadside",
+                "kerb", "curb", "ahead", "road", "street", "crossing", "front",
             ],
         )
         && talk.fits(&inner[1..k]) > 0

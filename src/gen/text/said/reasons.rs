@@ -135,8 +135,14 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "everybody has got on the bus, so remove all the pedestrians": what is asked for.
 fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
-    let none = leads(&tokens, &["nobody", "no one", "noone", "no pedestrian", "no child"]);
-    let all = leads(&tokens, &["everybody", "everyone", "people", "they all", "they have all"]);
+    let none = leads(
+        &tokens,
+        &["nobody", "no one", "noone", "no pedestrian", "no child"],
+    );
+    let all = leads(
+        &tokens,
+        &["everybody", "everyone", "people", "they all", "they have all"],
+    );
     let Some(cut) = (2..tokens.len()).find(|k| {
         tokens[*k].kind != TokenKind::Word && !matches!(tokens[*k].kind, TokenKind::Number(_))
             || is(tokens.get(*k), &["so"])
@@ -145,12 +151,24 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
     };
     let remark = &tokens[..cut];
     // what shall be so is asked for itself
-    let named = remark.iter().position(|t| is(Some(t), &["the", "this", "that", "these", "those"]));
-    let any = none.filter(|n| is(remark.get(n + 1), &["a", "an"])).map(|n| n + 1);
-    let does = named.or(any).is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
-        || remark.iter().any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
-    let asks = remark.iter().any(|t| is(Some(t), &["should", "must", "shall", "may", "can", "except", "but"]))
-        || !does && remark.iter().any(|t| is(Some(t), &["on", "in"]));
+    let named = remark
+        .iter()
+        .position(|t| is(Some(t), &["the", "this", "that", "these", "those"]));
+    let any = none
+        .filter(|n| is(remark.get(n + 1), &["a", "an"]))
+        .map(|n| n + 1);
+    let does = any
+        .or(named)
+        .is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
+        || remark
+            .iter()
+            .any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
+    let asks = remark.iter().any(|t| {
+        is(
+            Some(t),
+            &["should", "must", "shall", "may", "can", "except", "but"],
+        )
+    }) || !does && remark.iter().any(|t| is(Some(t), &["on", "in"]));
     let mut rest = trimmed(&tokens[cut..]);
     while is(rest.first(), &["so", "therefore", "please", "and", ":"]) {
         rest = trimmed(&rest[1..]);
@@ -166,7 +184,10 @@ fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
     // "nobody takes the bus on Sundays, so remove it"
     if let (Some(n), true, false) = (none, removes_it(rest), asks)
         && let k = n + 1
-        && is(remark.get(k), &["the", "this", "that", "these", "those", "a", "an", "my", "our"])
+        && is(
+            remark.get(k),
+            &["the", "this", "that", "these", "those", "a", "an", "my", "our"],
+        )
         && let Some((_, b)) = first_noun(&remark[k..]).filter(|x| x.0 < 4)
     {
         return led("remove the", &tokens[0], &[&remark[k + 1..k + b]]);

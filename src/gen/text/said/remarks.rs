@@ -790,18 +790,25 @@ fn now_so_far(tokens: Vec<Token>) -> Vec<Token> {
             && has_noun(&tokens[..i]);
         let metres = (i + 1..tokens.len().min(i + 5)).find(|k| number(&tokens[*k]).is_some())?;
         let verb = tokens[i + 1..metres].iter().any(|t| {
-            super::words::is_finite(text(t), false) && !is(Some(t), &["moved", "backed", "rolled", "pulled", "pushed"])
+            super::words::is_finite(text(t), false)
+                && !is(Some(t), &["moved", "backed", "rolled", "pulled", "pushed"])
                 || text(t).ends_with("ing")
                 || is(Some(t), &["is", "are", "drive", "ride", "walk", "stand", "wait"])
         });
         let end = metres + 2;
         let ahead = is(tokens.get(end), &["ahead", "behind"])
-            && tokens.get(end + 1).is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
+            && tokens
+                .get(end + 1)
+                .is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
         ((now || done) && verb && super::words::is_unit(tokens.get(metres + 1)) && ahead).then_some(end)
     });
     match found {
         Some(end) => {
-            let us = if text(&tokens[end]) == "ahead" { "of us" } else { "us" };
+            let us = if text(&tokens[end]) == "ahead" {
+                "of us"
+            } else {
+                "us"
+            };
             [&tokens[..=end], &led(us, &tokens[end], &[]), &tokens[end + 1..]].concat()
         }
         None => tokens,

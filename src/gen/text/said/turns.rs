@@ -121,7 +121,12 @@ fn on_each(tokens: Vec<Token>) -> Vec<Token> {
         _ => None,
     };
     let np = match share {
-        Some(1) => [close, &tokens[from + 1..a], &super::topics::singular_of(&tokens[a..b])].concat(),
+        Some(1) => [
+            close,
+            &tokens[from + 1..a],
+            &super::topics::singular_of(&tokens[a..b]),
+        ]
+        .concat(),
         Some(_) => [close, &tokens[from + 1..b]].concat(),
         None => [&tokens[from..b], close].concat(),
     };
