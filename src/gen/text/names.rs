@@ -217,8 +217,8 @@ pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
         }
     }
     let noun = singular(&m.spec.noun);
-    // ("everything" and "traffic" are whatever their parts are called)
-    if is_generic(noun) || m.classes.len() > 1 {
+    // ("everything" is whatever its parts are called)
+    if is_generic(noun) || super::mention::means_all(m) {
         return fit;
     }
     let pick = |keep: &dyn Fn(&SceneBox) -> bool| -> Vec<&'b SceneBox> {

@@ -93,8 +93,8 @@ impl Parser<'_> {
         let rest_of = |w: &usize| {
             let m = &self.mentions[*w];
             // (in an edit the group may be in the scene: its parts are told apart there)
-            !all && !(self.edits && m.definite)
-                && !m.gone
+            let there = self.edits && m.definite;
+            !(all || there || m.gone)
                 && (m.spec.relations.is_empty() || m.spec.count.n == count.n && !self.elsewhere(*w))
                 && m.spec.count.is_exact()
                 && m.spec.count.n >= count.n
