@@ -143,6 +143,54 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
     if clause.iter().any(|t| text(t) == "yet") {
         return Some(Vec::new()); // a remark
     }
+    // "nobody takes the bus": what nobody does to something else is a remark
+    let does = clause[n..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count()
+        + n;
+    let object = clause.get(does).is_some_and(|t| {
+        matches!(
+            text(t),
+            "takes"
+                | "take"
+                | "took"
+                | "uses"
+                | "use"
+                | "used"
+                | "needs"
+                | "need"
+                | "wants"
+                | "want"
+                | "drives"
+                | "drive"
+                | "rides"
+                | "ride"
+                | "likes"
+                | "like"
+                | "owns"
+                | "boards"
+                | "catches"
+                | "misses"
+                | "missed"
+                | "buys"
+                | "sees"
+                | "watches"
+                | "saw"
+                | "noticed"
+                | "notices"
+                | "knows"
+                | "moved"
+                | "touched"
+                | "touches"
+        )
+    }) && clause
+        .get(does + 1)
+        .is_some_and(|t| matches!(text(t), "the" | "a" | "an" | "this" | "that" | "my" | "our"))
+        && first_noun(&clause[does + 1..]).is_some_and(|x| x.0 < 4);
+    if object {
+        return Some(Vec::new());
+    }
     let clause_end = clause
         .iter()
         .position(|t| matches!(text(t), "any" | "anymore" | "here") || t.kind == TokenKind::Comma)

@@ -226,7 +226,8 @@ pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
         }
     }
     let noun = singular(&m.spec.noun);
-    if is_generic(noun) {
+    // ("everything" is whatever its parts are called)
+    if is_generic(noun) || super::mention::means_all(m) {
         return fit;
     }
     let pick = |keep: &dyn Fn(&SceneBox) -> bool| -> Vec<&'b SceneBox> {

@@ -340,8 +340,11 @@ impl Placer<'_> {
             }
             // behind something ahead is rather between it and the ego vehicle
             let beyond = stated.iter().any(|(e, t)| {
-                e.relation == RelationKind::Behind
-                    && matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX && b.center_m.x > 6.0)
+                // (who follows what comes towards us is beyond it)
+                let follows = |b: &SceneBox| e.relation == RelationKind::Following && b.heading().x > 0.0;
+                matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX
+                    && b.center_m.x > 6.0
+                    && (e.relation == RelationKind::Behind || follows(b)))
             });
             if beyond && s.p.x < 0.0 {
                 cost += 2.0;

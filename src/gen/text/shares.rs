@@ -17,7 +17,63 @@ pub fn counted(tokens: &[Token]) -> Vec<Token> {
     let out = as_many_of_both(&out);
     let out = two_strips(&out);
     let out = per_side(&out);
-    one_by_one(&out)
+    each_so_far(&one_by_one(&out))
+}
+
+/// "three cars ahead of us, at 10 m, 20 m and 30 m": one at each of them.
+fn each_so_far(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let at = begins(&tokens[i..], "at distances of|at a distance of|at")?;
+        let mut far: Vec<&Token> = Vec::new();
+        let mut unit = None;
+        let mut k = i + at;
+        while let Some(t) = tokens.get(k).filter(|t| matches!(t.kind, TokenKind::Number(_))) {
+            far.push(t);
+            k += 1;
+            if let Some(t) = tokens.get(k).filter(|t| is_unit(t)) {
+                unit = Some(t);
+                k += 1;
+            }
+            // the next of the list
+            let link = tokens[k.min(tokens.len())..]
+                .iter()
+                .take(3)
+                .take_while(|t| t.kind == TokenKind::Comma || matches!(t.text.as_str(), "and" | "at"))
+                .count();
+            let more = tokens
+                .get(k + link)
+                .is_some_and(|t| matches!(t.kind, TokenKind::Number(_)));
+            if link == 0 || !more {
+                break;
+            }
+            k += link;
+        }
+        let unit = unit?;
+        // ("at 10 m and 2 cars" is no list of distances)
+        if far.len() < 2 || !is_unit(&tokens[k - 1]) || whole(out) != u32::try_from(far.len()).ok() {
+            return None;
+        }
+        let way = begins(
+            &tokens[k..],
+            "ahead of us|ahead of me|ahead|behind us|behind me|behind|in front of us|in front of me|in front|away|from us",
+        )
+        .unwrap_or(0);
+        if !ends(tokens.get(k + way)) {
+            return None;
+        }
+        for (n, t) in far.into_iter().enumerate() {
+            if n > 0 || out.last().is_none_or(|t| t.kind != TokenKind::Comma) {
+                out.push(Token {
+                    kind: TokenKind::Comma,
+                    ..word(",", t)
+                });
+            }
+            out.extend(["one", "at"].map(|w| word(w, t)));
+            out.extend([t.clone(), unit.clone()]);
+            out.extend_from_slice(&tokens[k..k + way]);
+        }
+        Some(k + way)
+    })
 }
 
 pub(super) fn opens(tokens: &[Token], i: usize) -> bool {

@@ -26,6 +26,14 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_k.jsonl"),
     ),
     (
+        "causes_o.jsonl",
+        include_str!("../../../../tests/data/causes_o.jsonl"),
+    ),
+    (
+        "strangers_24.jsonl",
+        include_str!("../../../../tests/data/strangers_24.jsonl"),
+    ),
+    (
         "prompts.jsonl",
         include_str!("../../../../tests/data/prompts.jsonl"),
     ),

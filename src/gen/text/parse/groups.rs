@@ -92,8 +92,9 @@ impl Parser<'_> {
         // "ten cones, five on the left and five on the right": of the same ten
         let rest_of = |w: &usize| {
             let m = &self.mentions[*w];
-            !all && !self.edits
-                && !m.gone
+            // (in an edit the group may be in the scene: its parts are told apart there)
+            let there = self.edits && m.definite;
+            !(all || there || m.gone)
                 && (m.spec.relations.is_empty() || m.spec.count.n == count.n && !self.elsewhere(*w))
                 && m.spec.count.is_exact()
                 && m.spec.count.n >= count.n

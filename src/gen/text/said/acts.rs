@@ -114,6 +114,7 @@ pub fn acts(
     let kept: Vec<&Part> = parts
         .iter()
         .enumerate()
+        .filter(|(i, p)| !((steps_off(p) && later(*i)) || parts.len() > 1 && keeps_lane(p)))
         .filter(|(i, p)| !(p.begins(&["lets", "let", "allows", "makes room"]).is_some() && later(*i)))
         .filter(|(i, p)| !(crosses(p) && later(*i)))
         .filter(|(i, p)| !((p.perfect || p.is_gone() || p.not) && later(*i)))
@@ -247,6 +248,65 @@ pub fn acts(
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)
+}
+
+/// "steps off the kerb", "pulls out of its lane": where it no longer is, and nothing of where it goes.
+fn steps_off(p: &Part) -> bool {
+    let leaves = p
+        .begins(&[
+            "leaves the",
+            "leave the",
+            "leaves its",
+            "leave its",
+            "leaves his",
+            "leave his",
+            "leaves her",
+            "leave her",
+            "leave their",
+        ])
+        .is_some();
+    let from = (1..p.main.len().min(4)).find(|i| {
+        let rest = &p.main[*i..];
+        super::words::leads(
+            rest,
+            &["off", "out of", "out from", "away from", "down from", "from"],
+        )
+        .is_some_and(|n| {
+            is(
+                rest.get(n),
+                &[
+                    "the", "its", "his", "her", "their", "our", "my", "between", "behind",
+                ],
+            )
+        })
+    });
+    let goes_to = from.is_some_and(|i| {
+        p.main[i + 1..]
+            .iter()
+            .any(|t| is(Some(t), &["to", "onto", "into", "in", "on"]))
+    });
+    (leaves || from.is_some()) && !goes_to && metres_in(&p.main).is_none()
+}
+
+/// "stays in its lane": what is not said of a box stays as it was anyhow.
+fn keeps_lane(p: &Part) -> bool {
+    p.begins(&[
+        "stay", "stays", "remain", "remains", "keep", "keeps", "keep going", "keeps going", "stay put",
+    ])
+    .is_some_and(|n| {
+        let rest = &p.main[n..];
+        let own = super::words::leads(
+            rest,
+            &[
+                "in its", "in his", "in her", "in their", "on its", "on his", "on her", "on their", "to its",
+                "to his", "to her", "to their", "in the same", "on the same", "within its", "within their",
+            ],
+        );
+        own.is_some_and(|m| {
+            let place = &rest[m + usize::from(is(rest.get(m), &["own", "present", "current"]))..];
+            matches!(place, [one] if is(Some(one), &["lane", "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "track", "line", "footpath", "shoulder"]))
+        })
+    })
 }
 
 /// "faces us", "looks at me": how someone is turned says not where he is.

@@ -6,16 +6,105 @@ use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::MATES;
 use super::topics::singular_of;
-use super::words::{first_noun, has_noun, is, leads, led, number, text, trimmed};
+use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
 use crate::scene::Class;
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = joining(tokens, talk);
+    let out = same_place(joining(tokens, talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
-    let out = boards(out, talk);
+    let out = beside_it(as_one(boards(out, talk)));
     takes_away(out, talk)
+}
+
+/// "my son comes by bike: add him as a cyclist": add a cyclist.
+fn as_one(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find(|i| {
+        is(
+            tokens.get(*i),
+            &["add", "put", "insert", "include", "place", "show", "draw"],
+        ) && is(tokens.get(i + 1), &["him", "her", "it", "them"])
+            && (*i == 0 || mark(&tokens[i - 1]) || is(tokens.get(i - 1), &["so", "and", "please"]))
+    });
+    let Some(i) = found else {
+        return tokens;
+    };
+    let late = leads(
+        &tokens[i + 2..],
+        &["in as", "there as", "into the scene as", "as"],
+    );
+    let Some(new) = late.map(|n| &tokens[i + 2 + n..]) else {
+        return tokens;
+    };
+    let fresh = is(new.first(), &["a", "an", "another"]) || new.first().is_some_and(|t| number(t).is_some());
+    // who he is was only told; nothing is asked for before
+    let told = is(
+        tokens.first(),
+        &[
+            "my", "our", "his", "her", "a", "an", "here", "this", "that", "there",
+        ],
+    );
+    if fresh && has_noun(new) && (i == 0 || told) {
+        return led("add", &tokens[i], &[new]);
+    }
+    tokens
+}
+
+/// "have the car stand on the right with an officer next to it": and add an officer next to it.
+fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
+    const BESIDE: &[&str] = &[
+        "next to",
+        "beside",
+        "by",
+        "near",
+        "close to",
+        "behind",
+        "in front of",
+        "ahead of",
+        "alongside",
+        "right behind",
+        "right next to",
+        "directly behind",
+        "just behind",
+        "to the left of",
+        "to the right of",
+    ];
+    let Some(i) = (3..tokens.len()).find(|i| is(tokens.get(*i), &["with"])) else {
+        return tokens;
+    };
+    let new = &tokens[i + 1..];
+    let own = is(new.first(), &["its", "his", "her", "their"]);
+    let fresh = own || is(new.first(), &["a", "an"]) || new.first().is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(new).filter(|x| fresh && x.0 < 4) else {
+        return tokens;
+    };
+    let stands = leads(
+        &new[b..],
+        &["standing", "waiting", "walking", "parked", "driving", "right"],
+    )
+    .unwrap_or(0);
+    let Some(n) = leads(&new[b + stands..], BESIDE) else {
+        return tokens;
+    };
+    let it = b + stands + n;
+    let points = is(new.get(it), &["it", "him", "her", "them"]) && new.get(it + 1).is_none_or(mark);
+    let moves = is(tokens.first(), &super::lists::MOVES);
+    let known = |k: usize| {
+        is(
+            tokens.get(k),
+            &[
+                "the", "my", "our", "both", "that", "this", "all", "it", "him", "her", "them",
+            ],
+        )
+    };
+    // (what is new has its company by itself)
+    let there = known(0) && first_noun(&tokens).is_some_and(|x| x.0 < 5) || moves && known(1);
+    if points && there {
+        let and = led(if own { "and add a" } else { "and add" }, &tokens[i], &[]);
+        return [trimmed(&tokens[..i]), &and, &new[usize::from(own)..]].concat();
+    }
+    tokens
 }
 
 fn mark(t: &Token) -> bool {
@@ -81,7 +170,7 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         };
         tokens
             .get(k + n)
-            .is_none_or(|t| mark(t) || is(Some(t), &["and", "so", "already"]))
+            .is_none_or(|t| mark(t) || is(Some(t), &["and", "so", "already"]) || is_place(&tokens[k + n..]))
             .then_some((i, k + n))
     });
     let Some((i, end)) = found else {
@@ -118,6 +207,55 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .collect();
     let add = led("add", &tokens[from], &[&lead, &more, &rest]);
     [&tokens[..from], &add, &tokens[end..]].concat()
+}
+
+/// "another child on the same sidewalk": more of them come to where the others are anyhow.
+fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &["on the same", "in the same", "at the same", "along the same"],
+    ) else {
+        return tokens;
+    };
+    let strip = is(
+        tokens.get(i + n),
+        &[
+            "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "footpath", "lane", "verge",
+            "shoulder", "spot", "place", "corner",
+        ],
+    );
+    let mut end = i + n + 1;
+    end += leads(
+        &tokens[end.min(tokens.len())..],
+        &[
+            "of the road",
+            "of the street",
+            "as them",
+            "as they",
+            "as the others",
+            "as the other",
+            "as the rest",
+            "as him",
+            "as her",
+            "as the first",
+            "as before",
+            "too",
+            "as well",
+        ],
+    )
+    .unwrap_or(0);
+    let from = tokens[..i].iter().rposition(mark).map_or(0, |k| k + 1);
+    let np = &tokens[from..i];
+    let more = np.iter().any(|t| {
+        is(Some(t), &["more", "another", "further", "additional", "extra"])
+            || super::super::foremost::ordinal(text(t)).is_some()
+                && is(np.first(), &["a", "an", "add", "put"])
+    });
+    let there = first_noun(np).is_some_and(|(a, b)| talk.fits(&np[a..b]) > 0);
+    if strip && more && there && tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and"])) {
+        return [&tokens[..i], &tokens[end..]].concat();
+    }
+    tokens
 }
 
 /// "put three more pedestrians with the two": three more of them; "the officer joined by two more": two more officers.

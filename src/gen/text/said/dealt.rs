@@ -27,8 +27,61 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = by_doing(out);
     let out = called_for(out);
     let out = filled(out, talk);
-    let out = dealt_out(out, talk);
+    let out = the_other_too(dealt_out(out, talk), talk);
     placed_there(out)
+}
+
+/// "move the two workers: one to the left pavement, the other to the right one": each is moved.
+fn the_other_too(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if !is(tokens.first(), &super::lists::MOVES) {
+        return tokens;
+    }
+    let Some((a, b)) = first_noun(&tokens).filter(|x| x.0 < 5) else {
+        return tokens;
+    };
+    let goes = |k: usize| {
+        is(
+            tokens.get(k),
+            &[
+                "to", "onto", "into", "on", "in", "at", "behind", "ahead", "next", "beside",
+            ],
+        ) && is_place(&tokens[k..])
+    };
+    let ones = ["one of them", "the first one", "the first", "one"];
+    // the group before, or one of it
+    let from = match (leads(&tokens[b..], &[":", ","]), number(&tokens[1])) {
+        (Some(m), _) => leads(&tokens[b + m..], &ones).map(|n| b + m + n),
+        (None, Some(1)) => Some(b),
+        _ => None,
+    };
+    let Some(from) = from.filter(|f| goes(*f)) else {
+        return tokens;
+    };
+    let found = (from + 2..tokens.len()).find_map(|k| {
+        let link = closes(tokens.get(k - 1)) || is(tokens.get(k - 1), &["and"]);
+        let n = leads(
+            &tokens[k..],
+            &[
+                "the other one",
+                "the other",
+                "the second one",
+                "the second",
+                "one",
+            ],
+        )?;
+        (link && goes(k + n)).then_some((k, k + n))
+    });
+    let Some((k, other)) = found.filter(|_| talk.fits(&tokens[a..b]) == 2) else {
+        return tokens;
+    };
+    let one = super::topics::singular_of(&tokens[a..b]);
+    let before = trimmed(&tokens[from..k]);
+    [
+        &led("move one", &tokens[0], &[&one, before]),
+        &led("and move the other", &tokens[k], &[])[..],
+        &tokens[other..],
+    ]
+    .concat()
 }
 
 fn closes(t: Option<&Token>) -> bool {

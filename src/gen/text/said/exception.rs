@@ -47,6 +47,31 @@ pub(super) fn the_one_spared(tokens: Vec<Token>) -> Vec<Token> {
     [&tokens[..from], &the, &tokens[from + m..]].concat()
 }
 
+/// "everything stays, but the digger goes": what comes after "but" is a clause of its own. ("everything goes, but the bus
+/// stays" spares it.)
+fn own_clause(before: &[Token], after: &[Token]) -> bool {
+    let said = |t: &Token| HELPERS.contains(&text(t)) || is_finite(text(t), true);
+    let told = first_noun(before).is_some_and(|x| before[x.1..].iter().any(said));
+    let Some((_, b)) = first_noun(after).filter(|x| x.0 < 4 && told) else {
+        return false;
+    };
+    let verb = &after[b..];
+    let ends = verb
+        .iter()
+        .position(|t| t.kind != TokenKind::Word)
+        .unwrap_or(verb.len());
+    let stays = verb[..ends].iter().any(|t| {
+        is(
+            Some(t),
+            &[
+                "stay", "stays", "remain", "remains", "kept", "left", "survive", "survives", "staying",
+                "keep",
+            ],
+        )
+    });
+    verb.first().is_some_and(said) && !stays
+}
+
 /// The sentence without an exception, and the noun phrase that was excepted.
 pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     let all = tokens
@@ -71,6 +96,9 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
         ],
     )
     .map(|(i, n)| (all + i, n))?;
+    if is(tokens.get(i), &["but"]) && own_clause(&tokens[..i], &tokens[i + n..]) {
+        return None;
+    }
     // "everything but the bus" and the like are numbers of their own
     let group = first_noun(&tokens[all..i]).filter(|x| x.0 < 5)?;
     // ("all moving objects" are some)
@@ -149,6 +177,9 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
     };
     let from = i + n;
     let before = &tokens[..i];
+    if is(tokens.get(i), &["but"]) && own_clause(before, &tokens[from..]) {
+        return tokens;
+    }
     let Some(whole) = before
         .iter()
         .position(|t| matches!(text(t), "everything" | "everyone" | "everybody"))
@@ -206,6 +237,7 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
             let t = &tokens[*k];
             HELPERS.contains(&text(t))
                 || goes(t)
+                || is(Some(t), &["stays", "stay", "remains", "remain"])
                 || (is(Some(t), &["and"]) || t.kind != TokenKind::Word)
                     && tokens.get(k + 1).is_some_and(super::super::rephrase::is_verb)
         })
@@ -240,10 +272,24 @@ pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
         let end = gone.map_or(close, |g| g + 1);
         return [&objects, &led("except", &tokens[0], &[np]), &tokens[end..]].concat();
     }
-    if !many || others || people || first_noun(np).is_none() || !(gone.is_some() || removing) {
+    // "everything goes, but the bus stays"
+    let helped = tokens[close..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count()
+        + close;
+    let stays = leads(&tokens[helped..], &["stays", "stay", "remains", "remain", "kept"])
+        .filter(|_| before[whole + 1..].iter().any(goes))
+        .map(|n| helped + n);
+    if !many
+        || others
+        || people
+        || first_noun(np).is_none()
+        || !(gone.is_some() || removing || stays.is_some())
+    {
         return tokens;
     }
-    let end = gone.map_or(close, |g| g + 1);
+    let end = stays.unwrap_or(gone.map_or(close, |g| g + 1));
     led("keep only", &tokens[0], &[np, &tokens[end..]])
 }
 

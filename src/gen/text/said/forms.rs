@@ -171,6 +171,9 @@ pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
     if !is_place(inner) || super::super::rephrase::is_verb(&inner[0]) {
         return None;
     }
+    if let Some(found) = subject_late(inner) {
+        return Some(found);
+    }
     let verb = (1..inner.len())
         .find(|i| HELPERS.contains(&text(&inner[*i])) || words::is_finite(text(&inner[*i]), false))?;
     let mut from = verb + 1;
@@ -194,6 +197,56 @@ pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
         "add",
         &inner[0],
         &[&inner[from..end], &inner[..verb], &inner[end..]],
+    ))])
+}
+
+/// "behind the bus a car is waiting": a car waits there.
+fn subject_late(inner: &[Token]) -> Option<Vec<Piece>> {
+    // the place has ended: with its noun, a lane, or one that it is seen from
+    let ended = |k: usize| {
+        is(
+            inner.get(k - 1),
+            &[
+                "us", "me", "it", "them", "him", "her", "ahead", "behind", "left", "right", "there",
+            ],
+        ) || (0..k).any(|i| {
+            words::noun_at(&inner[i..k]).is_some_and(|n| i + n == k)
+                || words::longest(&inner[i..k])
+                    .is_some_and(|l| i + l.1 == k && matches!(l.0, Sense::Place(..)))
+        })
+    };
+    let from = (2..inner.len().min(12)).find(|k| {
+        let fresh = is(inner.get(*k), &["a", "an", "another"])
+            || number(&inner[*k]).is_some() && words::unit_at(&inner[k + 1..]).is_none();
+        fresh && ended(*k)
+    })?;
+    let (_, b) = first_noun(&inner[from..]).filter(|x| x.0 < 4)?;
+    let end = from + b;
+    let verb = inner.get(end)?;
+    let helped = inner[end..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)) || ADVERBS.contains(&text(t)))
+        .count();
+    let many = matches!(
+        super::super::lexicon::look_up(text(&inner[end - 1])),
+        Some(Sense::Noun(_, true))
+    );
+    let before = &inner[..from];
+    let asks = before
+        .iter()
+        .any(|t| HELPERS.contains(&text(t)) || t.kind == TokenKind::Comma);
+    if asks || helped == 0 && !words::is_finite(text(verb), many) {
+        return None;
+    }
+    Some(vec![Piece::Plain(led(
+        "add",
+        &inner[0],
+        &[
+            &inner[from..end],
+            &inner[end + helped..].iter().take(1).cloned().collect::<Vec<_>>(),
+            before,
+            inner.get(end + helped + 1..).unwrap_or(&[]),
+        ],
     ))])
 }
 

@@ -202,7 +202,9 @@ pub fn unwrapped(mut tokens: &[Token]) -> (&[Token], Mood) {
     for _ in 0..8 {
         tokens = super::words::trimmed(tokens);
         let before = tokens.len();
-        if let Some(n) = leads(tokens, &OPENERS).filter(|n| *n < tokens.len()) {
+        // ("next to the bus" is a place)
+        let place = begins(tokens, "next to").is_some();
+        if let Some(n) = leads(tokens, &OPENERS).filter(|n| *n < tokens.len() && !place) {
             tokens = &tokens[n..];
             mood.framed = true;
         } else if let Some(n) = source(tokens)

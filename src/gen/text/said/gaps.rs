@@ -1,8 +1,10 @@
 //! What an edit leaves out because the same sentence said it: "another behind it", "the one that is already there", and places
 //! said before the command.
 
+use super::super::lexicon::plural;
 use super::super::tokens::{Token, TokenKind};
-use super::words::{find, first_noun, is, is_place, leads, led, noun_at, number, text, trimmed};
+use super::Talk;
+use super::words::{find, first_noun, is, is_place, leads, led, noun_at, number, text, trimmed, unit_at};
 
 const MORE: &[&str] = &[
     "another one",
@@ -68,11 +70,11 @@ const RIDERS: &[(&str, &[&str])] = &[
 ];
 
 /// The sentence with what it leaves out.
-pub fn filled(tokens: Vec<Token>) -> Vec<Token> {
+pub fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = people(tokens);
     let out = rider(out);
     let out = one_who(existing(out));
-    let out = more_of_it(out);
+    let out = more_elsewhere(more_of_it(out), talk);
     place_last(out)
 }
 
@@ -286,6 +288,88 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     tokens
+}
+
+/// "add two people on the left sidewalk and one on the right sidewalk": one more, none of the two.
+fn more_elsewhere(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const PUTS: &[&str] = &[
+        "add",
+        "insert",
+        "include",
+        "create",
+        "show",
+        "show me",
+        "place",
+        "put",
+        "put in",
+        "set up",
+        "generate",
+        "spawn",
+        "i want",
+        "i need",
+        "we need",
+        "i would like",
+        "id like",
+        "there are",
+        "there is",
+        "there should be",
+        "give me",
+        "let there be",
+        "draw",
+        "bring in",
+    ];
+    let Some((a, b)) = first_noun(&tokens) else {
+        return tokens;
+    };
+    let puts = (0..a).find_map(|i| leads(&tokens[i..a], PUTS).map(|n| i + n));
+    let Some(total) = puts
+        .filter(|n| a < n + 4 && *n < a)
+        .and_then(|n| number(&tokens[n]).or(is(tokens.get(n), &["a", "an"]).then_some(1)))
+    else {
+        return tokens;
+    };
+    // where a share of its own place begins: its number and what links it
+    let mut shares: Vec<(usize, i64, bool)> = Vec::new();
+    for i in b + 1..tokens.len() {
+        let comma = tokens[i - 1].kind == TokenKind::Comma;
+        let rest = &tokens[i + 1..];
+        if let Some(n) = number(&tokens[i]).filter(|n| *n > 0)
+            && (comma || is(tokens.get(i - 1), &["and", "plus"]))
+            && is_place(rest)
+            && unit_at(rest).is_none()
+            && !is(rest.first(), &["to", "onto", "into", "back"])
+        {
+            shares.push((i, n, comma));
+        }
+    }
+    let parts = shares.first().is_none_or(|s| s.2)
+        && (shares.len() < 2 || shares.iter().map(|s| s.1).sum::<i64>() == total);
+    if shares.is_empty()
+        || parts
+        || !is_place(&tokens[b..])
+        || find(&tokens[b..], &["of them", "of these"]).is_some()
+    {
+        return tokens;
+    }
+    let one = noun_before(&tokens, b).unwrap_or_else(|| tokens[a..b].to_vec());
+    let mut many = one.clone();
+    if let Some(last) = many.last_mut() {
+        last.text = plural(&last.text);
+    }
+    // (none of them is there yet: what there should be comes)
+    let lead = puts.filter(|_| talk.fits(&one) == 0).unwrap_or(0);
+    let mut out = if lead > 0 {
+        led("add", &tokens[0], &[])
+    } else {
+        Vec::new()
+    };
+    for (i, t) in tokens.iter().enumerate().skip(lead) {
+        out.push(t.clone());
+        if let Some((_, n, _)) = shares.iter().find(|s| s.0 == i) {
+            out.extend_from_slice(if *n == 1 { &one } else { &many });
+        }
+    }
+    out
 }
 
 /// "between the truck and me, squeeze in a taxi": the command first.

@@ -22,7 +22,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&out, MOVING, "all moving objects");
     let out = seen(so_many(out, talk), talk);
     let out = given(out, talk);
-    let out = without(out, talk);
+    let out = better_with(without(out, talk));
     let out = distance_to(out, talk);
     let out = emptied(out);
     let out = every_second(by_half(out));
@@ -323,6 +323,56 @@ fn without(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let and = led("and", &tokens[i], &[&remove]);
     [before, &and, &tokens[close..]].concat()
+}
+
+/// "I would feel safer with a guard on the sidewalk": one is wanted.
+fn better_with(tokens: Vec<Token>) -> Vec<Token> {
+    const BETTER: &[&str] = &[
+        "better",
+        "safer",
+        "happier",
+        "calmer",
+        "nicer",
+        "easier",
+        "more comfortable",
+        "more at ease",
+        "more realistic",
+        "livelier",
+        "more interesting",
+        "more lively",
+        "perfect",
+        "complete",
+        "more secure",
+        "much better",
+        "much safer",
+        "a lot better",
+        "even better",
+        "far better",
+        "more convincing",
+        "prettier",
+        "fuller",
+        "less empty",
+    ];
+    let Some((i, n)) = find(&tokens, BETTER).filter(|x| (2..7).contains(&x.0)) else {
+        return tokens;
+    };
+    let with = i + n;
+    let wishes = tokens[..i].iter().any(|t| {
+        is(
+            Some(t),
+            &["would", "id", "wed", "itd", "feel", "be", "might", "could"],
+        )
+    });
+    let new = &tokens[(with + 1).min(tokens.len())..];
+    if wishes
+        && !has_noun(&tokens[..i])
+        && is(tokens.get(with), &["with"])
+        && is_fresh(new.first())
+        && has_noun(new)
+    {
+        return led("add", &tokens[0], &[new]);
+    }
+    tokens
 }
 
 /// "reduce the cones by half": halve them.

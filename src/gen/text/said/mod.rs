@@ -188,7 +188,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = terse::plain(exchanges::plain(out, talk), talk);
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
-    let out = likewise::plain(out, talk);
+    let out = of_several::of_the_group(likewise::plain(out, talk), talk);
     let out = arrivals::plain(gifts::plain(turns::plain(out, talk), talk), talk);
     if out.is_empty() {
         return stop.to_vec();
@@ -453,6 +453,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     if let Some((i, n)) = in_place(inner)
+        // ("all cars and all bikes stay where they are" brings nothing)
+        && !(is(inner.get(i), &["where"]) && i > 0 && is(inner.get(i - 1), &["stay", "stays", "remain", "remains"]))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);
@@ -559,8 +561,29 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     )
     .is_some()
         || parts.iter().all(|p| {
+            let verb = usize::from(
+                p.main
+                    .first()
+                    .is_some_and(|t| words::is_finite(text(t), true) || text(t).ends_with("ing")),
+            );
+            let close = [
+                "too",
+                "way too",
+                "far too",
+                "much too",
+                "a bit too",
+                "a little too",
+                "dangerously",
+                "uncomfortably",
+            ];
             p.begins(&["too far", "too close", "too near", "wrong", "in the wrong", "too"])
                 .is_some()
+                || leads(&p.main[verb..], &close).is_some_and(|n| {
+                    is(
+                        p.main.get(verb + n),
+                        &["far", "close", "near", "closely", "tightly"],
+                    )
+                })
         });
     if complaint && !parts.iter().any(predicate::Part::is_gone) && matches!(s.kind, Kind::Known) {
         return Some(vec![remembered(&s.np, talk)]);

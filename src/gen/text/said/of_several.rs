@@ -2,11 +2,15 @@
 //! is nearer", "of the motor vehicles only the one behind us remains".
 
 use super::super::foremost::ordinal;
+use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::some_of::bare_np;
 use super::topics::singular_of;
 use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
+use crate::scene::Class;
+use std::collections::BTreeMap;
 
 const PICKS: &[&str] = &[
     "nearest",
@@ -50,6 +54,50 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = pick_of_them(out, talk);
     let out = only_the_one(out);
     group_first(out)
+}
+
+/// "the middle one of the three": of the three cars, if nothing else is there three times.
+pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let first = first_noun(&tokens).map_or(tokens.len(), |n| n.0);
+    // the words for one of a group from here: how many tokens, and how many it has, if that is said
+    let one_of = |i: usize| {
+        let picks = i + pick_at(&tokens[i..]).filter(|_| is(tokens.get(i.wrapping_sub(1)), &["the"]))?;
+        let one = picks + usize::from(is(tokens.get(picks), &["one"]));
+        let of = leads(&tokens[one..], GROUPS).unwrap_or(0);
+        let many = (of > 0).then(|| tokens.get(one + of).and_then(number)).flatten();
+        let end = one + many.map_or(0, |_| of + 1);
+        let described = |t: &Token| {
+            matches!(
+                look_up(text(t)),
+                Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))
+            )
+        };
+        let noun = tokens[end..].iter().take_while(|t| described(t)).count() + end;
+        let named = super::words::noun_at(&tokens[noun..]).is_some();
+        (end > picks && !named && (of == 0 || many.is_some())).then_some((picks, end, many))
+    };
+    let Some((_, _, many)) = (1..first).find_map(one_of) else {
+        return tokens;
+    };
+    let mut counts: BTreeMap<Class, i64> = BTreeMap::new();
+    for b in talk.boxes.values() {
+        *counts.entry(b.class).or_default() += 1;
+    }
+    counts.retain(|_, n| many.map_or(*n > 1, |m| *n == m));
+    let last = counts
+        .keys()
+        .find(|c| talk.last.as_deref() == Some(c.label().as_str()));
+    let class = match (last, counts.len()) {
+        (Some(c), _) => *c,
+        (None, 1) if talk.last.is_none() => *counts.keys().next().unwrap_or(&Class::Car),
+        _ => return tokens,
+    };
+    rewritten(&tokens, |i, out| {
+        let (picks, end, _) = one_of(i)?;
+        out.extend_from_slice(&tokens[i..picks]);
+        out.extend(led(&class.label(), &tokens[i], &[]));
+        Some(end)
+    })
 }
 
 /// How many tokens a word takes that picks one: an ordinal, too.

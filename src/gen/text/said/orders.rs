@@ -206,6 +206,10 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         .iter()
         .any(|t| matches!(text(t), "number" | "amount" | "count" | "total"));
     let makes = matches!(text(first), "make" | "have" | "let" | "get");
+    // "make it 24 m behind us" says where, "make it five" how many
+    let so_far = makes
+        && inner.get(2).is_some_and(|t| number(t).is_some())
+        && inner.get(3..).and_then(words::unit_at).is_some();
     if let Some(found) = made_into(inner, talk).or_else(|| rid_of_others(inner, talk)) {
         return Some(found);
     }
@@ -217,6 +221,7 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         && inner
             .get(2)
             .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]))
+        && !so_far
     {
         return None;
     }
@@ -370,7 +375,7 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         return None;
     }
     // the verb says that metres are a way to go
-    let mut main = vec![words::word("move", first)];
+    let mut main = vec![words::word(if so_far { "keep" } else { "move" }, first)];
     main.extend(inner[1..from].iter().cloned());
     let mut said = parts(rest, true);
     for p in &mut said {
@@ -430,6 +435,38 @@ fn made_into(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             };
             return acts::acts(&s, &[part], true, inner, talk);
         }
+    }
+    // "make the car behind us a lorry"
+    if text(first) == "make"
+        && is(inner.get(1), &["the", "my", "that", "this"])
+        && let Some(n) = first_noun(&inner[1..]).filter(|n| n.0 < 5)
+        && let Some(k) = (n.1 + 2..inner.len())
+            .rev()
+            .find(|k| is(inner.get(*k), &["a", "an"]))
+        && first_noun(&inner[k..]).is_some_and(|x| x.0 < 4 && k + x.1 == inner.len())
+        && is_place(&inner[n.1 + 1..])
+        && is(
+            inner.get(k - 1),
+            &[
+                "us", "me", "ego", "lane", "left", "right", "side", "sidewalk", "pavement", "roadside",
+                "kerb", "curb", "ahead", "road", "street", "crossing", "front",
+            ],
+        )
+        && talk.fits(&inner[1..k]) > 0
+    {
+        let s = Subject {
+            kind: Kind::Known,
+            np: inner[1..k].to_vec(),
+            noun: inner[1 + n.0..1 + n.1].to_vec(),
+            pred: k,
+            plural: false,
+        };
+        let part = predicate::Part {
+            main: led("become", first, &[&inner[k..]]),
+            helped: true,
+            ..predicate::Part::default()
+        };
+        return acts::acts(&s, &[part], true, inner, talk);
     }
     if makes_of
         && is(inner.get(1), &["it", "that", "him", "her"])

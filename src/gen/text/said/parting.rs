@@ -119,10 +119,13 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
             let joined = text(t) == "and"
                 && is(
                     body.get(from + let_),
-                    &["the", "both", "my", "that", "those", "these"],
+                    &["the", "both", "all", "every", "my", "that", "those", "these"],
                 )
                 && first_noun(&body[from..i]).is_some_and(|n| n.0 < 5 + let_ && from + n.1 == i)
-                && is(body.get(next), &["the", "my", "that", "those", "these"]);
+                && is(
+                    body.get(next),
+                    &["the", "both", "all", "every", "my", "that", "those", "these"],
+                );
             // "only the cones and barriers are left"
             let only = text(t) == "and"
                 && is(body.get(from), &["only", "just"])

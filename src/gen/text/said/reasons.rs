@@ -1,6 +1,7 @@
 //! What is asked for with its reason or condition: "I don't like that truck, use a bus", "if there's a lorry behind us, delete
 //! it", "half of the workers are on their break, remove them", "a motorcycle should be coming towards us, not a car".
 
+use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
@@ -124,12 +125,77 @@ const BETTER: &[&str] = &[
 
 /// The sentence as what is asked for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = disliked(tokens, talk);
+    let out = disliked(everybody_does(tokens), talk);
     let out = better(out, talk);
     let out = condition(out, talk);
     let out = some_then(out);
     let out = same_with(is_another(not_that(out, talk)), talk);
     with_gone(out, talk)
+}
+
+/// "everybody has got on the bus, so remove all the pedestrians": what is asked for.
+fn everybody_does(tokens: Vec<Token>) -> Vec<Token> {
+    let none = leads(
+        &tokens,
+        &["nobody", "no one", "noone", "no pedestrian", "no child"],
+    );
+    let all = leads(
+        &tokens,
+        &["everybody", "everyone", "people", "they all", "they have all"],
+    );
+    let Some(cut) = (2..tokens.len()).find(|k| {
+        tokens[*k].kind != TokenKind::Word && !matches!(tokens[*k].kind, TokenKind::Number(_))
+            || is(tokens.get(*k), &["so"])
+    }) else {
+        return tokens;
+    };
+    let remark = &tokens[..cut];
+    // what shall be so is asked for itself
+    let named = remark
+        .iter()
+        .position(|t| is(Some(t), &["the", "this", "that", "these", "those"]));
+    let any = none
+        .filter(|n| is(remark.get(n + 1), &["a", "an"]))
+        .map(|n| n + 1);
+    let does = any
+        .or(named)
+        .is_some_and(|k| first_noun(&remark[k..]).is_some_and(|x| x.0 < 3))
+        || remark
+            .iter()
+            .any(|t| is(Some(t), &["this", "such", "weather", "rain", "time", "night"]));
+    let asks = remark.iter().any(|t| {
+        is(
+            Some(t),
+            &["should", "must", "shall", "may", "can", "except", "but"],
+        )
+    }) || !does && remark.iter().any(|t| is(Some(t), &["on", "in"]));
+    let mut rest = trimmed(&tokens[cut..]);
+    while is(rest.first(), &["so", "therefore", "please", "and", ":"]) {
+        rest = trimmed(&rest[1..]);
+    }
+    let removes = super::some_of::removes(rest.first())
+        && is(rest.get(1), &["the", "all", "both", "every", "those", "these"])
+        && first_noun(rest).is_some_and(|x| x.0 < 5);
+    let people = first_noun(rest).is_some_and(|(a, b)| {
+        super::words::longest(&rest[a..b]).is_some_and(
+            |l| matches!(l.0, Sense::Noun(n, _) if n.classes[0] == crate::scene::Class::Pedestrian),
+        )
+    });
+    // "nobody takes the bus on Sundays, so remove it"
+    if let (Some(n), true, false) = (none, removes_it(rest), asks)
+        && let k = n + 1
+        && is(
+            remark.get(k),
+            &["the", "this", "that", "these", "those", "a", "an", "my", "our"],
+        )
+        && let Some((_, b)) = first_noun(&remark[k..]).filter(|x| x.0 < 4)
+    {
+        return led("remove the", &tokens[0], &[&remark[k + 1..k + b]]);
+    }
+    if removes && (none.is_some() && !asks || all.is_some() && people) {
+        return rest.to_vec();
+    }
+    tokens
 }
 
 /// Something new that is asked for: "use a bus", "a bus would be better", "rather a bus".

@@ -18,6 +18,11 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         "get rid of|getting rid of|do away with|dispose of",
         "remove",
     );
+    let out = replaced(
+        &out,
+        "i no longer need|we no longer need|i no longer require|we no longer require|i have no more use for|we have no more use for|i have no further use for|we have no further use for|i have no use for|we have no use for|we have no more need of|we have no need of|i have no need of|i have no more need of",
+        "we dont need",
+    );
     let out = super::colours::whatever(out);
     let out = everyone_there(out);
     let out = replaced(&out, "together with|along with|and also|as well as", "and");

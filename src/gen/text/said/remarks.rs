@@ -3,7 +3,7 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::replaced;
+use super::super::wording::{replaced, rewritten};
 use super::Talk;
 use super::lists::HELPERS;
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
@@ -35,7 +35,7 @@ const LIKE: &[&str] = &[
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, LOOKS, "faces us");
     let out = replaced(&out, "please to", "please");
-    let out = gone_on(put_there(out));
+    let out = now_so_far(gone_on(put_there(out)));
     let out = as_before(reported(out));
     let out = replaced(&out, "the two on foot|both on foot", "the two pedestrians");
     let out = replaced(&out, "the three on foot", "the three pedestrians");
@@ -48,7 +48,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = left_there(watching(out));
     let out = that_makes(out);
     let out = theirs_instead(out);
-    let out = in_to(out);
+    let out = in_to(to_ahead(out));
     like_the_first(out, talk)
 }
 
@@ -762,6 +762,59 @@ fn gone_on(tokens: Vec<Token>) -> Vec<Token> {
     [&tokens[..i], &led("should be", &tokens[i], &[]), &rest].concat()
 }
 
+/// "drop back to 10 m ahead": a place ahead of us, no step.
+fn to_ahead(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let metres = is(tokens.get(i), &["to", "until"])
+            && tokens.get(i + 1).is_some_and(|t| number(t).is_some())
+            && super::words::is_unit(tokens.get(i + 2));
+        let next = tokens.get(i + 4);
+        let ends = next.is_none_or(|t| mark(t) || is(Some(t), &["and", "but", "in", "on"]));
+        let us = match tokens.get(i + 3).map(text).filter(|_| metres && ends)? {
+            "ahead" => "of us",
+            "behind" => "us",
+            _ => return None,
+        };
+        out.extend_from_slice(&tokens[i..i + 4]);
+        out.extend(led(us, &tokens[i], &[]));
+        Some(i + 4)
+    })
+}
+
+/// "has overtaken us and now rides 8 m ahead": ahead of us, not by so much.
+fn now_so_far(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (2..tokens.len()).find_map(|i| {
+        let now = is(tokens.get(i), &["now"]);
+        let done = is(tokens.get(i), &["and"])
+            && tokens[..i].iter().any(|t| is(Some(t), &["has", "have"]))
+            && has_noun(&tokens[..i]);
+        let metres = (i + 1..tokens.len().min(i + 5)).find(|k| number(&tokens[*k]).is_some())?;
+        let verb = tokens[i + 1..metres].iter().any(|t| {
+            super::words::is_finite(text(t), false)
+                && !is(Some(t), &["moved", "backed", "rolled", "pulled", "pushed"])
+                || text(t).ends_with("ing")
+                || is(Some(t), &["is", "are", "drive", "ride", "walk", "stand", "wait"])
+        });
+        let end = metres + 2;
+        let ahead = is(tokens.get(end), &["ahead", "behind"])
+            && tokens
+                .get(end + 1)
+                .is_none_or(|t| mark(t) || is(Some(t), &["and", "in", "on"]));
+        ((now || done) && verb && super::words::is_unit(tokens.get(metres + 1)) && ahead).then_some(end)
+    });
+    match found {
+        Some(end) => {
+            let us = if text(&tokens[end]) == "ahead" {
+                "of us"
+            } else {
+                "us"
+            };
+            [&tokens[..=end], &led(us, &tokens[end], &[]), &tokens[end + 1..]].concat()
+        }
+        None => tokens,
+    }
+}
+
 /// "pull the cones in to 15 m ahead": to there, not by so much.
 fn in_to(tokens: Vec<Token>) -> Vec<Token> {
     let found = (2..tokens.len()).find_map(|i| {
@@ -777,6 +830,7 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
                 "closer to",
                 "nearer to",
                 "over to",
+                "to",
             ],
         )?;
         let metres = tokens.get(i + n).is_some_and(|t| number(t).is_some())
@@ -804,22 +858,6 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
     }
     let mut out = tokens.clone();
     out[from].text = "move".into();
-    // ("15 m ahead" alone is a step)
-    let bare = i + n + 3;
-    if is(out.get(bare - 1), &["ahead", "behind"])
-        && out.get(bare).is_none_or(|t| mark(t) || is(Some(t), &["and"]))
-    {
-        let us = led(
-            if text(&out[bare - 1]) == "ahead" {
-                "of us"
-            } else {
-                "us"
-            },
-            &tokens[i],
-            &[],
-        );
-        out.splice(bare..bare, us);
-    }
     [&out[..i], &led("to", &tokens[i], &[]), &out[i + n..]].concat()
 }
 

@@ -28,8 +28,7 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             "my distance from",
             "the distance of",
         ],
-    )
-    .filter(|x| x.0 > 0) else {
+    ) else {
         return tokens;
     };
     let from = i + n;

@@ -182,7 +182,10 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
         let named = k > 0
             && is(
                 tokens.get(k - 1),
-                &["the", "a", "an", "my", "our", "this", "that"],
+                &[
+                    "the", "a", "an", "my", "our", "this", "that", "all", "every", "each", "both", "these",
+                    "those",
+                ],
             )
             && k > from;
         if named && !HELPERS.contains(&w) {

@@ -115,7 +115,21 @@ fn on_each(tokens: Vec<Token>) -> Vec<Token> {
         other => other,
     };
     let close = trimmed(&tokens[b..i]);
-    let np = [&tokens[from..b], close].concat();
+    // "four cones, two on each side": two of them and two of them
+    let share = match close {
+        [n] => number(n).filter(|_| number(&tokens[from]).is_some()),
+        _ => None,
+    };
+    let np = match share {
+        Some(1) => [
+            close,
+            &tokens[from + 1..a],
+            &super::topics::singular_of(&tokens[a..b]),
+        ]
+        .concat(),
+        Some(_) => [close, &tokens[from + 1..b]].concat(),
+        None => [&tokens[from..b], close].concat(),
+    };
     let mut out = tokens[..from].to_vec();
     out.extend(led_after(&np, &format!("on the left {strip} and"), &tokens[i]));
     out.extend(led_after(&np, &format!("on the right {strip}"), &tokens[i]));

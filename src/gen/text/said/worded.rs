@@ -118,7 +118,7 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
             out[i].text = "every".into();
         }
     }
-    out = super::gaps::filled(out);
+    out = super::gaps::filled(out, talk);
     if let Some(new) = super::idioms::plain(&out, talk).or_else(|| super::passive::added(&out, talk)) {
         out = new;
     }

@@ -142,7 +142,7 @@ pub const RELATIONS: &[(R, &str)] = &[
     ),
     (
         R::Following,
-        "following|follows|in the tracks of|at the heels of|on the heels of|in tow behind|in convoy with|in convoy behind|right on the tail of|hard on the heels of|in the train of|bringing up the rear of|at the tail end of|in line behind|in file behind|in a line behind|in a queue behind|next in line behind|glued to the bumper of|glued to|follow|tailgating|tailgates|trailing|trails|chasing|chases|driving behind|drives behind|riding behind|closely following|in pursuit of|tailing|close on the heels of|hot on the heels of|queuing behind|queueing behind|queued behind|cycling behind|rides behind|stuck behind|waiting behind|travelling behind|traveling behind|shadowing|pursuing|lined up behind|walking behind",
+        "following|follows|in the tracks of|at the heels of|on the heels of|in tow behind|in convoy with|in convoy behind|right on the tail of|hard on the heels of|in the train of|bringing up the rear of|at the tail end of|in line behind|in file behind|in a line behind|in a queue behind|next in line behind|glued to the bumper of|glued to|follow|tailgating|tailgates|trailing|trails|chasing|chases|driving behind|drives behind|riding behind|closely following|in pursuit of|tailing|close on the heels of|hot on the heels of|queuing behind|queueing behind|queued behind|cycling behind|rides behind|stuck behind|travelling behind|traveling behind|shadowing|pursuing|lined up behind|walking behind",
     ),
     (
         R::Crossing,
