@@ -118,6 +118,7 @@ pub(super) struct Editor<'a> {
     pub(super) boxes: BTreeMap<BoxId, SceneBox>,
     style: String,
     pub(super) definite: Vec<Span>, // what "the" was said of in the present command
+    pub(super) picks: Vec<(Span, super::words::edits::Pick)>, // which of several an anchor is
     pub(super) seed: u64,
     pub(super) last: Vec<BoxId>,    // what was spoken of last
     part_of: Vec<BoxId>,            // those that the last ones were picked from
@@ -134,6 +135,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         boxes: scene.boxes.clone(),
         style: scene.prompt.to_string(),
         definite: Vec::new(),
+        picks: Vec::new(),
         seed,
         last: Vec::new(),
         part_of: Vec::new(),
@@ -249,15 +251,18 @@ impl Editor<'_> {
     fn carry_out(&mut self, c: &Command) -> Option<String> {
         let mut done = Vec::new();
         self.definite.clone_from(&c.definite);
+        self.picks.clone_from(&c.picks);
         if self.style_of(c) {
             done.push("style".to_string());
         }
         if !matches!(c.verb, Verb::Add | Verb::Note) {
             self.left.clear();
         }
-        if matches!(c.verb, Verb::Remove | Verb::Clear | Verb::Move) {
-            self.gone.clear();
-        }
+        // ("take it away" again leaves what is gone as it was)
+        let gone_before = match c.verb {
+            Verb::Remove | Verb::Clear | Verb::Move => std::mem::take(&mut self.gone),
+            _ => Vec::new(),
+        };
         match c.verb {
             Verb::Remove | Verb::Clear => {
                 if c.reading.description.foreground.is_empty()
@@ -413,6 +418,9 @@ impl Editor<'_> {
                     done.push("changed".into());
                 }
             }
+        }
+        if self.gone.is_empty() && matches!(c.verb, Verb::Remove | Verb::Clear) {
+            self.gone = gone_before;
         }
         (!done.is_empty()).then(|| done.join(", "))
     }

@@ -8,7 +8,7 @@ use super::edit::{Editor, Question, TextEdit};
 use super::lexicon::{Sense, look_up};
 use super::mention::{Mention, Pre};
 use super::place::{Placement, place_from};
-use super::select::{fitting, of_size, where_is};
+use super::select::{fitting, of_size, rank, where_is};
 use super::to_graph::to_graph;
 use super::words::objects::NOUNS;
 use crate::scene::graph::{Locked, Node, RelationKind};
@@ -148,6 +148,11 @@ impl Editor<'_> {
             if fits.is_empty() {
                 self.note(format!("no {} is in the scene: one is added", o.noun));
                 continue;
+            }
+            let pick = self.picks.iter().find(|p| p.0 == o.span).map(|p| p.1);
+            if let Some(pick) = pick.filter(|_| o.count.n == 1) {
+                fits.sort_by(|a, b| rank(a, pick).total_cmp(&rank(b, pick)));
+                fits.truncate(1);
             }
             if o.count.n == 1 {
                 fits = self.likely(fits, &o);

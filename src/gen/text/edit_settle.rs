@@ -44,6 +44,18 @@ impl Editor<'_> {
                 commands[i].verb = Verb::Note;
                 continue;
             }
+            // "keep one parked car, delete the rest of the cars": said twice
+            let counted = a.verb == Verb::Keep && a.targets.iter().any(|t| !t.uncounted);
+            let words = b.text.to_lowercase();
+            let others = b.back == Some(Back::Others)
+                || [" rest", " others", " other ", " remaining", " surplus"]
+                    .iter()
+                    .any(|w| words.contains(w));
+            let same = class(a.targets.first()) == class(b.targets.first());
+            if counted && b.verb == Verb::Remove && others && (b.back.is_some() || same) {
+                commands[i].verb = Verb::Note;
+                continue;
+            }
             let rest = matches!(a.verb, Verb::Keep | Verb::Note)
                 && !a.targets.is_empty()
                 && b.verb == Verb::Remove
@@ -84,8 +96,10 @@ impl Editor<'_> {
             "second",
             "extra",
         ];
+        // "two <unknown word> hide behind the car" names only what they are behind
         if c.targets.is_empty() {
-            return false;
+            let anchors = !c.mentions.is_empty() && c.mentions.iter().all(|m| m.is_anchor);
+            return anchors && !c.in_place && !c.reading.not_understood.is_empty();
         }
         let words = c.text.to_lowercase();
         let ordered = words

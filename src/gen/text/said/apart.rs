@@ -38,16 +38,11 @@ const SHARED: &[&str] = &[
     "likewise",
     "both",
     "each",
-    "neither",
-    "nor",
     "either",
     "respectively",
     "former",
     "latter",
-    "not",
-    "who",
     "whose",
-    "which",
     "whom",
     "where",
     "if",
@@ -60,7 +55,6 @@ const SHARED: &[&str] = &[
     "second",
     "third",
     "last",
-    "place",
     "such",
     "only",
     "everything",
@@ -73,15 +67,9 @@ const SHARED: &[&str] = &[
     "back",
     "vice",
     "between",
-    "swap",
-    "swapped",
-    "trade",
     "remaining",
     "equally",
     "alike",
-    "joins",
-    "joined",
-    "that",
 ];
 
 /// What a sentence may begin with before its first clause.
@@ -194,9 +182,30 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         }
         let b = (a..sentence.len()).find(|k| !is_link(&sentence[*k]))?;
         let (left, right) = (&sentence[..a], &sentence[b..]);
-        let shares = |t: &Token| is(Some(t), SHARED);
         let plain = !left.iter().any(shares) && !right.iter().any(shares);
-        (plain && stands_alone(left) && opens(right)).then_some((a, b))
+        let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
+        (plain && told_apart).then_some((a, b))
+    })
+}
+
+fn shares(t: &Token) -> bool {
+    is(Some(t), SHARED)
+}
+
+/// "remove that and ...", "in its place", "which is gone": words that stand for what the other clause names.
+fn points(clause: &[Token]) -> bool {
+    // ("the car that waits", "the woman who walks" only say which)
+    let which = |k: usize| {
+        k > 1
+            && super::words::noun_at(&clause[k - 1..k]).is_some()
+            && !is(clause.get(k + 1), &["should", "must"])
+    };
+    let says_which = clause.first().is_some_and(is_verb);
+    (0..clause.len()).any(|k| {
+        is(clause.get(k), &["that", "who", "which"]) && !(says_which && which(k))
+            || is(clause.get(k), &["place"])
+                && !is(clause.get(k + 1), &["a", "an", "the", "two", "three", "of"])
+            || is(clause.get(k), &["neither"]) && k > 0
     })
 }
 
@@ -204,7 +213,10 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
 fn stands_alone(clause: &[Token]) -> bool {
     let polite = clause.iter().take_while(|t| is(Some(t), POLITE)).count();
     let clause = &clause[polite..];
-    let orders = orders_something(clause);
+    let orders = orders_something(clause) || changes_number(clause);
+    let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    let styles = clause.first().is_some_and(is_verb) && clause.iter().any(sky);
+    let neither = is(clause.first(), &["neither"]) && clause.iter().any(|t| HELPERS.contains(&text(t)));
     let wants = leads(
         clause,
         &[
@@ -214,6 +226,10 @@ fn stands_alone(clause: &[Token]) -> bool {
             "we want",
             "i would like",
             "id like",
+            "id rather",
+            "id prefer",
+            "i would rather",
+            "i would prefer",
             "there is",
             "there are",
             "there should be",
@@ -222,7 +238,26 @@ fn stands_alone(clause: &[Token]) -> bool {
     )
     .is_some()
         && has_noun(clause);
-    orders || wants || says(clause)
+    orders || wants || styles || neither || says(clause)
+}
+
+/// "two fewer pedestrians", "half the cones", "not a single barrier should be left".
+fn changes_number(clause: &[Token]) -> bool {
+    let fewer = clause.first().is_some_and(|t| number(t).is_some())
+        && (is(clause.get(1), &["fewer", "less", "more"]) || is(clause.last(), &["fewer", "less", "more"]));
+    let share = leads(
+        clause,
+        &[
+            "half the",
+            "half of the",
+            "twice the",
+            "double the",
+            "not a single",
+            "not one",
+            "three times the",
+        ],
+    );
+    (fewer || share.is_some()) && has_noun(clause)
 }
 
 fn is_determiner(t: &Token) -> bool {
@@ -264,6 +299,12 @@ fn says(clause: &[Token]) -> bool {
     {
         return false;
     }
+    // ("my lane is blocked by a barrier")
+    if is(clause.first(), &["the", "my", "our"])
+        && (1..clause.len().min(4)).any(|k| HELPERS.contains(&text(&clause[k])))
+    {
+        return true;
+    }
     // (its place may stand before the verb)
     let fresh = is(clause.first(), &["a", "an", "some"]) || number(&clause[0]).is_some();
     let near = clause.len().min(b + if fresh { 1 } else { 7 });
@@ -280,11 +321,7 @@ fn opens(clause: &[Token]) -> bool {
         return false;
     }
     let absent = is(clause.first(), &["no"]) && first_noun(clause).is_some_and(|n| n.0 < 3);
-    // "two fewer pedestrians", "half the cones"
-    let number_changes =
-        number(&clause[0]).is_some() && is(clause.get(1), &["fewer", "less"]) && has_noun(clause)
-            || leads(clause, &["half the", "half of the", "twice the", "double the"]).is_some()
-                && has_noun(clause);
+    let number_changes = changes_number(clause);
     let wants = leads(
         clause,
         &[
@@ -294,6 +331,10 @@ fn opens(clause: &[Token]) -> bool {
             "we want",
             "i would like",
             "id like",
+            "id rather",
+            "id prefer",
+            "i would rather",
+            "i would prefer",
             "there is",
             "there are",
             "there should be",

@@ -9,6 +9,7 @@ mod arrivals;
 mod causing;
 mod colours;
 mod company;
+mod curt;
 mod dealt;
 mod doers;
 mod exception;
@@ -36,6 +37,7 @@ mod reasons;
 mod recast;
 mod remaining;
 mod remarks;
+mod riders;
 mod shorthand;
 mod skies;
 mod some_of;
@@ -182,6 +184,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);

@@ -442,7 +442,13 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
         && !is_place(inner)
         && !matches!(text(first), "up" | "face" | "facing" | "about");
     // "take away all the pedestrians", "set up four cones"
-    let particle = usize::from(is(inner.get(1), &["away", "up", "down", "in", "out", "off"]));
+    let brings = is(
+        inner.first(),
+        &[
+            "take", "set", "put", "bring", "clear", "throw", "get", "wipe", "line", "pull",
+        ],
+    );
+    let particle = usize::from(brings && is(inner.get(1), &["away", "up", "down", "in", "out", "off"]));
     verb && inner.get(1 + particle).is_some_and(|t| {
         matches!(
             text(t),

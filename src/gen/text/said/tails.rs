@@ -4,12 +4,98 @@ use super::super::lexicon::plural;
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
-use super::words::{first_noun, is, is_finite, is_place, led, number, text, word};
+use super::words::{find, first_noun, is, is_finite, is_place, leads, led, number, text, trimmed, word};
 
 /// A sentence with such tails in plain words.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
-    let out = both_placed(tokens);
+    let out = both_placed(out_of_here(without_purpose(tokens)));
     but_there(&one_each(&out))
+}
+
+/// "clear out the bus so that only the car is left", "waiting to let her pass": what it is good for says nothing more.
+fn without_purpose(tokens: Vec<Token>) -> Vec<Token> {
+    const LEFT: &[&str] = &["left", "remains", "remain", "there", "stays", "stay", "visible"];
+    const REMOVES: &[&str] = &[
+        "remove", "delete", "clear", "take", "erase", "get", "drop", "throw", "lose", "kick",
+    ];
+    let only = find(
+        &tokens,
+        &[
+            "so that only",
+            "so only",
+            "such that only",
+            "until only",
+            "so that just",
+            "leaving only",
+            "leaving just",
+        ],
+    )
+    .filter(|x| x.0 > 2 && is(tokens.first(), REMOVES))
+    .filter(|x| {
+        let rest = &tokens[x.0 + x.1..];
+        // ("until only two are left" says how many)
+        let known = is(rest.first(), &["the", "my", "our"]);
+        known
+            && (is(rest.last(), LEFT) || is(tokens.get(x.0), &["leaving"]))
+            && first_noun(rest).is_some_and(|n| n.0 < 4)
+    });
+    if let Some((i, _)) = only {
+        return trimmed(&tokens[..i]).to_vec();
+    }
+    let lets = find(
+        &tokens,
+        &["to let", "in order to let", "so as to let", "to allow"],
+    )
+    .filter(|x| {
+        let rest = &tokens[x.0 + x.1..];
+        x.0 > 2
+            && rest.len() < 7
+            && is(
+                rest.last(),
+                &[
+                    "pass", "by", "through", "past", "cross", "over", "across", "go", "in", "out",
+                ],
+            )
+    });
+    match lets {
+        Some((i, _)) => trimmed(&tokens[..i]).to_vec(),
+        None => tokens,
+    }
+}
+
+/// "get the taxi out of here": remove it.
+fn out_of_here(tokens: Vec<Token>) -> Vec<Token> {
+    const AWAY: &[&str] = &[
+        "out of here",
+        "out of there",
+        "out of the scene",
+        "out of the picture",
+        "out of the frame",
+        "out of sight",
+        "out of my sight",
+        "out of this",
+        "out of service",
+        "off the site",
+        "off the set",
+        "off the scene",
+        "off the map",
+    ];
+    rewritten(&tokens, |i, out| {
+        let opens = i == 0
+            || tokens[i - 1].kind != TokenKind::Word
+            || is(tokens.get(i - 1), &["and", "then", "please", "now"]);
+        let np = (opens
+            && is(
+                tokens.get(i),
+                &["get", "take", "drag", "pull", "move", "bring", "throw", "kick"],
+            ))
+        .then(|| first_noun(&tokens[i + 1..]))?
+        .filter(|n| n.0 < 5)?;
+        let end = i + 1 + np.1;
+        let n = leads(&tokens[end..], AWAY)?;
+        out.extend(led("remove", &tokens[i], &[&tokens[i + 1..end]]));
+        Some(end + n)
+    })
 }
 
 /// "replace the car and the truck with a bus each": with buses.

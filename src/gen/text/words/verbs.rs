@@ -94,7 +94,7 @@ pub const DOING: &[(ObjectState, &str)] = &[
     ),
     (
         ObjectState::Waiting,
-        "wait|stand/stood|stand still/stood|stand there/stood|stop|stop dead|halt|pause|idle|tarry|queue|queue up|line up|sit/sat|sit there/sat|rest|linger|loiter|loaf|lurk|lounge|dally|hover|hang about/hung|hang around/hung|stand around/stood|sit around/sat|wait around|lounge around|loiter around|hang out/hung|lean|squat|crouch|kneel|perch|lie/lay/lain|stay|remain|stay put|hold/held|\
+        "wait|hide/hid/hidden|crouch|cower|squat|shelter|take cover/took cover|stand/stood|stand still/stood|stand there/stood|stop|stop dead|halt|pause|idle|tarry|queue|queue up|line up|sit/sat|sit there/sat|rest|linger|loiter|loaf|lurk|lounge|dally|hover|hang about/hung|hang around/hung|stand around/stood|sit around/sat|wait around|lounge around|loiter around|hang out/hung|lean|squat|crouch|kneel|perch|lie/lay/lain|stay|remain|stay put|hold/held|\
          chat|talk|gossip|smoke|gaze|stare|chatter|converse|confer|argue|laugh|wave|gather|assemble|congregate|huddle|cluster|mill about|stall|yield|give way/gave/given|pull up|draw up/drew/drawn|come to a stop/came/come|come to a halt/came/come|come to a standstill/came/come|come to a complete stop/came/come|come to a complete standstill/came/come|come to rest/came/come|grind to a halt/ground|bide|dither|hesitate|tower|repose|work|dig/dug|repair|inspect|photograph|read/read/read|\
          be lined up/was|be stuck/was|get stuck/got|be stopped/was|pile up|bunch up|back up",
     ),

@@ -1,0 +1,157 @@
+//! Who sits in or on something: "the lorry driver has climbed out and stands beside his lorry", "the cyclist should be riding a moped".
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::Token;
+use super::words::{find, first_noun, is, is_place, leads, led, text};
+use crate::scene::Class;
+
+/// A sentence in plain words.
+pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
+    mounts(climbs_out(tokens))
+}
+
+const OUT: &[&str] = &[
+    "climbed out",
+    "climbed down",
+    "climbed off",
+    "climbs out",
+    "climbs down",
+    "climbs off",
+    "got out",
+    "gotten out",
+    "gets out",
+    "got off",
+    "gets off",
+    "stepped out",
+    "steps out",
+    "stepped off",
+    "jumped out",
+    "jumps out",
+    "hopped out",
+    "hopped off",
+    "got down",
+    "dismounted",
+    "dismounts",
+    "come out",
+    "alighted",
+    "alights",
+    "left his vehicle",
+    "left his cab",
+    "left her vehicle",
+    "left his lorry",
+    "left his truck",
+    "left the cab",
+    "left the vehicle",
+];
+
+/// "the lorry driver has climbed out and stands beside his lorry": a man beside the lorry.
+fn climbs_out(tokens: Vec<Token>) -> Vec<Token> {
+    const DRIVER: &[&str] = &[
+        "driver", "drivers", "rider", "trucker", "s driver", "s rider", "' driver",
+    ];
+    if !is(tokens.first(), &["the", "my", "that"]) {
+        return tokens;
+    }
+    // "the lorry driver", "the lorry's driver", "the driver of the lorry"
+    let of = leads(&tokens[1..], &["driver of the", "rider of the"]);
+    let found = match of {
+        Some(n) => first_noun(&tokens[1 + n..])
+            .filter(|x| x.0 < 3)
+            .map(|x| (1 + n..1 + n + x.1, 1 + n + x.1)),
+        None => (1..tokens.len().min(5)).find_map(|i| {
+            let n = leads(&tokens[i..], DRIVER).filter(|_| i > 1)?;
+            Some((1..i, i + n))
+        }),
+    };
+    let Some((whose, verb)) = found else {
+        return tokens;
+    };
+    let vehicle: Vec<Token> = tokens[whose]
+        .iter()
+        .map(|t| Token {
+            text: text(t).trim_end_matches("'s").to_string(),
+            ..t.clone()
+        })
+        .collect();
+    if first_noun(&vehicle).is_none() {
+        return tokens;
+    }
+    let has = leads(
+        &tokens[verb..],
+        &["has just", "has now", "has already", "had", "has", "just"],
+    )
+    .unwrap_or(0);
+    let Some(n) = leads(&tokens[verb + has..], OUT) else {
+        return tokens;
+    };
+    let rest = &tokens[verb + has + n..];
+    let place =
+        (0..rest.len()).find(|i| is_place(&rest[*i..]) && !is(rest.get(*i), &["out", "off", "down", "of"]));
+    let mut out = led("add a man", &tokens[0], &[]);
+    match place {
+        Some(i) => {
+            let own = (i..rest.len()).find(|k| is(rest.get(*k), &["his", "her", "its", "it"]));
+            match own {
+                Some(k) => {
+                    out.extend_from_slice(&rest[i..k]);
+                    out.extend(led("the", &rest[k], &[&vehicle]));
+                    let end = first_noun(&rest[k..])
+                        .filter(|x| x.0 < 3)
+                        .map_or(k + 1, |x| k + x.1);
+                    let end = if is(rest.get(k + 1), &["cab", "vehicle", "machine"]) {
+                        k + 2
+                    } else {
+                        end
+                    };
+                    out.extend_from_slice(&rest[end.min(rest.len())..]);
+                }
+                None => out.extend_from_slice(&rest[i..]),
+            }
+        }
+        None => out.extend(led("next to the", &tokens[0], &[&vehicle])),
+    }
+    out
+}
+
+/// "the cyclist should be riding a moped, not a bicycle": it becomes one.
+fn mounts(tokens: Vec<Token>) -> Vec<Token> {
+    const RIDES: &[&str] = &[
+        "should be riding",
+        "ought to be riding",
+        "must be riding",
+        "should ride",
+        "ought to ride",
+        "must ride",
+        "should be on",
+        "ought to be on",
+        "must be on",
+        "should sit on",
+        "is to ride",
+        "shall ride",
+        "should rather ride",
+        "is actually riding",
+        "is riding",
+        "is actually on",
+        "has to ride",
+    ];
+    let two_wheels = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() == 1 && matches!(n.classes[0], Class::Bicycle | Class::Motorcycle));
+    let rider = |t: &Token| two_wheels(t) || is(Some(t), &["rider"]);
+    let Some((i, n)) = find(&tokens, RIDES) else {
+        return tokens;
+    };
+    let what = &tokens[i + n..];
+    let fresh = is(what.first(), &["a", "an"])
+        && first_noun(what).is_some_and(|x| x.0 < 3 && two_wheels(&what[x.1 - 1]));
+    if !fresh || !is(tokens.first(), &["the", "both", "that"]) || !tokens[..i].iter().any(rider) {
+        return tokens;
+    }
+    let end = first_noun(what).map_or(what.len(), |x| x.1);
+    let mut out = led("replace", &tokens[0], &[&tokens[..i]]);
+    // ("the rider in front of me" is whoever rides there)
+    let denied = what[end..].iter().find(|t| two_wheels(t));
+    if let Some(t) = out.iter_mut().find(|t| t.text == "rider") {
+        t.text = denied.map_or("cyclist", |d| text(d)).to_string();
+    }
+    out.extend(led("with", &tokens[0], &[&what[..end]]));
+    out
+}
