@@ -64,7 +64,6 @@ const SHARED: &[&str] = &[
     "nobody",
     "however",
     "again",
-    "back",
     "vice",
     "between",
     "remaining",
@@ -137,6 +136,27 @@ const ORDERS: &[&str] = &[
     "build",
     "create",
     "switch",
+];
+
+/// How a wish begins.
+const WANTS: &[&str] = &[
+    "i want",
+    "i need",
+    "we need",
+    "we want",
+    "i would like",
+    "id like",
+    "id rather",
+    "id prefer",
+    "i would rather",
+    "i would prefer",
+    "there is",
+    "there are",
+    "there should be",
+    "there must be",
+    "give me",
+    "gimme",
+    "no",
 ];
 
 fn is_link(t: &Token) -> bool {
@@ -217,28 +237,25 @@ fn stands_alone(clause: &[Token]) -> bool {
     let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     let styles = clause.first().is_some_and(is_verb) && clause.iter().any(sky);
     let neither = is(clause.first(), &["neither"]) && clause.iter().any(|t| HELPERS.contains(&text(t)));
-    let wants = leads(
-        clause,
-        &[
-            "i want",
-            "i need",
-            "we need",
-            "we want",
-            "i would like",
-            "id like",
-            "id rather",
-            "id prefer",
-            "i would rather",
-            "i would prefer",
-            "there is",
-            "there are",
-            "there should be",
-            "no",
-        ],
-    )
-    .is_some()
-        && has_noun(clause);
-    orders || wants || styles || neither || says(clause)
+    let wants = leads(clause, WANTS).is_some() && has_noun(clause);
+    orders || wants || styles || neither || place_then_order(clause) || says(clause)
+}
+
+/// "in front of the bus, put a motorcycle", "in place of the truck I would prefer a bus".
+fn place_then_order(clause: &[Token]) -> bool {
+    let instead = leads(clause, &["in place of", "in lieu of", "in the place of"]);
+    if !is_place(clause) && instead.is_none() {
+        return false;
+    }
+    let Some((_, b)) = first_noun(clause).filter(|n| n.0 < 6) else {
+        return false;
+    };
+    let from = b + usize::from(clause.get(b).is_some_and(|t| t.kind == TokenKind::Comma));
+    let rest = &clause[from.min(clause.len())..];
+    orders_something(rest)
+        || instead.is_some()
+            && (leads(rest, WANTS).is_some() || is(rest.first(), &["a", "an", "two", "three", "comes"]))
+            && has_noun(rest)
 }
 
 /// "two fewer pedestrians", "half the cones", "not a single barrier should be left".
@@ -322,27 +339,7 @@ fn opens(clause: &[Token]) -> bool {
     }
     let absent = is(clause.first(), &["no"]) && first_noun(clause).is_some_and(|n| n.0 < 3);
     let number_changes = changes_number(clause);
-    let wants = leads(
-        clause,
-        &[
-            "i want",
-            "i need",
-            "we need",
-            "we want",
-            "i would like",
-            "id like",
-            "id rather",
-            "id prefer",
-            "i would rather",
-            "i would prefer",
-            "there is",
-            "there are",
-            "there should be",
-            "there must be",
-        ],
-    )
-    .is_some()
-        && has_noun(clause);
+    let wants = leads(clause, WANTS).is_some() && has_noun(clause);
     // ("the weather" and the light are told with what they are said of)
     let sky = clause
         .iter()

@@ -165,7 +165,7 @@ pub(super) fn place_first(tokens: Vec<Token>) -> Vec<Token> {
             .rev()
             .find(|i| {
                 is(tokens.get(*i), &["and", "then"])
-                    || tokens[*i].kind == TokenKind::Comma && !is_place(&tokens[i + 1..k])
+                    || i + 1 < k && tokens[*i].kind == TokenKind::Comma && !is_place(&tokens[i + 1..k])
             })
             .map_or(0, |i| i + 1);
         let end = (k + 1..tokens.len())
