@@ -9,7 +9,9 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, worded};
+use super::said::{
+    Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, unasked, worded,
+};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -257,10 +259,10 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: apart(labelled_apart(super::parker::parker(
+            tokens: unasked(apart(unasked(labelled_apart(super::parker::parker(
                 &told_once(super::common::plain(&tokens(text))),
                 true,
-            ))),
+            ))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

@@ -77,7 +77,7 @@ const POLITE: &[&str] = &[
 ];
 
 /// Verbs of commands that nothing but a command begins with when an object follows.
-const ORDERS: &[&str] = &[
+pub(super) const ORDERS: &[&str] = &[
     "add",
     "remove",
     "delete",
@@ -288,7 +288,7 @@ fn is_determiner(t: &Token) -> bool {
 }
 
 /// "remove the bus", "take away two cars", "make half the cones barriers".
-fn orders_something(clause: &[Token]) -> bool {
+pub(super) fn orders_something(clause: &[Token]) -> bool {
     let Some(first) = clause.first() else {
         return false;
     };

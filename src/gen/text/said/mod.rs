@@ -6,6 +6,7 @@
 mod acts;
 mod apart;
 mod arrivals;
+mod asked;
 mod causing;
 mod colours;
 mod company;
@@ -76,6 +77,7 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
+pub use asked::unasked;
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
