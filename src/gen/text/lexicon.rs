@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use super::description::{Anchor, Count, Density, Environment, Road, TimeOfDay, Weather};
 use super::fnv::Fnv;
 use super::words::objects::{self, NOUNS, Noun};
-use super::words::{edits, phrases, places, style, verbs};
+use super::words::{edits, phrases, places, plain, style, verbs};
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 
 /// What a word or a run of words means.
@@ -112,6 +112,19 @@ fn words(list: &'static str) -> impl Iterator<Item = &'static str> {
 
 /// The plural by rule.
 pub fn plural(word: &str) -> String {
+    for (one, many) in [
+        ("woman", "women"),
+        ("sman", "smen"),
+        ("child", "children"),
+        ("person", "people"),
+    ] {
+        if let Some(stem) = word.strip_suffix(one) {
+            return format!("{stem}{many}");
+        }
+    }
+    if word == "man" {
+        return "men".into();
+    }
     let ends = |tails: &[&str]| tails.iter().any(|t| word.ends_with(t));
     if ends(&["s", "x", "z", "ch", "sh"]) {
         return format!("{word}es");
@@ -529,11 +542,13 @@ static SINGLES: LazyLock<Vec<(&'static str, Vec<char>)>> = LazyLock::new(|| {
     singles
 });
 
+static PLAIN: LazyLock<HashSet<&'static str>> = LazyLock::new(|| plain::PLAIN.split_whitespace().collect());
+
 /// The one word of five letters or more that differs from `word` by one letter left out, added, changed
 /// (from six letters on) or two neighbours exchanged; `None` if there is none or they differ in meaning.
 pub fn nearest(word: &str) -> Option<&'static str> {
     let letters: Vec<char> = word.chars().collect();
-    if letters.len() < 5 || letters.len() > 24 {
+    if letters.len() < 5 || letters.len() > 24 || PLAIN.contains(word) {
         return None;
     }
     let mut found: Option<&'static str> = None;
@@ -590,6 +605,7 @@ mod tests {
         assert_eq!(nearest("excavatr"), Some("excavator"));
         assert_eq!(nearest("motorcylce"), Some("motorcycle"));
         assert_eq!(nearest("zzzzzz"), None);
+        assert_eq!(nearest("better"), None, "no slip of beater");
         assert!(TABLE.len() > 2500, "{} entries", TABLE.len());
         assert!(
             TABLE.keys().all(|k| k.split(' ').count() <= LONGEST),

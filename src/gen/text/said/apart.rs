@@ -305,7 +305,7 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
 }
 
 /// A subject with its verb: "the bus should be yellow", "two pedestrians wait on the left".
-fn says(clause: &[Token]) -> bool {
+pub(super) fn says(clause: &[Token]) -> bool {
     let Some((a, b)) = first_noun(clause).filter(|n| n.0 < 5) else {
         return false;
     };

@@ -4,5 +4,6 @@ pub mod edits;
 pub mod objects;
 pub mod phrases;
 pub mod places;
+pub mod plain;
 pub mod style;
 pub mod verbs;
