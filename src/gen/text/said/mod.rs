@@ -26,6 +26,7 @@ pub(super) mod lists;
 mod newcomers;
 mod of_several;
 mod orders;
+mod owned;
 mod parting;
 mod passive;
 mod plainly;
@@ -181,7 +182,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = owned::plain(body.to_vec(), talk);
+    let out = tidy::plain(spoken::sides_named(out), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
