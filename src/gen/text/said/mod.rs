@@ -19,6 +19,7 @@ mod gapped;
 mod gaps;
 mod gifts;
 mod idioms;
+mod kept;
 mod left;
 mod likewise;
 mod limits;
@@ -50,6 +51,7 @@ mod sums;
 mod swap;
 mod tails;
 mod terse;
+mod testimony;
 #[cfg(test)]
 mod tests;
 mod tidy;
@@ -182,7 +184,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = owned::plain(body.to_vec(), talk);
+    let out = owned::plain(testimony::plain(body.to_vec()), talk);
+    let out = kept::plain(out, talk);
     let out = tidy::plain(spoken::sides_named(out), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);

@@ -1,0 +1,168 @@
+//! Findings and reports: "it has been established that the car came from the right", "at the material time the van had already
+//! moved into our lane". What is found holds; a past before the past is what was so then.
+
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
+use super::words::{is, leads, text, word};
+
+const THEN: &[&str] = &[
+    "at the material time",
+    "at the relevant time",
+    "at the relevant moment",
+    "at the decisive moment",
+    "at the critical moment",
+    "at the time in question",
+    "at the moment in question",
+    "at that time",
+    "at the time",
+    "at that moment",
+    "at this moment",
+    "at that instant",
+    "at that point",
+    "at that stage",
+    "by then",
+    "by that time",
+    "by this time",
+    "by that moment",
+    "by that point",
+    "at the time of the accident",
+    "at the time of the collision",
+    "at the time of the crash",
+    "at the time of the incident",
+    "at the moment of impact",
+    "at the time of impact",
+    "prior to the collision",
+    "prior to the accident",
+    "shortly before the accident",
+    "shortly before the collision",
+    "shortly before the crash",
+    "just before the accident",
+    "just before the crash",
+    "in the meantime",
+    "by the time of the accident",
+    "by the time of the collision",
+];
+const BE: &[&str] = &[
+    "is",
+    "was",
+    "has been",
+    "had been",
+    "has since been",
+    "has now been",
+    "has meanwhile been",
+    "has already been",
+    "could be",
+    "can be",
+    "has also been",
+    "was also",
+    "is also",
+    "was later",
+    "was then",
+];
+const FOUND: &[&str] = &[
+    "established",
+    "found",
+    "undisputed",
+    "not disputed",
+    "not in dispute",
+    "uncontested",
+    "proven",
+    "proved",
+    "shown",
+    "confirmed",
+    "agreed",
+    "determined",
+    "ascertained",
+    "noted",
+    "accepted",
+    "beyond doubt",
+    "beyond dispute",
+    "common ground",
+    "settled",
+    "recorded",
+    "documented",
+    "reported",
+    "stated",
+    "observed",
+    "verified",
+    "known",
+    "certain",
+    "clear",
+    "evident",
+    "a fact",
+    "discovered",
+    "concluded",
+    "decided",
+    "on record",
+];
+
+/// A sentence without such a frame, in a tense that is read.
+pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
+    let out = rewritten(&tokens, |i, _| found_that(&tokens, i).or_else(|| then(&tokens, i)));
+    pluperfect(&out)
+}
+
+fn opens(tokens: &[Token], i: usize) -> bool {
+    i == 0 || tokens[i - 1].kind != TokenKind::Word || is(tokens.get(i - 1), &["and", "but", "that", "as"])
+}
+
+/// "it has been established that": one past it.
+fn found_that(tokens: &[Token], i: usize) -> Option<usize> {
+    let it = opens(tokens, i) && is(tokens.get(i), &["it"]);
+    let be = it.then(|| leads(&tokens[i + 1..], BE))??;
+    let mut k = i + 1 + be;
+    while is(
+        tokens.get(k),
+        &["now", "also", "since", "further", "clearly", "firmly", "generally", "meanwhile", "later"],
+    ) {
+        k += 1;
+    }
+    k += leads(&tokens[k..], FOUND)?;
+    let more = is(tokens.get(k + 1), &["the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two"]);
+    (is(tokens.get(k), &["that"]) && more).then_some(k + 1)
+}
+
+/// "at the material time,": when, of what is told in the past.
+fn then(tokens: &[Token], i: usize) -> Option<usize> {
+    let had = tokens[i..]
+        .iter()
+        .take_while(|t| t.kind != TokenKind::Stop)
+        .any(|t| is(Some(t), &["had", "was", "were"]) || text(t).len() > 4 && text(t).ends_with("ed"));
+    let n = (had && (opens(tokens, i) || is(tokens.get(i - 1), &["had"]))).then(|| leads(&tokens[i..], THEN))??;
+    let end = i + n + usize::from(tokens.get(i + n).is_some_and(|t| t.kind == TokenKind::Comma));
+    tokens.get(end).is_some_and(|t| t.kind == TokenKind::Word).then_some(end)
+}
+
+/// "had already moved", "had by then moved": has moved.
+fn pluperfect(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        is(tokens.get(i), &["had"]).then_some(())?;
+        let mut k = i + 1;
+        while is(
+            tokens.get(k),
+            &["already", "just", "since", "previously", "meanwhile", "long", "now", "long", "all", "both"],
+        ) {
+            k += 1;
+        }
+        let verb = tokens.get(k)?;
+        let participle = text(verb).len() > 3 && text(verb).ends_with("ed")
+            || is(
+                Some(verb),
+                &[
+                    "gone", "left", "driven", "ridden", "come", "got", "gotten", "stood", "been", "run", "begun",
+                    "become", "pulled", "put", "swung", "cut", "made", "taken", "overtaken", "fallen", "sat", "set",
+                    "spun", "slid",
+                ],
+            );
+        // ("if we had turned it", "I had put it there" are wishes and words of the speaker)
+        let spoken = is(out.last(), &["i", "we", "you", "they", "if"])
+            || out.iter().any(|t| is(Some(t), &["if", "wish", "rather", "better"]));
+        if !participle || spoken || i == 0 || is(tokens.get(k + 1), &["to"]) && text(verb) == "been" {
+            return None;
+        }
+        let many = text(&tokens[i - 1]).ends_with('s') && !is(tokens.get(i - 1), &["bus"])
+            || is(tokens.get(i - 1), &["people", "men", "women", "children", "police"]);
+        out.push(word(if many { "have" } else { "has" }, &tokens[i]));
+        Some(k)
+    })
+}
