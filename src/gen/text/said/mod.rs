@@ -26,6 +26,7 @@ mod limits;
 pub(super) mod lists;
 mod newcomers;
 mod of_several;
+mod offhand;
 mod orders;
 mod owned;
 mod parting;
@@ -185,7 +186,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(testimony::plain(body.to_vec()), talk);
-    let out = kept::plain(out, talk);
+    let out = offhand::plain(kept::plain(out, talk), talk);
     let out = tidy::plain(spoken::sides_named(out), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);

@@ -1,0 +1,350 @@
+//! What is said by the way: "this panel works better without the cyclist", "the fleet has grown: six parked cars now", "those two
+//! cars? Gone.", "put that one behind me", "the truck goes out of service".
+
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
+use super::Talk;
+use super::lists::HELPERS;
+use super::some_of::{bare_np, removes};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed, word};
+
+/// Names of what is seen as a whole.
+const PICTURE: &[&str] = &[
+    "panel",
+    "frame",
+    "picture",
+    "image",
+    "shot",
+    "scene",
+    "view",
+    "drawing",
+    "sketch",
+    "still",
+    "illustration",
+    "diagram",
+    "slide",
+    "composition",
+    "lesson",
+    "exercise",
+    "example",
+    "setting",
+    "layout",
+    "situation",
+    "story",
+    "thing",
+    "plan",
+];
+
+/// A sentence in plainer words.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = works(tokens);
+    let out = in_picture(&out);
+    let out = out_of_picture(&out);
+    let out = that_one(&out);
+    let out = out_of_service(out, talk);
+    let out = in_the_way(out, talk);
+    let out = now_so_many(out, talk);
+    let out = was_not(out, talk);
+    no_and_just(out)
+}
+
+fn ends(t: Option<&Token>) -> bool {
+    t.is_none_or(|t| matches!(t.kind, TokenKind::Comma | TokenKind::Mark | TokenKind::Stop))
+}
+
+fn opens(tokens: &[Token], i: usize) -> bool {
+    i == 0
+        || ends(tokens.get(i - 1))
+        || is(tokens.get(i - 1), &["and", "but", "then", "so", "please", "now"])
+}
+
+/// "this panel works better without the cyclist", "it would look best with a bus behind me": with or without it.
+fn works(tokens: Vec<Token>) -> Vec<Token> {
+    const VERBS: &[&str] = &[
+        "works", "work", "reads", "read", "looks", "look", "plays", "play", "functions", "function", "goes",
+        "is", "be", "feels", "feel", "comes across", "come across", "does", "do",
+    ];
+    const HOW: &[&str] = &[
+        "better", "best", "well", "fine", "nicer", "cleaner", "clearer", "simpler", "stronger", "nicely",
+        "perfectly", "good", "great", "right",
+    ];
+    let it = usize::from(is(
+        tokens.first(),
+        &["it", "this", "that", "all", "everything"],
+    ));
+    let named = is(tokens.first(), &["the", "this", "that", "our", "my"]) && is(tokens.get(1), PICTURE);
+    let mut k = if named { 2 } else { it };
+    if k == 0 {
+        return tokens;
+    }
+    while is(
+        tokens.get(k),
+        &["would", "will", "should", "could", "might", "may", "also", "really", "always", "just", "certainly"],
+    ) {
+        k += 1;
+    }
+    let Some(n) = leads(&tokens[k..], VERBS) else {
+        return tokens;
+    };
+    k += n;
+    while is(tokens.get(k), &["even", "much", "far", "a", "lot", "bit", "just", "as", "so", "quite"]) {
+        k += 1;
+    }
+    let Some(n) = leads(&tokens[k..], HOW) else {
+        return tokens;
+    };
+    k += n;
+    k += usize::from(ends(tokens.get(k)) && k < tokens.len());
+    match tokens.get(k).map(text) {
+        Some("without") => led("remove", &tokens[k], &[&tokens[k + 1..]]),
+        Some("with")
+            if tokens.get(k + 1).is_some_and(|t| {
+                number(t).is_some() || is(Some(t), &["a", "an", "another", "some", "more"])
+            }) =>
+        {
+            led("add", &tokens[k], &[&tokens[k + 1..]])
+        }
+        Some("if" | "when" | "once") => tokens[k + 1..].to_vec(),
+        _ => tokens,
+    }
+}
+
+/// "no taxi in this panel": in the scene.
+fn in_picture(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let seen = is(tokens.get(i), &["in", "from", "on"])
+            && is(tokens.get(i + 1), &["this", "that"])
+            && is(tokens.get(i + 2), PICTURE)
+            && !is(tokens.get(i + 2), &["thing", "plan"]);
+        (seen && (ends(tokens.get(i + 3)) || is(tokens.get(i + 3), &["and", "any"])) && has_noun(out))
+            .then_some(i + 3)
+    })
+}
+
+/// "has walked out of the frame", "drives out of the picture": it is gone.
+fn out_of_picture(tokens: &[Token]) -> Vec<Token> {
+    const GOES: &[&str] = &[
+        "walked", "driven", "gone", "ridden", "moved", "stepped", "run", "rolled", "strolled", "wandered",
+        "cycled", "pulled", "got", "gotten", "jogged", "disappeared", "passed",
+    ];
+    const GOING: &[&str] = &[
+        "walks", "drives", "goes", "rides", "moves", "steps", "runs", "rolls", "strolls", "wanders", "cycles",
+        "pulls", "walk", "drive", "go", "ride", "move", "step", "roll", "stroll", "wander", "cycle", "pull",
+        "drove", "went", "rode", "ran", "walked", "rolled", "moved", "stepped", "jogs", "jog", "disappears",
+        "disappear",
+    ];
+    rewritten(tokens, |i, out| {
+        let n = leads(&tokens[i + 1..], &["out of", "off", "from"]).filter(|_| i > 0)?;
+        let the = i + 1 + n;
+        let seen = is(tokens.get(the), &["the", "this", "our", "my"])
+            && is(
+                tokens.get(the + 1),
+                &["frame", "picture", "image", "shot", "scene", "view", "panel", "screen"],
+            );
+        let over = is(tokens.get(i), GOES) && is(out.last(), &["has", "have", "had", "already", "just", "since"]);
+        if !seen || !(over || is(tokens.get(i), GOING)) {
+            return None;
+        }
+        // ("move the bus out of the picture", "let it drive out of the frame" are orders)
+        let orders = opens(tokens, i) || is(out.last(), &["to"]);
+        if orders {
+            return None;
+        }
+        out.push(word(if over { "gone" } else { "leaves" }, &tokens[i]));
+        Some(the + 2)
+    })
+}
+
+/// "put that one 8 m behind me": it.
+fn that_one(tokens: &[Token]) -> Vec<Token> {
+    const VERBS: &[&str] = &[
+        "put", "place", "move", "bring", "set", "have", "let", "turn", "make", "paint", "remove", "delete",
+        "take", "shift", "park", "send", "drive", "erase", "rotate", "push", "pull",
+    ];
+    rewritten(tokens, |i, out| {
+        let n = leads(&tokens[i..], &["that one", "this one", "the new one", "that new one", "this new one"])?;
+        let new = n == 3;
+        let after = is(out.last(), VERBS);
+        let subject = opens(tokens, i)
+            && tokens.get(i + n).is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
+        // ("the new one" of a sentence that names others is told by what it says)
+        (after && i > 2 || subject && new && i > 2).then(|| {
+            out.push(word("it", &tokens[i]));
+            i + n
+        })
+    })
+}
+
+/// "take the bus out of service": it goes.
+fn out_of_service(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const OUT: &[&str] = &[
+        "out of service",
+        "out of action",
+        "out of commission",
+        "out of operation",
+        "out of circulation",
+        "out of traffic",
+        "out of play",
+        "out of the equation",
+        "out of use",
+        "off duty",
+        "off the streets",
+    ];
+    rewritten(&tokens, |i, out| {
+        let takes = opens(&tokens, i) && is(tokens.get(i), &["take", "put", "pull"]);
+        let (_, b) = takes.then(|| first_noun(&tokens[i + 1..]))?.filter(|x| x.0 < 5)?;
+        let from = i + 1 + b;
+        // (where it is may stand between)
+        let at = (from..tokens.len().min(from + 8)).find(|k| leads(&tokens[*k..], OUT).is_some())?;
+        let np = &tokens[i + 1..at];
+        let whole = !np.iter().any(|t| ends(Some(t)) || is(Some(t), &["and"])) && talk.fits(np) > 0;
+        let n = leads(&tokens[at..], OUT).filter(|_| whole)?;
+        out.extend(led("remove", &tokens[i], &[np]));
+        Some(at + n)
+    })
+}
+
+/// "with all those cones in the way, clear them out": they go.
+fn in_the_way(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = find(
+        &tokens,
+        &["in the way", "in my way", "in our way", "blocking the way", "in the road", "standing around"],
+    );
+    let Some((i, n)) = found else { return tokens };
+    let Some(from) = (0..i).rev().find(|k| {
+        is(tokens.get(*k), &["with", "of", "because"]) && is(tokens.get(k + 1), &["all", "the", "those", "these", "that"])
+    }) else {
+        return tokens;
+    };
+    let np = &tokens[from + 1..i];
+    let mut k = i + n;
+    while tokens.get(k).is_some_and(|t| ends(Some(t))) || is(tokens.get(k), &["so", "please", "and", "just", "now"]) {
+        k += 1;
+    }
+    let orders = removes(tokens.get(k)) || is(tokens.get(k), &["get"]);
+    let mut end = k + 1;
+    while is(tokens.get(end), &["rid", "of"]) {
+        end += 1;
+    }
+    let them = orders && is(tokens.get(end), &["them", "it", "him", "her"]);
+    end += 1;
+    while is(tokens.get(end), &["out", "away", "off", "please", "all", "up", "now"]) {
+        end += 1;
+    }
+    if !them || end < tokens.len() || !first_noun(np).is_some_and(|x| x.1 == np.len()) || talk.fits(np) == 0 {
+        return tokens;
+    }
+    led("remove", &tokens[0], &[np])
+}
+
+/// "our fleet has grown: six parked cars now", "five pedestrians now": so many of them.
+fn now_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let from = tokens
+        .iter()
+        .rposition(|t| text(t) == ":" || matches!(t.kind, TokenKind::Comma))
+        .map_or(0, |k| k + 1);
+    let body = trimmed(&tokens[from..]);
+    let late = is(tokens.last(), &["now"]) || is(tokens.get(from), &["now"]);
+    let Some(many) = body.first().filter(|t| late && number(t).is_some() && !is(Some(t), &["a", "an"])) else {
+        return tokens;
+    };
+    let more = body.iter().any(|t| is(Some(t), &["more", "other", "of", "fewer", "less", "another", "and"]));
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let place = &body[b..];
+    let plain = place.is_empty() || is_place(place) && !has_noun(place);
+    let verb = body.iter().any(|t| HELPERS.contains(&text(t)));
+    let remark = &tokens[..from];
+    if more || verb || !plain || talk.fits(&body[1..]) == 0 || removes(remark.first()) || has_noun(remark) && !grows(remark) {
+        return tokens;
+    }
+    led("keep exactly", many, &[body])
+}
+
+/// "our car fleet has grown:": a remark on how many there are.
+fn grows(remark: &[Token]) -> bool {
+    remark.iter().any(|t| {
+        is(
+            Some(t),
+            &[
+                "grown", "shrunk", "grew", "shrank", "increased", "decreased", "expanded", "changed", "grows",
+                "shrinks", "bigger", "smaller", "larger", "doubled", "halved",
+            ],
+        )
+    })
+}
+
+/// "what was driving in the left lane were two trucks, not two cars": the cars there are trucks.
+fn was_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const BE: &[&str] = &["was", "were", "is", "are", "had been", "has been", "have been", "in fact was", "in fact were", "really was", "really were", "actually was", "actually were"];
+    let Some(from) = (0..tokens.len().min(6)).find(|k| is(tokens.get(*k), &["what", "whatever", "who"])) else {
+        return tokens;
+    };
+    let Some(not) = (from + 4..tokens.len()).rev().find(|k| is(tokens.get(*k), &["not"])) else {
+        return tokens;
+    };
+    let old = &tokens[not + 1..];
+    let fresh = |np: &[Token]| {
+        np.first()
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]))
+            && first_noun(np).is_some_and(|x| x.0 < 4 && x.1 == np.len())
+    };
+    let Some((at, n)) = (from + 3..not).rev().find_map(|k| {
+        let n = leads(&tokens[k..], BE)?;
+        fresh(trimmed(&tokens[k + n..not])).then_some((k, n))
+    }) else {
+        return tokens;
+    };
+    let new = trimmed(&tokens[at + n..not]);
+    let Some(place) = (from + 2..at.min(from + 5)).find(|k| is_place(&tokens[*k..at])) else {
+        return tokens;
+    };
+    let place = &tokens[place..at];
+    if !fresh(old) || has_noun(place) {
+        return tokens;
+    }
+    let old: Vec<Token> = bare_np(old).into_iter().filter(|t| !is(Some(t), &["a", "an"])).collect();
+    let there = [&old[..], place].concat();
+    let np = if talk.fits(&there) > 0 { there } else { old };
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    led(
+        "replace the",
+        &tokens[from],
+        &[&np, &led("with", &tokens[not], &[new])],
+    )
+}
+
+/// "no taxi and no barrier here, just me and that truck": what stays needs no word.
+fn no_and_just(tokens: Vec<Token>) -> Vec<Token> {
+    if !is(tokens.first(), &["no"]) {
+        return tokens;
+    }
+    let last = (2..tokens.len()).rev().find(|i| {
+        tokens[*i].kind == TokenKind::Comma && is(tokens.get(i + 1), &["just", "only", "nothing", "nobody"])
+    });
+    let Some(i) = last else { return tokens };
+    let rest = &tokens[i + 1..];
+    let known = rest
+        .iter()
+        .any(|t| is(Some(t), &["the", "that", "those", "my", "our", "this", "me", "us"]));
+    let fresh = rest.iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "some"]));
+    if !known || fresh || rest.iter().any(|t| HELPERS.contains(&text(t))) {
+        return tokens;
+    }
+    // "no taxi and no barrier": one denial for both
+    let here = trimmed(&tokens[..i]);
+    let here = match here.last() {
+        Some(t) if is(Some(t), &["here", "there"]) => &here[..here.len() - 1],
+        _ => here,
+    };
+    let denied: Vec<Token> = rewritten(here, |k, out| {
+        (is(here.get(k), &["no"]) && k > 0 && is(out.last(), &["and", "or"])).then(|| {
+            out.push(word("all", &here[k]));
+            k + 1
+        })
+    });
+    led("remove all", &tokens[0], &[&denied[1..]])
+}
