@@ -9,7 +9,9 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, worded};
+use super::said::{
+    Left, Piece, Room, Talk, apart, chosen, except, pointed_back, room_of, said, told_once, worded,
+};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -255,7 +257,7 @@ impl<'t> Reader<'t> {
         Self {
             text,
             tokens: apart(labelled_apart(super::parker::parker(
-                &told_once(super::common::plain(&tokens(text))),
+                &told_once(pointed_back(super::common::plain(&tokens(text)), text)),
                 true,
             ))),
             at: 0,

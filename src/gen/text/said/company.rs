@@ -11,7 +11,7 @@ use crate::scene::Class;
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = joining(tokens, talk);
+    let out = joining(joining_there(tokens, talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
     let out = boards(out, talk);
@@ -118,6 +118,46 @@ fn joining(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .collect();
     let add = led("add", &tokens[from], &[&lead, &more, &rest]);
     [&tokens[..from], &add, &tokens[end..]].concat()
+}
+
+/// "let a man join the children on the zebra": a man on the zebra.
+fn joining_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let verb = leads(
+            &tokens[i..],
+            &[
+                "join", "joins", "have joined", "has joined", "should join", "joined", "will join", "joining",
+                "are joining", "is joining", "shall join", "is to join", "has just joined",
+            ],
+        )?;
+        let whom = i + verb;
+        let pronoun = is(tokens.get(whom), &["them", "him", "her", "it"]);
+        let place = if pronoun {
+            whom + 1
+        } else {
+            is(tokens.get(whom), &["the", "these", "those", "both", "that", "our", "my"]).then_some(())?;
+            let (_, b) = first_noun(&tokens[whom..]).filter(|x| x.0 < 5)?;
+            (talk.fits(&tokens[whom..whom + b]) > 0).then_some(whom + b)?
+        };
+        let to = place + tokens[place..].iter().position(mark).unwrap_or(tokens.len() - place);
+        let there = is(tokens.get(place), &["on", "in", "at"])
+            && !has_noun(&tokens[place..to])
+            && !tokens[place..to].iter().any(|t| is(Some(t), &["and"]));
+        there.then_some((i, place))
+    });
+    let Some((i, place)) = found else { return tokens };
+    let from = tokens[..i]
+        .iter()
+        .rposition(|t| mark(t) || is(Some(t), &["and", "but"]))
+        .map_or(0, |k| k + 1);
+    let let_ = usize::from(is(tokens.get(from), &["let", "have", "make", "get"]));
+    let np = &tokens[from + let_..i];
+    let np = if is(np.last(), &["to"]) { &np[..np.len() - 1] } else { np };
+    let fresh = is(np.first(), &["a", "an", "another"]) || np.first().is_some_and(|t| number(t).is_some());
+    if !fresh || first_noun(np).is_none_or(|x| x.0 > 3 || x.1 != np.len()) {
+        return tokens;
+    }
+    [&tokens[..from], &led("add", &tokens[from], &[np]), &tokens[place..]].concat()
 }
 
 /// "put three more pedestrians with the two": three more of them; "the officer joined by two more": two more officers.

@@ -66,7 +66,7 @@ lists! {
     /// What may follow one of those.
     AFTERWARDS = "from|now|already|please|too|as|again|completely|entirely|altogether|for|by|in the meantime|and|so|the scene|the road|\
         the street|the area|the place|the picture|the image|the site|us|me|home|work|instead|then|long|because|since|after|\
-        anyway|off|at|with|for good";
+        anyway|off|at|with|for good|today|tonight|this|until|till|before|once|at last|finally|meanwhile";
     /// Words of `acts.rs`.
     BECOMES = "turn out to be|proves to be|prove to be|proved to be|given way to|made way for|made room for|given place to|gives way to|give way to|gave way to|has given way to|makes way for|make way for|made way for|become|becomes|became|turn into|turns into|turned into|change into|changes into|changed into|changed to|change to|\
         changes to|transformed into|transforms into|transform into|morphs into|morphed into|converted into|converted to|\

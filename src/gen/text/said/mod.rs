@@ -32,6 +32,7 @@ mod owned;
 mod parting;
 mod passive;
 mod plainly;
+mod pointers;
 mod predicate;
 mod presence;
 mod question;
@@ -85,6 +86,7 @@ use forms::{
 };
 use frame::unwrapped;
 pub use left::Left;
+pub use pointers::plain as pointed_back;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
@@ -458,7 +460,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(found);
     }
-    if let Some((i, n)) = in_place(inner)
+    // ("the white car stays where it is" goes nowhere)
+    if let Some((i, n)) = in_place(inner).filter(|x| !inner[..x.0].iter().any(|t| untouched::stands_still(t)))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);

@@ -45,6 +45,9 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = in_the_way(out, talk);
     let out = now_so_many(out, talk);
     let out = was_not(out, talk);
+    let out = company(always_some(out), talk);
+    let out = oncoming(so_that_it(out));
+    let out = remark_and_where(us_both(out), talk);
     no_and_just(out)
 }
 
@@ -347,4 +350,155 @@ fn no_and_just(tokens: Vec<Token>) -> Vec<Token> {
         })
     });
     led("remove all", &tokens[0], &[&denied[1..]])
+}
+
+/// "there is always some white van around here, so give me one in the oncoming lane": a white van there.
+fn always_some(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "there is always", "there is usually", "there is often", "there is mostly", "theres always",
+            "there was always", "you always see", "you often see", "we always have", "i always meet",
+            "i always see", "one always sees", "we usually have", "there are always",
+        ],
+    ) else {
+        return tokens;
+    };
+    let np = &tokens[n..];
+    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 5 && is(np.first(), &["a", "an", "some", "one"])) else {
+        return tokens;
+    };
+    let Some(one) = (n + b..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["one"])
+            && leads(&tokens[k - 1..], &["add one", "put one", "place one", "me one", "us one", "have one", "show one"]).is_some()
+            && tokens.get(k + 1).is_some_and(|t| !is(Some(t), &["of", "more"]))
+    }) else {
+        return tokens;
+    };
+    if has_noun(&tokens[n + b..one]) || has_noun(&tokens[one + 1..]) {
+        return tokens;
+    }
+    led("add a", &tokens[0], &[&np[1..b], &tokens[one + 1..]])
+}
+
+/// "the cyclist gets company from two more riders, also behind me": two more riders, behind me.
+fn company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "gets company from", "get company from", "gets company by", "has company from", "got company from",
+            "has got company from", "gets company in the form of", "has company in the form of", "is given company by",
+            "should get company from", "gets the company of", "has the company of", "enjoys the company of",
+        ],
+    ) else {
+        return tokens;
+    };
+    let whom = &tokens[..i];
+    let what = &tokens[i + n..];
+    let fresh = what
+        .first()
+        .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "some"]));
+    let Some((_, b)) = first_noun(what).filter(|x| fresh && x.0 < 5) else {
+        return tokens;
+    };
+    if talk.fits(whom) == 0 {
+        return tokens;
+    }
+    let mut place = trimmed(&what[b..]);
+    while is(place.first(), &["also", "too", "both", "all", "likewise"]) {
+        place = trimmed(&place[1..]);
+    }
+    if place.is_empty() {
+        return led("add", &tokens[0], &[what, &led("next to", &tokens[i], &[whom])]);
+    }
+    if !is_place(place) {
+        return tokens;
+    }
+    led("add", &tokens[0], &[&what[..b], place])
+}
+
+/// "turn the black car round, so that it approaches us in the oncoming lane": where it ends counts.
+fn so_that_it(tokens: Vec<Token>) -> Vec<Token> {
+    if !is(tokens.first(), &["turn", "rotate", "spin", "swing", "let", "have"]) {
+        return tokens;
+    }
+    let Some((i, n)) = find(&tokens, &["so that it", "so it", "such that it", "so that they", "so they"]) else {
+        return tokens;
+    };
+    let comes = leads(
+        &tokens[i + n..],
+        &[
+            "approaches us", "approaches me", "comes towards us", "comes towards me", "comes toward us",
+            "comes toward me", "comes at us", "comes at me", "drives towards us", "drives towards me",
+            "is coming towards us", "is coming towards me", "is approaching us", "is approaching me",
+            "approach us", "approach me", "come towards us", "come towards me", "drive towards us",
+            "drive towards me", "rides towards us", "rides towards me", "heads towards us", "heads towards me",
+        ],
+    );
+    let Some(comes) = comes else { return tokens };
+    let us = usize::from(is(tokens.get(1), &["us"]) && is(tokens.first(), &["let"]));
+    let from = 1 + 2 * us;
+    let Some((_, b)) = tokens.get(from..i).and_then(first_noun).filter(|x| x.0 < 5) else {
+        return tokens;
+    };
+    let place = &tokens[i + n + comes..];
+    let lane = trimmed(place).is_empty() || is_place(place);
+    if !lane {
+        return tokens;
+    }
+    let np = &tokens[from..from + b];
+    if trimmed(place).is_empty() {
+        return [np, &led("should come towards us", &tokens[i], &[])].concat();
+    }
+    [np, &led("should be", &tokens[i], &[place])].concat()
+}
+
+/// "make the black car an oncoming car": it should come towards us.
+fn oncoming(tokens: Vec<Token>) -> Vec<Token> {
+    let made = is(tokens.first(), &["make", "turn"]) && is(tokens.get(1), &["the", "that", "my"]);
+    let Some((a, b)) = first_noun(&tokens[1.min(tokens.len())..]).filter(|x| made && x.0 < 4) else {
+        return tokens;
+    };
+    let mut k = 1 + b;
+    k += usize::from(is(tokens.get(k), &["into"]));
+    let way = is(tokens.get(k), &["a", "an"]) && is(tokens.get(k + 1), &["oncoming", "approaching"]);
+    let kind = tokens.get(k + 2);
+    let same = kind.is_some_and(|t| text(t) == text(&tokens[a + 1]) || is(Some(t), &["vehicle", "one"]));
+    if !way || !same || tokens.len() > k + 3 {
+        return tokens;
+    }
+    [&tokens[1..1 + b], &led("should come towards us", &tokens[k], &[])].concat()
+}
+
+/// "has passed us both, me and the motorbike": me and the motorbike.
+fn us_both(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, _| {
+        let n = leads(&tokens[i..], &["us both", "both of us", "the two of us"])?;
+        let comma = tokens.get(i + n).is_some_and(|t| ends(Some(t)));
+        (comma && is(tokens.get(i + n + 1), &["me", "us"]) && is(tokens.get(i + n + 2), &["and"])).then_some(i + n + 1)
+    })
+}
+
+/// "the white car was tailgating him: 7 metres behind me": what it did leads up to where it is.
+fn remark_and_where(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(colon) = tokens.iter().position(|t| text(t) == ":") else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "that", "my", "both"]))
+    else {
+        return tokens;
+    };
+    let said = tokens.get(b..colon).unwrap_or(&[]);
+    let place = trimmed(&tokens[colon + 1..]);
+    let metres = place.first().is_some_and(|t| number(t).is_some())
+        && place.get(1..).is_some_and(|p| super::words::unit_at(p).is_some())
+        && !has_noun(place);
+    let told = said.first().is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false))
+        && !has_noun(said)
+        && !said.iter().any(|t| is(Some(t), &["not", "no"]))
+        && !(0..said.len()).any(|k| is_place(&said[k..]));
+    if !metres || !told || talk.fits(&tokens[..b]) == 0 {
+        return tokens;
+    }
+    [&tokens[..b], &led("should be", &tokens[colon], &[place])].concat()
 }

@@ -217,6 +217,7 @@ fn gone_off(main: &[Token]) -> bool {
                         Some(t),
                         &[
                             "and", "already", "now", "again", "for", "by", "long", "with", "because", "where",
+                            "today", "tonight", "this", "until", "till", "before", "once", "so", "after", "early",
                         ],
                     )
             })

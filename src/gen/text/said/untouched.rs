@@ -191,29 +191,17 @@ fn neither(tokens: &[Token]) -> Option<usize> {
     (find(&tokens[..i], &["nor"]).is_some() && edge(tokens.get(end))).then_some(end)
 }
 
-/// "the white one stays where it is": where it was is no place to go to.
-fn one_stays(tokens: &[Token]) -> Option<usize> {
-    let from = usize::from(is(tokens.first(), &["and", "but", "while"]));
-    is(tokens.get(from), &["the", "that", "this"]).then_some(())?;
-    let one = (from + 1..from + 4).find(|k| is(tokens.get(*k), &["one", "ones", "other", "others"]))?;
-    let named = super::words::first_noun(&tokens[from..one]).is_some();
-    let mut k = one + 1;
-    let mut stays = false;
-    while is(tokens.get(k), BE) {
-        stays |= is(tokens.get(k), &["stays", "stay", "remains", "remain", "left", "kept"]);
-        k += 1;
-    }
-    k += usize::from(is(tokens.get(k), &["right", "precisely"]));
-    let so = leads(&tokens[k..], STAYS).or_else(|| {
-        leads(&tokens[k..], &["where it was", "where they were", "where he is", "where she is", "there", "here"])
-    });
-    let end = k + so.unwrap_or(0);
-    (stays && !named && edge(tokens.get(end))).then_some(end)
+/// "stays", "remains": what follows says only that nothing changes.
+pub fn stands_still(t: &Token) -> bool {
+    is(
+        Some(t),
+        &["stays", "stay", "stayed", "remains", "remain", "remained", "staying", "remaining"],
+    )
 }
 
 /// How many tokens of such a phrase begin here.
 fn phrase(tokens: &[Token]) -> Option<usize> {
-    if let Some(n) = neither(tokens).or_else(|| one_stays(tokens)) {
+    if let Some(n) = neither(tokens) {
         return Some(n);
     }
     let mut n = 0;
