@@ -37,7 +37,7 @@ const BETWEEN: &[&str] = &[
 /// A sentence that says how many of a group stay.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((close, end)) = others_go(&tokens) else {
-        return tokens;
+        return so_leave(tokens, talk);
     };
     let head = trimmed(&tokens[..close]);
     match group_first(head).or_else(|| number_first(head)) {
@@ -78,6 +78,43 @@ fn others_go(tokens: &[Token]) -> Option<(usize, usize)> {
             .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and"]));
         (goes && closed).then_some((i, k))
     })
+}
+
+/// "two of the parked cars are away, so leave only three": three of them.
+fn so_leave(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let few = tokens.first().is_some_and(|t| number(t).is_some()) && is(tokens.get(1), &["of"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| few && x.0 < 7) else {
+        return tokens;
+    };
+    let np = bare_np(&tokens[2..b]);
+    let found = (b + 1..tokens.len()).find_map(|i| {
+        let link = tokens[i].kind == TokenKind::Comma || is(tokens.get(i), &["so", "and", ":"]);
+        let mut k = i + 1;
+        while is(tokens.get(k), &["so", "and", "please", "therefore", "just"]) {
+            k += 1;
+        }
+        let keeps = link && is(tokens.get(k), KEEPS);
+        k += 1 + usize::from(is(tokens.get(k + 1), &["only", "just", "exactly"]));
+        let many = tokens.get(k).filter(|t| keeps && number(t).is_some())?;
+        let rest = &tokens[k + 1..];
+        let closed = rest
+            .iter()
+            .all(|t| is(Some(t), &["of", "them", "there", "please", "in", "place", "here"]));
+        closed.then(|| many.clone())
+    });
+    // (those of which all these are: "parked" may not be said of each of them)
+    let a = first_noun(&np).map_or(0, |x| x.0);
+    let sum = |many: &Token| number(&tokens[0]).unwrap_or(0) + number(many).unwrap_or(0);
+    let np = match &found {
+        Some(many) if talk.fits(&np) as i64 != sum(many) && talk.fits(&np[a..]) as i64 == sum(many) => {
+            np[a..].to_vec()
+        }
+        _ => np,
+    };
+    match found.filter(|many| talk.fits(&np) as i64 >= number(many).unwrap_or(0)) {
+        Some(many) => led("keep exactly", &tokens[0], &[&[many], &np]),
+        None => tokens,
+    }
 }
 
 type Kept = (Token, Vec<Token>, Vec<Token>);

@@ -128,6 +128,18 @@ impl Talk<'_> {
         fitting(self.map, self.boxes, m, &mentions).len()
     }
 
+    /// The boxes of the scene that fit these words.
+    pub fn boxes_of(&self, np: &[Token]) -> Vec<SceneBox> {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let Some(m) = mentions.iter().find(|m| !m.is_anchor && !m.gone) else {
+            return Vec::new();
+        };
+        fitting(self.map, self.boxes, m, &mentions)
+            .iter()
+            .filter_map(|id| self.boxes.get(id).copied())
+            .collect()
+    }
+
     /// True if no box can be what is named with an article or a number.
     pub fn has_none(&self, np: &[Token]) -> bool {
         let (_, mentions) = parse(self.text, &tag(np));
@@ -187,7 +199,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = owned::plain(testimony::plain(body.to_vec()), talk);
+    let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = offhand::plain(kept::plain(out, talk), talk);
     let out = tidy::plain(spoken::sides_named(out), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);

@@ -47,7 +47,8 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = was_not(out, talk);
     let out = company(always_some(out), talk);
     let out = oncoming(so_that_it(out));
-    let out = remark_and_where(us_both(out), talk);
+    let out = remark_and_where(passed(us_both(out), talk), talk);
+    let out = ordinal_in_place(&waits_until(out));
     no_and_just(out)
 }
 
@@ -496,9 +497,121 @@ fn remark_and_where(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let told = said.first().is_some_and(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false))
         && !has_noun(said)
         && !said.iter().any(|t| is(Some(t), &["not", "no"]))
-        && !(0..said.len()).any(|k| is_place(&said[k..]));
+        && !(0..said.len()).any(|k| is_place(&said[k..]) && !text(&said[k]).ends_with("ing"));
     if !metres || !told || talk.fits(&tokens[..b]) == 0 {
         return tokens;
     }
     [&tokens[..b], &led("should be", &tokens[colon], &[place])].concat()
+}
+
+/// "has passed me and the car", "has passed the bus": it is ahead of the one that is farther on.
+fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        is(tokens.get(i), &["has", "have"]).then_some(())?;
+        let mut k = i + 1;
+        while is(tokens.get(k), &["just", "already", "now", "since", "both", "meanwhile"]) {
+            k += 1;
+        }
+        k += leads(&tokens[k..], &["passed", "overtaken", "gone past", "driven past", "ridden past", "got past"])?;
+        // (who passed is named: "we have passed the bus" tells of us)
+        has_noun(out).then_some(())?;
+        k += usize::from(is(tokens.get(k), &["both"]));
+        let me = is(tokens.get(k), &["me", "us"]);
+        let and = me && is(tokens.get(k + 1), &["and"]);
+        let np = tokens.get(if me { k + 2 } else { k }..).unwrap_or(&[]);
+        let named = is(np.first(), &["the", "that"]) && (and || !me);
+        let other = first_noun(np).filter(|x| named && x.0 < 4).map(|x| &np[..x.1]);
+        let end = match other {
+            Some(np) if and => k + 2 + np.len(),
+            Some(np) => k + np.len(),
+            None if me => k + 1,
+            None => return None,
+        };
+        if !ends(tokens.get(end)) && !is(tokens.get(end), &["and", "so"]) {
+            return None;
+        }
+        let beyond = other.filter(|np| {
+            let boxes = talk.boxes_of(np);
+            !me || !boxes.is_empty() && boxes.iter().all(|b| b.center_m.x > 0.0)
+        });
+        let at = &tokens[i];
+        match beyond {
+            Some(np) => out.extend(led("should be ahead of", at, &[np])),
+            None => out.extend(led("should be ahead of me", at, &[])),
+        }
+        Some(end)
+    })
+}
+
+/// "waits at the crossing until the children are across": for how long says nothing of where.
+fn waits_until(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(wait) = tokens
+        .iter()
+        .position(|t| is(Some(t), &["wait", "waits", "waiting", "stop", "stops", "stand", "stands", "hold", "holds", "stay", "stays"]))
+    else {
+        return tokens;
+    };
+    let Some(i) = (wait + 2..tokens.len()).find(|k| is(tokens.get(*k), &["until", "till"])) else {
+        return tokens;
+    };
+    let end = (i..tokens.len())
+        .find(|k| ends(tokens.get(*k)) || is(tokens.get(*k), &["and"]) && *k > i + 2)
+        .unwrap_or(tokens.len());
+    let clause = &tokens[i + 1..end];
+    // ("until it is behind us" is where it ends)
+    let other = has_noun(clause) || is(clause.first(), &["they", "everyone", "everybody", "nobody", "we"]);
+    let verb = clause
+        .iter()
+        .skip(1)
+        .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), true));
+    if !other || !verb || !(wait + 1..i).any(|k| is_place(&tokens[k..i])) {
+        return tokens;
+    }
+    [&tokens[..i], &tokens[end..]].concat()
+}
+
+/// "in its place a fourth barrier stands": a barrier.
+fn ordinal_in_place(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let nth = super::super::foremost::ordinal(text(&tokens[i])).is_some()
+            && is(out.last(), &["a", "an"])
+            && out.len() > 3
+            && leads(&out[out.len() - 4..], &["in its place", "in their place", "in its stead", "in their stead"]).is_some()
+            && first_noun(&tokens[i + 1..]).is_some_and(|x| x.0 < 3);
+        nth.then_some(i + 1)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::tokens::tokens;
+    use super::*;
+
+    #[test]
+    fn turns_of_speech() {
+        let said = |list: Vec<Token>| {
+            let list: Vec<String> = list.into_iter().map(|t| t.text).collect();
+            list.join(" ")
+        };
+        assert_eq!(
+            said(ordinal_in_place(&tokens("it is gone, and in its place a fourth barrier stands"))),
+            "it is gone , and in its place a barrier stands"
+        );
+        assert_eq!(
+            said(works(tokens("this panel works better without the cyclist"))),
+            "remove the cyclist"
+        );
+        assert_eq!(
+            said(waits_until(tokens("the bus waits at the crossing until the kids are across"))),
+            "the bus waits at the crossing"
+        );
+        assert_eq!(
+            said(no_and_just(tokens("no taxi and no barrier here, just me and that truck"))),
+            "remove all taxi and all barrier"
+        );
+        assert_eq!(
+            said(out_of_picture(&tokens("the man has walked out of the frame"))),
+            "the man has gone"
+        );
+    }
 }

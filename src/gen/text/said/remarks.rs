@@ -36,7 +36,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, LOOKS, "faces us");
     let out = replaced(&out, "please to", "please");
     let out = gone_on(put_there(out));
-    let out = as_before(reported(out));
+    let out = as_before(out);
     let out = replaced(&out, "the two on foot|both on foot", "the two pedestrians");
     let out = replaced(&out, "the three on foot", "the three pedestrians");
     let out = replaced(&out, "the one on foot", "the pedestrian");
@@ -53,7 +53,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 /// "a colleague told me the taxi is a van": what was told.
-fn reported(tokens: Vec<Token>) -> Vec<Token> {
+pub(super) fn reported(tokens: Vec<Token>) -> Vec<Token> {
     const TELLS: &[&str] = &[
         "told me that",
         "told me",
