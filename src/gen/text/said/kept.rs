@@ -1,6 +1,7 @@
 //! Some of a group are kept and the others go, said as two: "of the three pedestrians keep one on the right and erase the other
 //! two". Read one after the other the second would take what was never spoken of.
 
+use super::super::lexicon::{Sense, look_up, plural};
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::some_of::{bare_np, removes};
@@ -156,10 +157,28 @@ fn number_first(head: &[Token]) -> Option<Kept> {
     let only = usize::from(is(head.get(1), &["only", "just"]));
     let many = head.get(1 + only).filter(|t| number(t).is_some())?.clone();
     let of = 2 + only;
+    // "spare one pedestrian"
+    if let Some((a, b)) = head.get(of..).and_then(first_noun).filter(|x| x.0 < 3)
+        && !is(head.get(of), &["of", "more"])
+    {
+        let np = one_of_many(&head[of..of + a], &head[of + a..of + b]);
+        return placed(&head[of + b..]).map(|place| (many, np, place));
+    }
     let group = is(head.get(of), &["of"]) && is(head.get(of + 1), &["the", "these", "those", "my", "our"]);
     let np = group.then(|| &head[of + 1..])?;
     let (_, b) = first_noun(np).filter(|x| x.0 < 5)?;
     placed(&np[b..]).map(|place| (many, bare_np(&np[..b]), place))
+}
+
+/// "parked car": in the plural, as a group is named.
+fn one_of_many(lead: &[Token], noun: &[Token]) -> Vec<Token> {
+    let mut out = [lead, noun].concat();
+    if let Some(last) = out.last_mut()
+        && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
+    {
+        last.text = plural(text(last));
+    }
+    out
 }
 
 /// Nothing or a place: what else is said is not read here.

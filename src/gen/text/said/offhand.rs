@@ -46,9 +46,9 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = now_so_many(out, talk);
     let out = was_not(out, talk);
     let out = company(always_some(out), talk);
-    let out = oncoming(so_that_it(out));
+    let out = oncoming(so_that_it(is_oncoming(&only_that(out))));
     let out = remark_and_where(passed(us_both(out), talk), talk);
-    let out = ordinal_in_place(&waits_until(out));
+    let out = another_in_place(&waits_until(out));
     no_and_just(out)
 }
 
@@ -140,11 +140,13 @@ fn out_of_picture(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
         let n = leads(&tokens[i + 1..], &["out of", "off", "from"]).filter(|_| i > 0)?;
         let the = i + 1 + n;
-        let seen = is(tokens.get(the), &["the", "this", "our", "my"])
+        let end = the + usize::from(is(tokens.get(the), &["the", "this", "our", "my"]));
+        let seen = end > the
             && is(
-                tokens.get(the + 1),
-                &["frame", "picture", "image", "shot", "scene", "view", "panel", "screen"],
-            );
+                tokens.get(end),
+                &["frame", "picture", "image", "shot", "scene", "view", "panel", "screen", "sight"],
+            )
+            || n == 2 && is(tokens.get(end), &["view", "sight", "shot", "frame"]);
         let over = is(tokens.get(i), GOES) && is(out.last(), &["has", "have", "had", "already", "just", "since"]);
         if !seen || !(over || is(tokens.get(i), GOING)) {
             return None;
@@ -155,7 +157,7 @@ fn out_of_picture(tokens: &[Token]) -> Vec<Token> {
             return None;
         }
         out.push(word(if over { "gone" } else { "leaves" }, &tokens[i]));
-        Some(the + 2)
+        Some(end + 1)
     })
 }
 
@@ -389,7 +391,9 @@ fn company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         &[
             "gets company from", "get company from", "gets company by", "has company from", "got company from",
             "has got company from", "gets company in the form of", "has company in the form of", "is given company by",
-            "should get company from", "gets the company of", "has the company of", "enjoys the company of",
+            "should get company from", "gets company :", "has company :", "has company now :", "gets company now :",
+            "has got company :", "has company again :", "gets company ,", "is no longer alone :", "has company ,",
+            "has company now ,", "is not alone any more :", "gets the company of", "has the company of", "enjoys the company of",
         ],
     ) else {
         return tokens;
@@ -415,7 +419,14 @@ fn company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !is_place(place) {
         return tokens;
     }
-    led("add", &tokens[0], &[&what[..b], place])
+    // ("right behind it": behind whom it joins)
+    let place = rewritten(place, |k, out| {
+        is(place.get(k), &["it", "him", "her", "them"]).then(|| {
+            out.extend_from_slice(whom);
+            k + 1
+        })
+    });
+    led("add", &tokens[0], &[&what[..b], &place])
 }
 
 /// "turn the black car round, so that it approaches us in the oncoming lane": where it ends counts.
@@ -469,6 +480,53 @@ fn oncoming(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     [&tokens[1..1 + b], &led("should come towards us", &tokens[k], &[])].concat()
+}
+
+/// "let the bus be oncoming traffic", "the bus is oncoming now": it comes towards us.
+fn is_oncoming(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let n = leads(
+            &tokens[i..],
+            &[
+                "be oncoming traffic", "be oncoming", "is oncoming", "is now oncoming", "is oncoming now",
+                "becomes oncoming traffic", "become oncoming traffic", "is now oncoming traffic", "are oncoming now",
+                "are now oncoming", "should be oncoming", "becomes oncoming",
+            ],
+        )?;
+        let clause = out.iter().rposition(|t| t.kind != TokenKind::Word).map_or(0, |k| k + 1);
+        let (_, b) = first_noun(&out[clause..])?;
+        let known = out[clause..].iter().any(|t| is(Some(t), &["the", "that", "my", "both"]))
+            && clause + b == out.len()
+            && ends(tokens.get(i + n));
+        known.then(|| {
+            let be = is(tokens.get(i), &["be", "become"]);
+            out.extend(led(if be { "come towards us" } else { "should come towards us" }, &tokens[i], &[]));
+            i + n
+        })
+    })
+}
+
+/// "only the white car changes: it moves to 25 m behind me": it does so, and nothing goes.
+fn only_that(tokens: Vec<Token>) -> Vec<Token> {
+    let only = is(tokens.first(), &["only", "just"]) && is(tokens.get(1), &["the", "that", "my"]);
+    let Some((_, b)) = tokens.get(1..).and_then(first_noun).filter(|x| only && x.0 < 5) else {
+        return tokens;
+    };
+    let verb = leads(
+        &tokens[1 + b..],
+        &[
+            "changes", "change", "is different", "are different", "is affected", "is to change", "should change",
+            "is changed", "must change", "needs changing", "needs to change", "is concerned",
+        ],
+    );
+    let Some(colon) = verb.map(|n| 1 + b + n).filter(|k| ends(tokens.get(*k)) && *k + 2 < tokens.len()) else {
+        return tokens;
+    };
+    let it = usize::from(is(tokens.get(colon + 1), &["it", "he", "she", "they"]));
+    if it == 0 {
+        return tokens;
+    }
+    [&tokens[1..1 + b], &tokens[colon + 2..]].concat()
 }
 
 /// "has passed us both, me and the motorbike": me and the motorbike.
@@ -537,7 +595,10 @@ fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let at = &tokens[i];
         match beyond {
             Some(np) => out.extend(led("should be ahead of", at, &[np])),
-            None => out.extend(led("should be ahead of me", at, &[])),
+            None => {
+                let end = word("me", &tokens[end - 1]);
+                out.extend(led("should be ahead of", at, &[&[end]]));
+            }
         }
         Some(end)
     })
@@ -570,15 +631,25 @@ fn waits_until(tokens: Vec<Token>) -> Vec<Token> {
     [&tokens[..i], &tokens[end..]].concat()
 }
 
-/// "in its place a fourth barrier stands": a barrier.
-fn ordinal_in_place(tokens: &[Token]) -> Vec<Token> {
+/// "in its place a fourth barrier stands": another one.
+fn another_in_place(tokens: &[Token]) -> Vec<Token> {
+    const THERE: &[&str] = &["in its place", "in their place", "in its stead", "in their stead", "in their places"];
     rewritten(tokens, |i, out| {
-        let nth = super::super::foremost::ordinal(text(&tokens[i])).is_some()
-            && is(out.last(), &["a", "an"])
-            && out.len() > 3
-            && leads(&out[out.len() - 4..], &["in its place", "in their place", "in its stead", "in their stead"]).is_some()
-            && first_noun(&tokens[i + 1..]).is_some_and(|x| x.0 < 3);
-        nth.then_some(i + 1)
+        let after = out.len() > 2 && leads(&out[out.len() - 3..], THERE).is_some();
+        let article = after && is(tokens.get(i), &["a", "an"]);
+        let nth = tokens.get(i + 1).is_some_and(|t| {
+            super::super::foremost::ordinal(text(t)).is_some() || is(Some(t), &["sixth", "seventh", "eighth", "new"])
+        });
+        let from = i + 1 + usize::from(nth);
+        let (a, b) = article.then(|| first_noun(&tokens[from..]))?.filter(|x| x.0 < 3)?;
+        // (of a kind that was spoken of: it is no part of those)
+        let kind = text(&tokens[from + b - 1]);
+        let again = nth || tokens[..i].iter().any(|t| text(t) == kind);
+        again.then(|| {
+            out.push(word("another", &tokens[i]));
+            out.extend_from_slice(&tokens[from..from + a]);
+            from + a
+        })
     })
 }
 
@@ -594,8 +665,8 @@ mod tests {
             list.join(" ")
         };
         assert_eq!(
-            said(ordinal_in_place(&tokens("it is gone, and in its place a fourth barrier stands"))),
-            "it is gone , and in its place a barrier stands"
+            said(another_in_place(&tokens("it is gone, and in its place a fourth barrier stands"))),
+            "it is gone , and in its place another barrier stands"
         );
         assert_eq!(
             said(works(tokens("this panel works better without the cyclist"))),

@@ -68,8 +68,13 @@ fn one_of(tokens: &[Token], i: usize, out: &mut Vec<Token>, talk: &Talk<'_>) -> 
     let there = talk.fits(&tokens[a..b]);
     let by = is(out.last(), &["with", "for", "by", "into", "to", "as"]);
     let goes = removes(out.last());
+    // ("add one of our taxis" brings one, whatever is there)
+    let new = is(
+        out.last(),
+        &["add", "insert", "include", "create", "draw", "show", "spawn", "introduce", "append"],
+    );
     let at = &tokens[i];
-    if there as i64 > many && !by {
+    if there as i64 > many && !by && !new {
         out.push(at.clone());
         out.extend(["of", "the"].map(|w| word(w, at)));
         out.extend_from_slice(&tokens[from..b]);

@@ -25,7 +25,16 @@ fn latter(tokens: Vec<Token>) -> Vec<Token> {
         if !points || !alone {
             return None;
         }
-        let nouns: Vec<(usize, usize)> = nouns(out);
+        let mut nouns: Vec<(usize, usize)> = nouns(out);
+        // ("and a cyclist next to the latter": not the cyclist himself)
+        let own = nouns.last().is_some_and(|(a, b)| {
+            let fresh = (a.saturating_sub(3)..*a)
+                .any(|k| is(out.get(k), &["a", "an", "another"]) || number(&out[k]).is_some());
+            fresh && *b < out.len() && out[*b..].iter().all(|t| t.kind == TokenKind::Word && text(t) != "and")
+        });
+        if own {
+            nouns.pop();
+        }
         let (a, b) = match last {
             true => *nouns.last()?,
             false => *nouns.get(nouns.len().checked_sub(2)?)?,
@@ -95,6 +104,8 @@ fn asked_and_gone(tokens: Vec<Token>, source: &str) -> Vec<Token> {
         let asked = tokens[i].kind == TokenKind::Stop
             && source.get(tokens[i].span.start..tokens[i].span.end) == Some("?");
         let np = &tokens[start.min(i)..i];
+        let lead = leads(np, &["and", "but", "also", "and what about", "what about", "and how about", "as for"]);
+        let np = &np[lead.unwrap_or(0)..];
         let known = is(np.first(), &["the", "those", "these", "that", "this", "both", "all", "my", "our"]);
         let bare = asked
             && known
@@ -108,8 +119,8 @@ fn asked_and_gone(tokens: Vec<Token>, source: &str) -> Vec<Token> {
             .flatten()
             .filter(|n| tokens.get(i + 1 + n).is_none_or(|t| t.kind != TokenKind::Word));
         if let Some(n) = gone {
-            out.truncate(out.len() - np.len());
-            out.extend(led("remove", &tokens[start], &[np]));
+            out.truncate(out.len() - (i - start));
+            out.extend(led("remove", &np[0], &[np]));
             i += 1 + n;
             start = i + 1;
             continue;

@@ -777,11 +777,17 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
                 "closer to",
                 "nearer to",
                 "over to",
+                "to",
             ],
         )?;
         let metres = tokens.get(i + n).is_some_and(|t| number(t).is_some())
             && super::words::is_unit(tokens.get(i + n + 1));
-        metres.then_some((i, n))
+        // ("to 30 m ahead", and no more)
+        let bare = is(tokens.get(i + n + 2), &["ahead", "behind"])
+            && tokens
+                .get(i + n + 3)
+                .is_none_or(|t| mark(t) || is(Some(t), &["and"]));
+        (metres && (n > 1 || bare)).then_some((i, n))
     });
     let Some((i, n)) = found else {
         return tokens;

@@ -3,7 +3,7 @@
 
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
-use super::words::{is, leads, text, word};
+use super::words::{is, leads, led, text, word};
 
 const THEN: &[&str] = &[
     "at the material time",
@@ -98,7 +98,17 @@ const FOUND: &[&str] = &[
 
 /// A sentence without such a frame, in a tense that is read.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
-    let out = rewritten(&tokens, |i, _| found_that(&tokens, i).or_else(|| then(&tokens, i)));
+    let out = rewritten(&tokens, |i, out| {
+        let Some(end) = found_that(&tokens, i).or_else(|| shown_that(&tokens, i)) else {
+            return then(&tokens, i);
+        };
+        // (what was there by the findings is what shall be there)
+        if leads(&tokens[end..], &["there was", "there were"]).is_some() {
+            out.extend(led("there should be", &tokens[end], &[]));
+            return Some(end + 2);
+        }
+        Some(end)
+    });
     pluperfect(&out)
 }
 
@@ -120,6 +130,33 @@ fn found_that(tokens: &[Token], i: usize) -> Option<usize> {
     k += leads(&tokens[k..], FOUND)?;
     let more = is(tokens.get(k + 1), &["the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two"]);
     (is(tokens.get(k), &["that"]) && more).then_some(k + 1)
+}
+
+/// "the investigation has shown that": one past it.
+fn shown_that(tokens: &[Token], i: usize) -> Option<usize> {
+    const WHAT: &[&str] = &[
+        "investigation", "investigations", "inquiry", "enquiry", "reconstruction", "analysis", "evidence",
+        "footage", "video", "dashcam", "recording", "recordings", "photo", "photos", "photograph", "photographs",
+        "report", "file", "log", "measurement", "measurements", "data", "court", "hearing", "expert", "experts",
+        "police", "survey", "traces", "marks", "statement", "statements", "testimony", "protocol", "review",
+    ];
+    const SHOWS: &[&str] = &[
+        "shows", "show", "showed", "shown", "finds", "found", "established", "confirms", "confirm", "confirmed",
+        "reveals", "reveal", "revealed", "proves", "prove", "proved", "proven", "indicates", "indicate",
+        "indicated", "suggests", "suggested", "concluded", "determined", "states", "stated", "says", "said",
+        "demonstrates", "demonstrated",
+    ];
+    let mut k = i + usize::from(is(tokens.get(i), &["the", "our", "all", "later", "subsequent"]));
+    k += usize::from(is(tokens.get(k), &["police", "dashcam", "later", "new", "technical", "witness", "court"]) && is(tokens.get(k + 1), WHAT));
+    let what = opens(tokens, i) && is(tokens.get(k), WHAT);
+    what.then_some(())?;
+    k += 1;
+    while is(tokens.get(k), &["has", "have", "had", "now", "since", "clearly", "also", "later", "meanwhile"]) {
+        k += 1;
+    }
+    let that = is(tokens.get(k), SHOWS) && is(tokens.get(k + 1), &["that"]);
+    let more = is(tokens.get(k + 2), &["the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two", "three", "it"]);
+    (that && more).then_some(k + 2)
 }
 
 /// "at the material time,": when, of what is told in the past.
