@@ -108,7 +108,9 @@ impl Editor<'_> {
                 .is_some_and(|(before, _)| before.split(' ').count() < 3)
         };
         let placed = c.targets.iter().any(|m| !m.spec.relations.is_empty());
-        let part = [" of the ", " of these ", " of those ", " of them "].iter().any(|of| early(of))
+        let part = [" of the ", " of these ", " of those ", " of them "]
+            .iter()
+            .any(|of| early(of))
             || !placed && [" of our ", " of my "].iter().any(|of| early(of));
         // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
         let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));

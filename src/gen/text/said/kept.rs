@@ -27,8 +27,18 @@ const OTHERS: &[&str] = &[
     "the fourth one",
 ];
 const GO: &[&str] = &[
-    "go", "goes", "leave", "leaves", "disappear", "disappears", "vanish", "vanishes", "removed", "deleted",
-    "erased", "gone",
+    "go",
+    "goes",
+    "leave",
+    "leaves",
+    "disappear",
+    "disappears",
+    "vanish",
+    "vanishes",
+    "removed",
+    "deleted",
+    "erased",
+    "gone",
 ];
 const BETWEEN: &[&str] = &[
     "can", "may", "should", "shall", "must", "have", "has", "to", "be", "is", "are", "away", "out", "off",
@@ -143,8 +153,21 @@ fn group_first(head: &[Token]) -> Option<Kept> {
     let stays = leads(
         rest,
         &[
-            "may stay", "can stay", "should stay", "must stay", "shall stay", "stays", "stay", "remains",
-            "remain", "may remain", "can remain", "should remain", "is to stay", "are to stay", "of them",
+            "may stay",
+            "can stay",
+            "should stay",
+            "must stay",
+            "shall stay",
+            "stays",
+            "stay",
+            "remains",
+            "remain",
+            "may remain",
+            "can remain",
+            "should remain",
+            "is to stay",
+            "are to stay",
+            "of them",
         ],
     )
     .unwrap_or(0);
@@ -203,6 +226,10 @@ fn kept(many: &Token, np: &[Token], place: &[Token], talk: &Talk<'_>) -> Vec<Tok
     if place.is_empty() || fit == all {
         return keep;
     }
-    let it = if text(many) == "one" || count == 1 { "and put it" } else { "and put them" };
+    let it = if text(many) == "one" || count == 1 {
+        "and put it"
+    } else {
+        "and put them"
+    };
     [keep, led(it, at, &[place])].concat()
 }

@@ -9,6 +9,7 @@ mod arrivals;
 mod causing;
 mod colours;
 mod company;
+mod corrected;
 mod dealt;
 mod doers;
 mod exception;
@@ -30,6 +31,7 @@ mod offhand;
 mod orders;
 mod owned;
 mod parting;
+mod passing;
 mod passive;
 mod plainly;
 mod pointers;
@@ -41,6 +43,7 @@ mod recast;
 mod remaining;
 mod remarks;
 mod shorthand;
+mod sites;
 mod skies;
 mod some_of;
 mod spaces;
@@ -86,10 +89,10 @@ use forms::{
 };
 use frame::unwrapped;
 pub use left::Left;
-pub use pointers::plain as pointed_back;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
+pub use pointers::plain as pointed_back;
 use predicate::{in_place, parts};
 use question::question;
 pub use remarks::told_once;
@@ -200,7 +203,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
-    let out = offhand::plain(kept::plain(out, talk), talk);
+    let out = sites::plain(kept::plain(out, talk), talk);
+    let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(spoken::sides_named(out), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
@@ -368,6 +372,9 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
             ..words::word(".", first)
         });
         return Some(vec![Piece::Plain(tokens)]);
+    }
+    if let Some(over) = sites::finished(inner) {
+        return Some(vec![Piece::Plain(over)]);
     }
     // weather and time have grammars of their own
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));

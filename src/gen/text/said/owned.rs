@@ -71,7 +71,17 @@ fn one_of(tokens: &[Token], i: usize, out: &mut Vec<Token>, talk: &Talk<'_>) -> 
     // ("add one of our taxis" brings one, whatever is there)
     let new = is(
         out.last(),
-        &["add", "insert", "include", "create", "draw", "show", "spawn", "introduce", "append"],
+        &[
+            "add",
+            "insert",
+            "include",
+            "create",
+            "draw",
+            "show",
+            "spawn",
+            "introduce",
+            "append",
+        ],
     );
     let at = &tokens[i];
     if there as i64 > many && !by && !new {
@@ -117,16 +127,16 @@ fn owned(tokens: &[Token], i: usize, out: &mut Vec<Token>, talk: &Talk<'_>) -> O
     let beside = i > 0 && is_place(&tokens[i - 1..i])
         || is(
             out.last(),
-            &["of", "to", "behind", "before", "beside", "from", "than", "between", "near"],
+            &[
+                "of", "to", "behind", "before", "beside", "from", "than", "between", "near",
+            ],
         );
     if there || removes(out.last()) {
         out.push(word("the", at));
     } else if beside {
         return None;
-    } else if !matches!(
-        look_up(text(noun.last()?)),
-        Some(Sense::Noun(_, true))
-    ) && !tokens[from..from + a].iter().any(|t| number(t).is_some())
+    } else if !matches!(look_up(text(noun.last()?)), Some(Sense::Noun(_, true)))
+        && !tokens[from..from + a].iter().any(|t| number(t).is_some())
     {
         out.push(word("a", at));
     }

@@ -3,7 +3,9 @@
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::lists::HELPERS;
-use super::words::{first_noun, is, is_finite, leads, led, noun_at, number, text, word};
+use super::words::{
+    first_noun, has_noun, is, is_finite, is_place, leads, led, noun_at, number, text, trimmed, word,
+};
 
 /// A text in which these are said plainly.
 pub fn plain(tokens: Vec<Token>, source: &str) -> Vec<Token> {
@@ -30,7 +32,11 @@ fn latter(tokens: Vec<Token>) -> Vec<Token> {
         let own = nouns.last().is_some_and(|(a, b)| {
             let fresh = (a.saturating_sub(3)..*a)
                 .any(|k| is(out.get(k), &["a", "an", "another"]) || number(&out[k]).is_some());
-            fresh && *b < out.len() && out[*b..].iter().all(|t| t.kind == TokenKind::Word && text(t) != "and")
+            fresh
+                && *b < out.len()
+                && out[*b..]
+                    .iter()
+                    .all(|t| t.kind == TokenKind::Word && text(t) != "and")
         });
         if own {
             nouns.pop();
@@ -104,9 +110,25 @@ fn asked_and_gone(tokens: Vec<Token>, source: &str) -> Vec<Token> {
         let asked = tokens[i].kind == TokenKind::Stop
             && source.get(tokens[i].span.start..tokens[i].span.end) == Some("?");
         let np = &tokens[start.min(i)..i];
-        let lead = leads(np, &["and", "but", "also", "and what about", "what about", "and how about", "as for"]);
+        let lead = leads(
+            np,
+            &[
+                "and",
+                "but",
+                "also",
+                "and what about",
+                "what about",
+                "and how about",
+                "as for",
+            ],
+        );
         let np = &np[lead.unwrap_or(0)..];
-        let known = is(np.first(), &["the", "those", "these", "that", "this", "both", "all", "my", "our"]);
+        let known = is(
+            np.first(),
+            &[
+                "the", "those", "these", "that", "this", "both", "all", "my", "our",
+            ],
+        );
         let bare = asked
             && known
             && np.len() < 14
@@ -118,10 +140,16 @@ fn asked_and_gone(tokens: Vec<Token>, source: &str) -> Vec<Token> {
             .then(|| leads(&tokens[i + 1..], GONE))
             .flatten()
             .filter(|n| tokens.get(i + 1 + n).is_none_or(|t| t.kind != TokenKind::Word));
-        if let Some(n) = gone {
+        let said = match gone {
+            Some(n) => Some((led("remove", np.first().unwrap_or(&tokens[i]), &[np]), i + 1 + n)),
+            None if bare => placed(&tokens, i + 1, np),
+            None if asked => no_other(&tokens, i + 1, np),
+            None => None,
+        };
+        if let Some((said, next)) = said {
             out.truncate(out.len() - (i - start));
-            out.extend(led("remove", &np[0], &[np]));
-            i += 1 + n;
+            out.extend(said);
+            i = next;
             start = i + 1;
             continue;
         }
@@ -132,6 +160,47 @@ fn asked_and_gone(tokens: Vec<Token>, source: &str) -> Vec<Token> {
         i += 1;
     }
     out
+}
+
+/// "the two pedestrians? On the left sidewalk, please.": they should be there.
+fn placed(tokens: &[Token], from: usize, np: &[Token]) -> Option<(Vec<Token>, usize)> {
+    let end = (from..tokens.len())
+        .find(|k| tokens[*k].kind == TokenKind::Stop)
+        .unwrap_or(tokens.len());
+    let place = trimmed(&tokens[from..end]);
+    let only = is_place(place)
+        && !is(
+            place.first(),
+            &[
+                "out", "off", "away", "left", "right", "back", "over", "up", "down",
+            ],
+        )
+        && place.len() > 1
+        && !has_noun(place)
+        && !place
+            .iter()
+            .any(|t| HELPERS.contains(&text(t)) || t.kind == TokenKind::Comma);
+    only.then(|| ([np, &led("should be", &tokens[from], &[place])].concat(), end))
+}
+
+/// "a bus in front of me? No. A truck.": the bus is a truck.
+fn no_other(tokens: &[Token], from: usize, np: &[Token]) -> Option<(Vec<Token>, usize)> {
+    let (_, b) = first_noun(np).filter(|x| x.0 < 4)?;
+    let whole = is(np.first(), &["a", "an", "the"])
+        && (b == np.len() || is_place(&np[b..]) && !has_noun(&np[b..]))
+        && !np.iter().any(|t| HELPERS.contains(&text(t)));
+    let no = leads(&tokens[from..], &["no", "nope", "not at all", "wrong"])?;
+    let mut k = from + no;
+    k += usize::from(tokens.get(k).is_some_and(|t| t.kind != TokenKind::Word));
+    let end = (k..tokens.len())
+        .find(|k| tokens[*k].kind == TokenKind::Stop)
+        .unwrap_or(tokens.len());
+    let new = trimmed(tokens.get(k..end)?);
+    let fresh = is(new.first(), &["a", "an"]) && first_noun(new).is_some_and(|x| x.0 < 4 && x.1 == new.len());
+    (whole && fresh && k > from + no).then(|| {
+        let at = &tokens[from];
+        (led("replace the", at, &[&np[1..], &led("with", at, &[new])]), end)
+    })
 }
 
 #[cfg(test)]
@@ -154,5 +223,13 @@ mod tests {
             "remove those two cars in the left lane ."
         );
         assert_eq!(said("why is the car there? Out."), "why is the car there . out .");
+        assert_eq!(
+            said("A bus in front of me? No. A truck."),
+            "replace the bus in front of me with a truck ."
+        );
+        assert_eq!(
+            said("The two pedestrians? On the left sidewalk, please."),
+            "the two pedestrians should be on the left sidewalk ."
+        );
     }
 }

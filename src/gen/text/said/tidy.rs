@@ -214,7 +214,12 @@ fn set_out(tokens: Vec<Token>) -> Vec<Token> {
         let drawn = noun.is_some_and(|x| {
             let rest = &tokens[i + 1 + x.1..];
             !is(tokens.get(i + 2), &["of"])
-                && !is(rest.first(), &["closer", "nearer", "back", "away", "up", "aside", "over", "forward", "to"])
+                && !is(
+                    rest.first(),
+                    &[
+                        "closer", "nearer", "back", "away", "up", "aside", "over", "forward", "to",
+                    ],
+                )
         });
         match text(t) {
             "draw" | "sketch" | "depict" | "picture" | "render" if opens && drawn => {

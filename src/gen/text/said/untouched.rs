@@ -195,7 +195,16 @@ fn neither(tokens: &[Token]) -> Option<usize> {
 pub fn stands_still(t: &Token) -> bool {
     is(
         Some(t),
-        &["stays", "stay", "stayed", "remains", "remain", "remained", "staying", "remaining"],
+        &[
+            "stays",
+            "stay",
+            "stayed",
+            "remains",
+            "remain",
+            "remained",
+            "staying",
+            "remaining",
+        ],
     )
 }
 
