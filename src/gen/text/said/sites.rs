@@ -3,13 +3,19 @@
 use super::super::tokens::Token;
 use super::Talk;
 use super::some_of::removes;
-use super::words::{is, leads, led, trimmed};
+use super::words::{is, leads, trimmed, word};
 use crate::scene::Class;
 
 /// A sentence in which they end.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = belonging(tokens, talk);
     finished(&out).unwrap_or(out)
+}
+
+/// "no roadworks", where these words stand.
+fn none(tokens: &[Token]) -> Vec<Token> {
+    let last = &tokens[tokens.len() - 1];
+    vec![word("no", &tokens[0]), word("roadworks", last)]
 }
 
 /// "remove everything that belongs to them", of roadworks: not everything there is.
@@ -37,9 +43,7 @@ fn belonging(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         ],
     );
     match n {
-        Some(n) if site && removes(tokens.first()) && trimmed(&tokens[n + 1..]).is_empty() => {
-            led("no roadworks", &tokens[0], &[])
-        }
+        Some(n) if site && removes(tokens.first()) && trimmed(&tokens[n + 1..]).is_empty() => none(&tokens),
         _ => tokens,
     }
 }
@@ -82,7 +86,7 @@ pub fn finished(tokens: &[Token]) -> Option<Vec<Token>> {
         && is(tokens.get(n), &["the", "those", "these", "all"])
         && leads(&tokens[n + 1..], SITES).is_some_and(|m| trimmed(&tokens[n + 1 + m..]).is_empty())
     {
-        return Some(led("no roadworks", &tokens[0], &[]));
+        return Some(none(tokens));
     }
     let the = usize::from(is(tokens.first(), &["the", "those", "these", "all"]));
     let n = leads(tokens.get(the..).unwrap_or(&[]), SITES).filter(|_| the > 0)?;
@@ -124,5 +128,5 @@ pub fn finished(tokens: &[Token]) -> Option<Vec<Token>> {
         )
         .is_some()
         && rest.len() < 8;
-    (rest.is_empty() || all).then(|| led("no roadworks", &tokens[0], &[]))
+    (rest.is_empty() || all).then(|| none(tokens))
 }
