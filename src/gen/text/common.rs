@@ -20,7 +20,7 @@ const CLOSING: &str = "that is all|thats all|this is all|and that is it|and that
 
 const CROSSES_OURS: &str = "street that crosses ours|road that crosses ours|street which crosses ours|road which crosses ours|street that crosses mine|road that crosses mine|street that crosses our street|street that crosses our road|road that crosses our road|road that crosses our street|street that crosses my street|road that crosses my road|street crossing ours|road crossing ours|street crossing our road|street crossing our street|road crossing our street|road crossing our road|street running across ours|road running across ours|street that runs across ours";
 
-const SET_OFF: &str = "quite near|quite close|very near|very close|rather close|rather near|of course|as usual|as always|by the way|for example|for instance|say|i think|i guess|i believe|apparently|obviously|as it happens|so it seems|it seems|sadly|luckily|unfortunately|fortunately|naturally|needless to say|believe it or not|as you can see|you see|mind you|i suppose|let us say|lets say|i would say|id say|in fact|actually|surprisingly|for a change|as so often";
+const SET_OFF: &str = "quite near|quite close|very near|very close|rather close|rather near|of course|as usual|as always|by the way|for example|for instance|say|i think|i guess|i believe|apparently|obviously|as it happens|so it seems|it seems|sadly|luckily|unfortunately|fortunately|naturally|needless to say|believe it or not|as you can see|you see|mind you|i suppose|let us say|lets say|i would say|id say|in fact|actually|surprisingly|for a change|as so often|however|though|on the other hand|by contrast|in contrast|in turn";
 
 fn is_number(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Number(_))
@@ -196,7 +196,36 @@ fn without_asides(tokens: &[Token]) -> Vec<Token> {
             let verb = tokens.get(i + n + 1).is_some_and(|t| {
                 matches!(
                     t.text.as_str(),
-                    "is" | "are" | "stands" | "stand" | "was" | "were" | "comes" | "come" | "drives"
+                    "is" | "are"
+                        | "stands"
+                        | "stand"
+                        | "was"
+                        | "were"
+                        | "comes"
+                        | "come"
+                        | "drives"
+                        | "drive"
+                        | "disappears"
+                        | "disappear"
+                        | "leaves"
+                        | "leave"
+                        | "goes"
+                        | "go"
+                        | "stays"
+                        | "stay"
+                        | "remains"
+                        | "remain"
+                        | "should"
+                        | "must"
+                        | "shall"
+                        | "has"
+                        | "have"
+                        | "can"
+                        | "may"
+                        | "becomes"
+                        | "moves"
+                        | "waits"
+                        | "rides"
                 )
             });
             return Some(i + n + usize::from(verb));

@@ -550,6 +550,27 @@ impl Editor<'_> {
         }
         all.sort_unstable();
         all.dedup();
+        // ("erase the other two": of those that were spoken of, never of all that is there)
+        let words = c.text.to_lowercase();
+        let few = [
+            "the other two",
+            "the other three",
+            "the other four",
+            "the other one",
+        ];
+        let few = few.iter().any(|w| words.contains(w)) || words.ends_with("the other");
+        if few && c.targets.iter().any(others) && !self.last.is_empty() {
+            let kinds: Vec<Class> = self
+                .last
+                .iter()
+                .filter_map(|id| self.boxes.get(id))
+                .map(|b| b.class)
+                .collect();
+            all.retain(|id| self.boxes.get(id).is_some_and(|b| kinds.contains(&b.class)));
+            if all.is_empty() {
+                self.note(format!("{:?}: which are meant was not clear", c.text));
+            }
+        }
         if !all.is_empty() {
             self.last.clone_from(&all);
         }

@@ -10,7 +10,7 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, unasked, worded,
+    Left, Piece, Room, Talk, apart, chosen, except, pointed_back, room_of, said, told_once, unasked, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -260,7 +260,7 @@ impl<'t> Reader<'t> {
         Self {
             text,
             tokens: unasked(apart(unasked(labelled_apart(super::parker::parker(
-                &told_once(super::common::plain(&tokens(text))),
+                &told_once(pointed_back(super::common::plain(&tokens(text)), text)),
                 true,
             ))))),
             at: 0,

@@ -434,7 +434,8 @@ impl Editor<'_> {
                 // A driver changes to the lane that leads there; what was parked and shall drive leaves the edge of the road.
                 let pulls_out = c.state == Some(ObjectState::Moving)
                     && super::select::state_of(&self.map, &b, ObjectState::Parked);
-                let drives = b.velocity_mps.length() > 0.5 && against_lane;
+                let drives =
+                    (b.velocity_mps.length() > 0.5 || c.state == Some(ObjectState::Moving)) && against_lane;
                 if (drives || pulls_out) && b.class != Class::Pedestrian {
                     let relation = if with {
                         RelationKind::SameDirection

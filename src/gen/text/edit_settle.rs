@@ -115,21 +115,17 @@ impl Editor<'_> {
         };
         let there = |m: &Mention| m.definite && !fitting(&self.map, &self.boxes, m, &c.mentions).is_empty();
         let again = !ordered && !c.in_place && c.targets.iter().all(there);
-        // "half of the cones have been collected" speaks of those that are there
-        let part = [
-            " of the ",
-            " of these ",
-            " of those ",
-            " of our ",
-            " of my ",
-            " of them ",
-        ]
-        .iter()
-        .any(|of| {
+        // "half of the cones have been collected" speaks of those that are there; "one of our buses drives behind us" brings one
+        let early = |of: &str| {
             words
                 .split_once(of)
                 .is_some_and(|(before, _)| before.split(' ').count() < 3)
-        });
+        };
+        let placed = c.targets.iter().any(|m| !m.spec.relations.is_empty());
+        let part = [" of the ", " of these ", " of those ", " of them "]
+            .iter()
+            .any(|of| early(of))
+            || !placed && [" of our ", " of my "].iter().any(|of| early(of));
         // "one of the cyclists has <unknown word>", "cyclists <unknown word>": said of those that are there
         let alike = |m: &Mention| self.boxes.values().any(|b| m.classes.contains(&b.class));
         let remark = !ordered

@@ -151,6 +151,14 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_m.jsonl"),
     ),
     (
+        "strangers_25.jsonl",
+        include_str!("../../../../tests/data/strangers_25.jsonl"),
+    ),
+    (
+        "causes_q.jsonl",
+        include_str!("../../../../tests/data/causes_q.jsonl"),
+    ),
+    (
         "variants.jsonl",
         include_str!("../../../../tests/data/variants.jsonl"),
     ),

@@ -245,6 +245,10 @@ pub fn acts(
             .iter()
             .any(|p| p.main.iter().any(|t| drives(text(t))))
             .then_some(ObjectState::Moving);
+        // who comes towards us drives, and in the lane that leads here
+        if turn == Turn::Against {
+            c.state = Some(ObjectState::Moving);
+        }
         return Some(vec![meant(c)]);
     }
     placed(s, &said, clause, talk, noun)

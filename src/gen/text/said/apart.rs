@@ -292,7 +292,13 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
     let Some(first) = clause.first() else {
         return false;
     };
-    if !is(Some(first), ORDERS) || !is_verb(first) && !is(Some(first), &["have", "let", "station", "lose"]) {
+    if !is(Some(first), ORDERS)
+        || !is_verb(first)
+            && !is(
+                Some(first),
+                &["have", "let", "station", "lose", "double", "halve"],
+            )
+    {
         return false;
     }
     let off = usize::from(is(

@@ -158,9 +158,6 @@ fn bare(body: &[Token]) -> Option<Vec<Token>> {
             rest = &rest[n..];
             continue;
         }
-        if says(rest) && !question {
-            return (layer > 0 || tail).then(|| rest.to_vec());
-        }
         if let Some(command) = begins(rest, DOING).and_then(|n| done(&rest[n..])) {
             return Some(command);
         }
@@ -171,7 +168,10 @@ fn bare(body: &[Token]) -> Option<Vec<Token>> {
             .or_else(|| someone_wants(rest))
             .or_else(|| step(rest));
         // (the longer one: "i think we should" is more than "i think")
-        rest = &rest[to.max(told)?..];
+        match to.max(told) {
+            Some(n) => rest = &rest[n..],
+            None => return (says(rest) && !question && (layer > 0 || tail)).then(|| rest.to_vec()),
+        }
     }
     None
 }

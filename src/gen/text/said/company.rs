@@ -11,7 +11,7 @@ use crate::scene::Class;
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(joining(tokens, talk), talk);
+    let out = same_place(joining(joining_there(tokens, talk), talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
     let out = beside_it(as_one(boards(out, talk)));
@@ -256,6 +256,87 @@ fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return [&tokens[..i], &tokens[end..]].concat();
     }
     tokens
+}
+
+/// "let a man join the children on the zebra": a man on the zebra.
+fn joining_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let verb = leads(
+            &tokens[i..],
+            &[
+                "join",
+                "joins",
+                "have joined",
+                "has joined",
+                "should join",
+                "joined",
+                "will join",
+                "joining",
+                "are joining",
+                "is joining",
+                "shall join",
+                "is to join",
+                "has just joined",
+            ],
+        )?;
+        let whom = i + verb;
+        let pronoun = is(tokens.get(whom), &["them", "him", "her", "it"]);
+        let place = if pronoun {
+            whom + 1
+        } else {
+            is(
+                tokens.get(whom),
+                &["the", "these", "those", "both", "that", "our", "my"],
+            )
+            .then_some(())?;
+            let (_, b) = first_noun(&tokens[whom..]).filter(|x| x.0 < 5)?;
+            (talk.fits(&tokens[whom..whom + b]) > 0).then_some(whom + b)?
+        };
+        let to = place
+            + tokens[place..]
+                .iter()
+                .position(mark)
+                .unwrap_or(tokens.len() - place);
+        let there = is(tokens.get(place), &["on", "in", "at"])
+            && !has_noun(&tokens[place..to])
+            && !tokens[place..to].iter().any(|t| is(Some(t), &["and"]));
+        there.then_some((i, place))
+    });
+    let Some((i, place)) = found else { return tokens };
+    let from = tokens[..i]
+        .iter()
+        .rposition(|t| mark(t) || is(Some(t), &["and", "but"]))
+        .map_or(0, |k| k + 1);
+    let let_ = usize::from(is(tokens.get(from), &["let", "have", "make", "get"]));
+    let np = &tokens[from + let_..i];
+    let np = if is(np.last(), &["to"]) {
+        &np[..np.len() - 1]
+    } else {
+        np
+    };
+    let fresh = is(np.first(), &["a", "an", "another", "some", "somebody", "someone"])
+        || np.first().is_some_and(|t| number(t).is_some());
+    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    // "have the cyclist join the pedestrians on the left sidewalk": he goes there
+    if is(np.first(), &["the", "that", "both", "my"]) && b == np.len() && talk.fits(np) > 0 {
+        return [
+            &tokens[..from],
+            np,
+            &led("should be", &tokens[i], &[&tokens[place..]]),
+        ]
+        .concat();
+    }
+    if !fresh || b != np.len() && !is(np.get(b), &["with", "in", "from"]) {
+        return tokens;
+    }
+    [
+        &tokens[..from],
+        &led("add", &tokens[from], &[np]),
+        &tokens[place..],
+    ]
+    .concat()
 }
 
 /// "put three more pedestrians with the two": three more of them; "the officer joined by two more": two more officers.

@@ -10,6 +10,7 @@ mod asked;
 mod causing;
 mod colours;
 mod company;
+mod corrected;
 mod curt;
 mod dealt;
 mod doers;
@@ -21,16 +22,21 @@ mod gapped;
 mod gaps;
 mod gifts;
 mod idioms;
+mod kept;
 mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
 mod newcomers;
 mod of_several;
+mod offhand;
 mod orders;
+mod owned;
 mod parting;
+mod passing;
 mod passive;
 mod plainly;
+mod pointers;
 mod predicate;
 mod presence;
 mod question;
@@ -40,6 +46,7 @@ mod remaining;
 mod remarks;
 mod riders;
 mod shorthand;
+mod sites;
 mod skies;
 mod some_of;
 mod spaces;
@@ -52,6 +59,7 @@ mod sums;
 mod swap;
 mod tails;
 mod terse;
+mod testimony;
 #[cfg(test)]
 mod tests;
 mod tidy;
@@ -88,6 +96,7 @@ pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
+pub use pointers::plain as pointed_back;
 use predicate::{in_place, parts};
 use question::question;
 pub use remarks::told_once;
@@ -124,6 +133,18 @@ impl Talk<'_> {
             return 0;
         };
         fitting(self.map, self.boxes, m, &mentions).len()
+    }
+
+    /// The boxes of the scene that fit these words.
+    pub fn boxes_of(&self, np: &[Token]) -> Vec<SceneBox> {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let Some(m) = mentions.iter().find(|m| !m.is_anchor && !m.gone) else {
+            return Vec::new();
+        };
+        fitting(self.map, self.boxes, m, &mentions)
+            .iter()
+            .filter_map(|id| self.boxes.get(id).copied())
+            .collect()
     }
 
     /// True if no box can be what is named with an article or a number.
@@ -185,7 +206,10 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = sites::plain(kept::plain(out, talk), talk);
+    let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
+    let out = tidy::plain(spoken::sides_named(out), talk);
     let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
@@ -354,6 +378,9 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         });
         return Some(vec![Piece::Plain(tokens)]);
     }
+    if let Some(over) = sites::finished(inner) {
+        return Some(vec![Piece::Plain(over)]);
+    }
     // weather and time have grammars of their own
     let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     if inner.iter().any(style) && !has_noun(inner) {
@@ -457,9 +484,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         return Some(found);
     }
-    if let Some((i, n)) = in_place(inner)
-        // ("all cars and all bikes stay where they are" brings nothing)
-        && !(is(inner.get(i), &["where"]) && i > 0 && is(inner.get(i - 1), &["stay", "stays", "remain", "remains"]))
+    // ("the white car stays where it is" goes nowhere)
+    if let Some((i, n)) = in_place(inner).filter(|x| !inner[..x.0].iter().any(|t| untouched::stands_still(t)))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);

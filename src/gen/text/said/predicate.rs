@@ -216,7 +216,9 @@ fn gone_off(main: &[Token]) -> bool {
                     || is(
                         Some(t),
                         &[
-                            "and", "already", "now", "again", "for", "by", "long", "with", "because", "where",
+                            "and", "already", "now", "again", "for", "by", "long", "with", "because",
+                            "where", "today", "tonight", "this", "until", "till", "before", "once", "so",
+                            "after", "early",
                         ],
                     )
             })

@@ -36,7 +36,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, LOOKS, "faces us");
     let out = replaced(&out, "please to", "please");
     let out = now_so_far(gone_on(put_there(out)));
-    let out = as_before(reported(out));
+    let out = as_before(out);
     let out = replaced(&out, "the two on foot|both on foot", "the two pedestrians");
     let out = replaced(&out, "the three on foot", "the three pedestrians");
     let out = replaced(&out, "the one on foot", "the pedestrian");
@@ -53,7 +53,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 /// "a colleague told me the taxi is a van": what was told.
-fn reported(tokens: Vec<Token>) -> Vec<Token> {
+pub(super) fn reported(tokens: Vec<Token>) -> Vec<Token> {
     const TELLS: &[&str] = &[
         "told me that",
         "told me",
@@ -835,7 +835,12 @@ fn in_to(tokens: Vec<Token>) -> Vec<Token> {
         )?;
         let metres = tokens.get(i + n).is_some_and(|t| number(t).is_some())
             && super::words::is_unit(tokens.get(i + n + 1));
-        metres.then_some((i, n))
+        // ("to 30 m ahead", and no more)
+        let bare = is(tokens.get(i + n + 2), &["ahead", "behind"])
+            && tokens
+                .get(i + n + 3)
+                .is_none_or(|t| mark(t) || is(Some(t), &["and"]));
+        (metres && (n > 1 || bare)).then_some((i, n))
     });
     let Some((i, n)) = found else {
         return tokens;

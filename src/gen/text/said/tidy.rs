@@ -208,8 +208,23 @@ fn set_out(tokens: Vec<Token>) -> Vec<Token> {
         let some = tokens.get(i + 1).is_some_and(|n| {
             number(n).is_some() && text(n) != "one" || matches!(text(n), "a" | "an" | "some" | "another")
         });
-        let thing = some && first_noun(&tokens[i + 1..]).is_some_and(|x| x.0 < 5);
+        let noun = first_noun(&tokens[i + 1..]).filter(|x| some && x.0 < 5);
+        let thing = noun.is_some();
+        // ("draw two of the cones closer" moves those that are there)
+        let drawn = noun.is_some_and(|x| {
+            let rest = &tokens[i + 1 + x.1..];
+            !is(tokens.get(i + 2), &["of"])
+                && !is(
+                    rest.first(),
+                    &[
+                        "closer", "nearer", "back", "away", "up", "aside", "over", "forward", "to",
+                    ],
+                )
+        });
         match text(t) {
+            "draw" | "sketch" | "depict" | "picture" | "render" if opens && drawn => {
+                out.push(super::words::word("add", t));
+            }
             "set" | "lay" | "stand" | "position" if opens && thing => out.push(super::words::word("add", t)),
             "park" if opens && thing && tokens.get(i + 1).is_some_and(|n| number(n).is_some()) => {
                 out.extend(led("add", t, &[]));

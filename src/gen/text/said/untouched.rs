@@ -191,6 +191,23 @@ fn neither(tokens: &[Token]) -> Option<usize> {
     (find(&tokens[..i], &["nor"]).is_some() && edge(tokens.get(end))).then_some(end)
 }
 
+/// "stays", "remains": what follows says only that nothing changes.
+pub fn stands_still(t: &Token) -> bool {
+    is(
+        Some(t),
+        &[
+            "stays",
+            "stay",
+            "stayed",
+            "remains",
+            "remain",
+            "remained",
+            "staying",
+            "remaining",
+        ],
+    )
+}
+
 /// How many tokens of such a phrase begin here.
 fn phrase(tokens: &[Token]) -> Option<usize> {
     if let Some(n) = neither(tokens) {

@@ -164,7 +164,7 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     let points = is(body.get(i), &["there"]);
     let stays = head
         .iter()
-        .any(|t| matches!(text(t), "still" | "already" | "always"));
+        .any(|t| matches!(text(t), "still" | "already" | "always") || super::untouched::stands_still(t));
     let comes = head[..from]
         .iter()
         .any(|t| is_verb(t) || MOVES.contains(&text(t)))

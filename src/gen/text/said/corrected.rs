@@ -1,0 +1,181 @@
+//! What there is instead of what was said: "what was driving there were two trucks, not two cars", "it was not a bus but a tanker",
+//! "our fleet has grown: six parked cars now".
+
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::lists::HELPERS;
+use super::some_of::{bare_np, removes};
+use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed};
+
+/// A sentence in plainer words.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    was_not(now_so_many(tokens, talk), talk)
+}
+
+/// "what was driving in the left lane were two trucks, not two cars": the cars there are trucks.
+fn was_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if let Some(new) = not_that(&tokens, talk) {
+        return new;
+    }
+    const BE: &[&str] = &[
+        "was",
+        "were",
+        "is",
+        "are",
+        "had been",
+        "has been",
+        "have been",
+        "in fact was",
+        "in fact were",
+        "really was",
+        "really were",
+        "actually was",
+        "actually were",
+    ];
+    let Some(from) = (0..tokens.len().min(6)).find(|k| is(tokens.get(*k), &["what", "whatever", "who"]))
+    else {
+        return tokens;
+    };
+    let Some(not) = (from + 4..tokens.len())
+        .rev()
+        .find(|k| is(tokens.get(*k), &["not"]))
+    else {
+        return tokens;
+    };
+    let old = &tokens[not + 1..];
+    let fresh = |np: &[Token]| {
+        np.first()
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]))
+            && first_noun(np).is_some_and(|x| x.0 < 4 && x.1 == np.len())
+    };
+    let Some((at, n)) = (from + 3..not).rev().find_map(|k| {
+        let n = leads(&tokens[k..], BE)?;
+        fresh(trimmed(&tokens[k + n..not])).then_some((k, n))
+    }) else {
+        return tokens;
+    };
+    let new = trimmed(&tokens[at + n..not]);
+    let Some(place) = (from + 2..at.min(from + 5)).find(|k| is_place(&tokens[*k..at])) else {
+        return tokens;
+    };
+    let place = &tokens[place..at];
+    if !fresh(old) || has_noun(place) {
+        return tokens;
+    }
+    let old: Vec<Token> = bare_np(old)
+        .into_iter()
+        .filter(|t| !is(Some(t), &["a", "an"]))
+        .collect();
+    let there = [&old[..], place].concat();
+    let np = if talk.fits(&there) > 0 { there } else { old };
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    led(
+        "replace the",
+        &tokens[from],
+        &[&np, &led("with", &tokens[not], &[new])],
+    )
+}
+
+/// "it was not a bus that was ahead of me but a tanker": the bus there is a tanker.
+fn not_that(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let n = leads(
+        tokens,
+        &["it was not", "it is not", "it wasnt", "it isnt", "it were not"],
+    )?;
+    is(tokens.get(n), &["a", "an", "the"]).then_some(())?;
+    let (_, b) = first_noun(&tokens[n..]).filter(|x| x.0 < 4)?;
+    let that = n + b;
+    is(tokens.get(that), &["that", "which", "who"]).then_some(())?;
+    let but = (that + 2..tokens.len()).find(|k| is(tokens.get(*k), &["but"]))?;
+    let place = (that + 1..but.min(that + 4)).find(|k| is_place(&tokens[*k..but]))?;
+    let place = trimmed(&tokens[place..but]);
+    let new = trimmed(&tokens[but + 1..]);
+    let fresh = is(new.first(), &["a", "an"]) && first_noun(new).is_some_and(|x| x.0 < 4 && x.1 == new.len());
+    let np = [&tokens[n + 1..that], place].concat();
+    (fresh && !has_noun(place) && talk.fits(&np) > 0).then(|| {
+        led(
+            "replace the",
+            &tokens[0],
+            &[&np, &led("with", &tokens[but], &[new])],
+        )
+    })
+}
+
+/// "our fleet has grown: six parked cars now", "five pedestrians now": so many of them.
+fn now_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    // "two pedestrians now stand on the left instead": the two that are there
+    if tokens.first().is_some_and(|t| number(t).is_some())
+        && is(tokens.last(), &["instead"])
+        && let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 3 && is(tokens.get(x.1), &["now"]))
+        && tokens
+            .get(b + 1)
+            .is_some_and(|t| is_finite(text(t), true) || HELPERS.contains(&text(t)))
+        && !has_noun(&tokens[b..])
+        && number(&tokens[0]) == Some(talk.fits(&tokens[1..b]) as i64)
+    {
+        return led("the", &tokens[0], &[&tokens[..tokens.len() - 1]]);
+    }
+    let from = tokens
+        .iter()
+        .rposition(|t| text(t) == ":" || matches!(t.kind, TokenKind::Comma))
+        .map_or(0, |k| k + 1);
+    let body = trimmed(&tokens[from..]);
+    let late = is(tokens.last(), &["now"]) || is(tokens.get(from), &["now"]);
+    let Some(many) = body
+        .first()
+        .filter(|t| late && number(t).is_some() && !is(Some(t), &["a", "an"]))
+    else {
+        return tokens;
+    };
+    let more = body.iter().any(|t| {
+        is(
+            Some(t),
+            &["more", "other", "of", "fewer", "less", "another", "and"],
+        )
+    });
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let place = &body[b..];
+    let plain = place.is_empty() || is_place(place) && !has_noun(place);
+    let verb = body.iter().any(|t| HELPERS.contains(&text(t)));
+    let remark = &tokens[..from];
+    if more
+        || verb
+        || !plain
+        || talk.fits(&body[1..]) == 0
+        || removes(remark.first())
+        || has_noun(remark) && !grows(remark)
+    {
+        return tokens;
+    }
+    led("keep exactly", many, &[body])
+}
+
+/// "our car fleet has grown:": a remark on how many there are.
+fn grows(remark: &[Token]) -> bool {
+    remark.iter().any(|t| {
+        is(
+            Some(t),
+            &[
+                "grown",
+                "shrunk",
+                "grew",
+                "shrank",
+                "increased",
+                "decreased",
+                "expanded",
+                "changed",
+                "grows",
+                "shrinks",
+                "bigger",
+                "smaller",
+                "larger",
+                "doubled",
+                "halved",
+            ],
+        )
+    })
+}
