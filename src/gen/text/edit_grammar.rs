@@ -9,7 +9,7 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, worded};
+use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, without_asides, worded};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;
@@ -255,7 +255,7 @@ impl<'t> Reader<'t> {
         Self {
             text,
             tokens: apart(labelled_apart(super::parker::parker(
-                &told_once(super::common::plain(&tokens(text))),
+                &told_once(without_asides(super::common::plain(&tokens(text)))),
                 true,
             ))),
             at: 0,
@@ -351,6 +351,10 @@ impl<'t> Reader<'t> {
             ));
         }
         let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
+        if std::env::var_os("DBGP").is_some() {
+            let w = |t: &[Token]| t.iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" ");
+            eprintln!("IN {} => CH {} => W {}", w(&self.tokens[from..end]), w(whole), w(&worded(whole, &talk)));
+        }
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();

@@ -6,6 +6,7 @@
 mod acts;
 mod apart;
 mod arrivals;
+mod asides;
 mod causing;
 mod colours;
 mod company;
@@ -36,6 +37,7 @@ mod reasons;
 mod recast;
 mod remaining;
 mod remarks;
+mod seconds;
 mod shorthand;
 mod skies;
 mod some_of;
@@ -74,6 +76,7 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
+pub use asides::without as without_asides;
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
@@ -182,6 +185,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
+    let out = seconds::plain(out, talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
