@@ -25,6 +25,7 @@ mod likewise;
 mod limits;
 pub(super) mod lists;
 mod newcomers;
+mod notes;
 mod of_several;
 mod orders;
 mod parting;
@@ -185,7 +186,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
-    let out = seconds::plain(out, talk);
+    let out = vacated::plain(of_several::front_and_rear(out, talk), talk);
+    let out = notes::plain(seconds::plain(out, talk), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);

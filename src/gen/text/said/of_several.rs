@@ -3,6 +3,7 @@
 
 use super::super::foremost::ordinal;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::some_of::bare_np;
 use super::topics::singular_of;
@@ -50,6 +51,39 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = pick_of_them(out, talk);
     let out = only_the_one(out);
     group_first(out)
+}
+
+/// "the front truck", "rear lorry": of several, the one ahead of us or behind us, else the first or last of them.
+pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let front = is(tokens.get(i), &["front", "leading"]);
+        let rear = is(tokens.get(i), &["rear", "back", "hind"]);
+        let opens = out.last().is_none_or(|t| {
+            t.kind != TokenKind::Word
+                || is(Some(t), &["the", "that", "and", "but", "my"])
+                || super::super::rephrase::is_verb(t) && front
+        });
+        let (_, b) = (opens && (front || rear))
+            .then(|| first_noun(&tokens[i + 1..]))?
+            .filter(|n| n.0 == 0)?;
+        let noun = &tokens[i + 1..i + 1 + b];
+        let at = &tokens[i];
+        let one = !matches!(
+            super::look_up(text(&noun[b - 1])),
+            Some(super::Sense::Noun(_, true))
+        );
+        if !one || talk.fits(noun) < 2 {
+            return None;
+        }
+        let side = led(if front { "ahead of me" } else { "behind me" }, at, &[]);
+        let there = [noun, &side].concat();
+        if talk.fits(&there) == 1 {
+            out.extend(there);
+        } else {
+            out.extend(led(if front { "frontmost" } else { "rearmost" }, at, &[noun]));
+        }
+        Some(i + 1 + b)
+    })
 }
 
 /// How many tokens a word takes that picks one: an ordinal, too.
