@@ -118,6 +118,7 @@ pub(super) struct Editor<'a> {
     pub(super) boxes: BTreeMap<BoxId, SceneBox>,
     style: String,
     pub(super) definite: Vec<Span>, // what "the" was said of in the present command
+    pub(super) picks: Vec<(Span, Pick)>, // what "the nearest" and the like was said of
     pub(super) seed: u64,
     pub(super) last: Vec<BoxId>,    // what was spoken of last
     part_of: Vec<BoxId>,            // those that the last ones were picked from
@@ -134,6 +135,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         boxes: scene.boxes.clone(),
         style: scene.prompt.to_string(),
         definite: Vec::new(),
+        picks: Vec::new(),
         seed,
         last: Vec::new(),
         part_of: Vec::new(),
@@ -249,6 +251,11 @@ impl Editor<'_> {
     fn carry_out(&mut self, c: &Command) -> Option<String> {
         let mut done = Vec::new();
         self.definite.clone_from(&c.definite);
+        self.picks = c
+            .mentions
+            .iter()
+            .filter_map(|m| m.pick.map(|p| (m.spec.span, p)))
+            .collect();
         if self.style_of(c) {
             done.push("style".to_string());
         }

@@ -262,6 +262,22 @@ pub fn of_size(boxes: &[SceneBox], noun: &str, size_m: Option<[f64; 3]>) -> Vec<
     if fit.is_empty() { boxes.to_vec() } else { fit }
 }
 
+/// What a word that picks one of several sorts by: the least is meant.
+pub fn pick_cost(b: &SceneBox, pick: Pick) -> f64 {
+    let p = b.center_m.truncate();
+    match pick {
+        Pick::Nearest => p.length(),
+        Pick::Farthest => -p.length(),
+        Pick::Leftmost => -p.y,
+        Pick::Rightmost => p.y,
+        Pick::Frontmost => -p.x,
+        Pick::Rearmost => p.x,
+        Pick::Largest => -(b.size_m.x * b.size_m.y * b.size_m.z),
+        Pick::Smallest => b.size_m.x * b.size_m.y * b.size_m.z,
+        Pick::All | Pick::Any | Pick::More => f64::from(b.id.0),
+    }
+}
+
 /// Decides: all, a picked one, so many, or a question.
 pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention, all: &[Mention]) -> Chosen {
     let fit = fitting(map, boxes, m, all);
@@ -278,21 +294,6 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
             None => Chosen::None(what),
         };
     }
-    let cost = |id: &BoxId, pick: Pick| {
-        let b = &boxes[id];
-        let p = b.center_m.truncate();
-        match pick {
-            Pick::Nearest => p.length(),
-            Pick::Farthest => -p.length(),
-            Pick::Leftmost => -p.y,
-            Pick::Rightmost => p.y,
-            Pick::Frontmost => -p.x,
-            Pick::Rearmost => p.x,
-            Pick::Largest => -(b.size_m.x * b.size_m.y * b.size_m.z),
-            Pick::Smallest => b.size_m.x * b.size_m.y * b.size_m.z,
-            Pick::All | Pick::Any | Pick::More => f64::from(id.0),
-        }
-    };
     // ("all the kids" spares the grown-ups)
     let fit = match fit.len() {
         0 | 1 => fit,
@@ -313,7 +314,8 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         }
         let n = if m.uncounted { 1 } else { m.spec.count.n as usize };
         let mut sorted = fit;
-        sorted.sort_by(|a, b| cost(a, pick).total_cmp(&cost(b, pick)));
+        let cost = |id: &BoxId| pick_cost(&boxes[id], pick);
+        sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         sorted.truncate(n.max(1));
         return Chosen::These(sorted);
     }

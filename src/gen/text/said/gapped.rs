@@ -9,6 +9,7 @@ use super::words::{find, first_noun, is, is_place, led, text};
 
 /// "make the bus a lorry, the motorcycle a car": make each.
 pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = let_each(tokens);
     if !is(tokens.first(), &["make"]) || !is(tokens.get(1), &["the", "both", "all", "that"]) {
         return tokens;
     }
@@ -37,6 +38,37 @@ pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "let the blue car be a bus and the red one a motorcycle": make each.
+fn let_each(tokens: Vec<Token>) -> Vec<Token> {
+    let known = is(tokens.first(), &["let", "have"]) && is(tokens.get(1), &["the", "that"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 5) else {
+        return tokens;
+    };
+    let be = (b..tokens.len().min(b + 6))
+        .find(|k| is(tokens.get(*k), &["be", "become"]) && is(tokens.get(k + 1), &["a", "an"]));
+    let Some(be) = be.filter(|be| *be == b || is_place(&tokens[b..])) else {
+        return tokens;
+    };
+    // (the other's place may stand before what it becomes)
+    let another = (be + 2..tokens.len()).find_map(|k| {
+        let link = is(tokens.get(k), &["and"]) || tokens[k].kind == super::super::tokens::TokenKind::Comma;
+        let the = k + 1 + usize::from(is(tokens.get(k + 1), &["and"]));
+        (link && is(tokens.get(the), &["the", "that"])).then_some(())?;
+        let next = &tokens[the..];
+        let (_, b) = first_noun(next).filter(|x| x.0 < 4)?;
+        let a = (b..next.len().min(b + 6)).find(|j| is(next.get(*j), &["a", "an"]))?;
+        let told = a == b || is_place(&next[b..]) && !is_place(&next[a - 1..a]);
+        (told && first_noun(&next[a..]).is_some_and(|x| x.0 < 4)).then_some((k, the))
+    });
+    match another {
+        Some((k, the)) => {
+            let first = led("make", &tokens[0], &[&tokens[1..be], &tokens[be + 1..k]]);
+            [&first, &led("and make", &tokens[k], &[&tokens[the..]])[..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "the second car should be a van, and the third one a bus": the verb again.

@@ -186,8 +186,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
-    let out = vacated::plain(of_several::front_and_rear(out, talk), talk);
-    let out = notes::plain(seconds::plain(out, talk), talk);
+    let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
+    let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
@@ -200,7 +200,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return stop.to_vec();
     }
     let out = exception::the_one_spared(out);
-    let out = exception::all_stays_but(out);
+    let out = exception::all_stays_but(exception::cleared_but(out));
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
     let mut out = totals::plain(out, talk);

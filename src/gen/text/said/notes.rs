@@ -19,9 +19,76 @@ const STRIPS: &[&str] = &[
 
 /// A sentence (without its stop) with its verbs.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = all_of_them(tokens);
+    let out = all_of_them(their_own(same_strip(tokens, talk)));
     let out = go_along(out, talk);
     sent(out, talk)
+}
+
+/// "..., but their lorry stays": the lorry.
+fn their_own(mut tokens: Vec<Token>) -> Vec<Token> {
+    const STAYS: &[&str] = &[
+        "stays", "stay", "remains", "remain", "can stay", "may stay", "should stay", "is left", "must stay",
+        "can remain", "may remain", "is to stay", "shall stay", "has to stay", "should remain", "is kept",
+    ];
+    for i in 0..tokens.len() {
+        let own = is(tokens.get(i), &["their", "his", "her", "its"]) && (i == 0 || !is_verb(&tokens[i - 1]));
+        let stays = own
+            && first_noun(&tokens[i + 1..]).is_some_and(|n| n.0 < 2 && leads(&tokens[i + 1 + n.1..], STAYS).is_some());
+        if stays {
+            tokens[i].text = "the".into();
+        }
+    }
+    tokens
+}
+
+/// "behind the bus, same edge": the edge that the bus is at.
+fn same_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const KINDS: &[(&[&str], &[&str])] = &[
+        (
+            &["edge", "kerb", "curb", "roadside", "shoulder", "side"],
+            &["on the right edge of the road", "on the left edge of the road"],
+        ),
+        (
+            &["lane"],
+            &["in my lane", "in the oncoming lane", "in the left lane", "in the right lane"],
+        ),
+        (
+            &["sidewalk", "pavement", "footpath", "side"],
+            &["on the right sidewalk", "on the left sidewalk"],
+        ),
+    ];
+    let found = (4..tokens.len()).find_map(|i| {
+        is(tokens.get(i), &["same"]).then_some(())?;
+        let (kinds, end) = match leads(&tokens[i + 1..], &["side of the road", "edge of the road", "side of the street"]) {
+            Some(n) => (tokens.get(i + 1)?, i + 1 + n),
+            None => (tokens.get(i + 1)?, i + 2),
+        };
+        let from = (i.saturating_sub(2)..i)
+            .find(|k| (*k + 1..i).all(|j| is(tokens.get(j), &["on", "in", "at", "the"])) && is(tokens.get(*k), &[",", "on", "in", "at", "the"]))
+            .unwrap_or(i);
+        let comma = from > 0 && tokens[from - 1].kind == TokenKind::Comma || tokens[from].kind == TokenKind::Comma;
+        (comma && end == tokens.len()).then_some((from, text(kinds).to_string()))
+    });
+    let Some((from, kind)) = found else {
+        return tokens;
+    };
+    let before = trimmed(&tokens[..from]);
+    // what was named last with "the"
+    let Some(the) = before.iter().rposition(|t| is(Some(t), &["the", "my", "that"])) else {
+        return tokens;
+    };
+    let anchor = &before[the..];
+    if the == 0 || !first_noun(anchor).is_some_and(|n| n.0 < 4 && n.1 == anchor.len()) || talk.fits(anchor) != 1 {
+        return tokens;
+    }
+    let places = KINDS.iter().filter(|(words, _)| words.contains(&kind.as_str())).flat_map(|(_, places)| *places);
+    let there = places
+        .map(|p| led(p, &tokens[from], &[]))
+        .find(|p| talk.fits(&[anchor, p].concat()) == 1);
+    match there {
+        Some(place) => [before, &place].concat(),
+        None => tokens,
+    }
 }
 
 /// One of a note's parts: who, where to.
