@@ -251,11 +251,7 @@ impl Editor<'_> {
     fn carry_out(&mut self, c: &Command) -> Option<String> {
         let mut done = Vec::new();
         self.definite.clone_from(&c.definite);
-        self.picks = c
-            .mentions
-            .iter()
-            .filter_map(|m| m.pick.map(|p| (m.spec.span, p)))
-            .collect();
+        self.picks.clone_from(&c.picks);
         if self.style_of(c) {
             done.push("style".to_string());
         }

@@ -417,6 +417,8 @@ pub(super) fn note_definite(c: &mut Command, mentions: &[Mention]) {
     let known = |m: &&Mention| m.definite || m.bare && m.is_anchor && !m.plural;
     c.definite
         .extend(mentions.iter().filter(known).map(|m| m.spec.span));
+    c.picks
+        .extend(mentions.iter().filter_map(|m| m.pick.map(|p| (m.spec.span, p))));
 }
 
 pub(super) fn target_part(text: &str, items: &[Item], c: &mut Command) {

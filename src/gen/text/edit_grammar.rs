@@ -89,6 +89,8 @@ pub struct Command {
     pub mentions: Vec<Mention>,
     /// Spans of what "the" was said of.
     pub definite: Vec<Span>,
+    /// Spans of what "the nearest" and the like was said of.
+    pub picks: Vec<(Span, Pick)>,
     /// What replaces the target.
     pub by: Option<Mention>,
     /// Where to.
@@ -134,6 +136,7 @@ impl Command {
             targets: Vec::new(),
             mentions: Vec::new(),
             definite: Vec::new(),
+            picks: Vec::new(),
             by: None,
             destination: None,
             anchors: Vec::new(),

@@ -143,6 +143,14 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_m.jsonl"),
     ),
     (
+        "strangers_26.jsonl",
+        include_str!("../../../../tests/data/strangers_26.jsonl"),
+    ),
+    (
+        "causes_p.jsonl",
+        include_str!("../../../../tests/data/causes_p.jsonl"),
+    ),
+    (
         "variants.jsonl",
         include_str!("../../../../tests/data/variants.jsonl"),
     ),

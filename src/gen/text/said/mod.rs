@@ -133,6 +133,16 @@ impl Talk<'_> {
         m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
     }
 
+    /// The box that these words mean, if no other fits.
+    fn only(&self, np: &[Token]) -> Option<&SceneBox> {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let m = mentions.iter().find(|m| !m.is_anchor && !m.gone)?;
+        match fitting(self.map, self.boxes, m, &mentions).as_slice() {
+            [id] => self.boxes.get(id),
+            _ => None,
+        }
+    }
+
     /// How far the boxes are that fit these words, m, if they are all as far.
     fn range(&self, np: &[Token]) -> Option<f64> {
         let (_, mentions) = parse(self.text, &tag(np));

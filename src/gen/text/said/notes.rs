@@ -1,12 +1,14 @@
 //! Notes without a verb that send those who are there somewhere: "ambulance over to the right edge, parked", "front truck to thirty
 //! metres, rear one also to thirty", "bus to 30 m, and both workers go with it".
 
+use super::super::holds::role_of;
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
 use super::words::{first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed};
+use crate::scene::graph::LaneRole as L;
 
 const TO: &[&str] = &[
     "to", "onto", "into", "over to", "over into", "over onto", "across to", "up to", "back to", "out to", "down to",
@@ -41,22 +43,12 @@ fn their_own(mut tokens: Vec<Token>) -> Vec<Token> {
     tokens
 }
 
+const EDGES: &[&str] = &["edge", "kerb", "curb", "roadside", "shoulder", "side"];
+const WALKS: &[&str] = &["sidewalk", "pavement", "footpath", "side"];
+const LANES: &[&str] = &["lane"];
+
 /// "behind the bus, same edge": the edge that the bus is at.
 fn same_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const KINDS: &[(&[&str], &[&str])] = &[
-        (
-            &["edge", "kerb", "curb", "roadside", "shoulder", "side"],
-            &["on the right edge of the road", "on the left edge of the road"],
-        ),
-        (
-            &["lane"],
-            &["in my lane", "in the oncoming lane", "in the left lane", "in the right lane"],
-        ),
-        (
-            &["sidewalk", "pavement", "footpath", "side"],
-            &["on the right sidewalk", "on the left sidewalk"],
-        ),
-    ];
     let found = (4..tokens.len()).find_map(|i| {
         is(tokens.get(i), &["same"]).then_some(())?;
         let (kinds, end) = match leads(&tokens[i + 1..], &["side of the road", "edge of the road", "side of the street"]) {
@@ -78,16 +70,26 @@ fn same_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let anchor = &before[the..];
-    if the == 0 || !first_noun(anchor).is_some_and(|n| n.0 < 4 && n.1 == anchor.len()) || talk.fits(anchor) != 1 {
+    if the == 0 || !first_noun(anchor).is_some_and(|n| n.0 < 4 && n.1 == anchor.len()) {
         return tokens;
     }
-    let places = KINDS.iter().filter(|(words, _)| words.contains(&kind.as_str())).flat_map(|(_, places)| *places);
-    let there = places
-        .map(|p| led(p, &tokens[from], &[]))
-        .find(|p| talk.fits(&[anchor, p].concat()) == 1);
-    match there {
-        Some(place) => [before, &place].concat(),
-        None => tokens,
+    let role = talk.only(anchor).and_then(|b| role_of(talk.map, b));
+    let (place, words): (&str, &[&str]) = match role {
+        Some(L::LeftRoadside) => ("on the left edge of the road", EDGES),
+        Some(L::RightRoadside) => ("on the right edge of the road", EDGES),
+        Some(L::LeftSidewalk) => ("on the left sidewalk", WALKS),
+        Some(L::RightSidewalk) => ("on the right sidewalk", WALKS),
+        Some(L::Ego) => ("in my lane", LANES),
+        Some(L::Left) => ("in the left lane", LANES),
+        Some(L::Right) => ("in the right lane", LANES),
+        Some(L::Oncoming) => ("in the oncoming lane", LANES),
+        Some(L::Cross) => ("in the cross street", &["street", "road", "lane"]),
+        _ => return tokens,
+    };
+    if words.contains(&kind.as_str()) {
+        [before, &led(place, &tokens[tokens.len() - 1], &[])].concat()
+    } else {
+        tokens
     }
 }
 
