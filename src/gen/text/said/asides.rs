@@ -204,6 +204,9 @@ fn asks(before: &[Token]) -> bool {
 
 /// True if nothing in these words could tell how something is or where.
 fn vague(rest: &[Token]) -> bool {
+    // ("I can't stand the noise")
+    let the = usize::from(is(rest.first(), &["the", "this", "all", "that", "such", "these"]) && !has_noun(rest));
+    let rest = &rest[the..];
     rest.len() < 6
         && rest.iter().enumerate().all(|(k, t)| {
             let sense = look_up(text(t));
@@ -213,7 +216,7 @@ fn vague(rest: &[Token]) -> bool {
                     Some(t),
                     &[
                         "the", "my", "our", "a", "an", "this", "these", "those", "another", "more", "no", "not", "only",
-                        "gone", "there", "if", "when", "instead",
+                        "gone", "there", "if", "when", "instead", "one", "ones", "other", "others", "rest",
                     ],
                 )
                 && !matches!(

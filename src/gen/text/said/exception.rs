@@ -142,7 +142,15 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
     let at = n + usize::from(is(tokens.get(n), &["the", "this", "that", "my", "our"]));
     let area = leads(&tokens[at.min(tokens.len())..], AREAS);
     let road = leads(&tokens[at.min(tokens.len())..], ROADS);
-    let Some(m) = area.or(road).filter(|_| at > n) else {
+    // "clear my lane but keep the truck"
+    let strip = (at..tokens.len().min(at + 4)).find(|k| {
+        is(
+            tokens.get(*k),
+            &["lane", "lanes", "sidewalk", "pavement", "footpath", "crossing", "zebra", "kerb", "roadside", "shoulder"],
+        )
+    });
+    let strip = strip.map(|k| k + 1 - at).filter(|m| !has_noun(&tokens[at..at + m]));
+    let Some(m) = area.or(road).or(strip).filter(|_| at > n) else {
         return tokens;
     };
     let mut k = at + m;
@@ -173,10 +181,16 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
         .filter(|t| !is(Some(t), &["alone", "there", "untouched", "in", "place"]) || is_place(std::slice::from_ref(t)))
         .cloned()
         .collect();
-    match area {
-        Some(_) => led("keep only", &tokens[0], &[&np]),
-        None => led("remove everything on the road except", &tokens[0], &[&np]),
-    }
+    let place = match (area, road) {
+        (Some(_), _) => return led("keep only", &tokens[0], &[&np]),
+        (None, Some(_)) => led("on the road", &tokens[0], &[]),
+        _ => {
+            let lane = tokens[at..at + m].iter().any(|t| is(Some(t), &["lane", "lanes"]));
+            led(if lane { "in" } else { "on" }, &tokens[0], &[&tokens[n..at + m]])
+        }
+    };
+    let all = led("remove all the objects", &tokens[0], &[&place]);
+    [&all, &led("except", &tokens[0], &[&np])[..]].concat()
 }
 
 /// "everything except the bus and the kids should disappear": only those stay.

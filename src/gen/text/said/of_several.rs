@@ -63,26 +63,38 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
                 || is(Some(t), &["the", "that", "and", "but", "my"])
                 || super::super::rephrase::is_verb(t) && front
         });
-        let (_, b) = (opens && (front || rear))
-            .then(|| first_noun(&tokens[i + 1..]))?
-            .filter(|n| n.0 == 0)?;
-        let noun = &tokens[i + 1..i + 1 + b];
-        let at = &tokens[i];
-        let one = !matches!(
-            super::look_up(text(&noun[b - 1])),
-            Some(super::Sense::Noun(_, true))
-        );
-        if !one || talk.fits(noun) < 2 {
+        if !opens || !(front || rear) {
             return None;
         }
+        // ("rear one a bus": of the kind named before)
+        let before = first_noun(out).map(|n| out[n.0..n.1].to_vec());
+        let one = is(tokens.get(i + 1), &["one"]);
+        let (noun, end) = match (before, one) {
+            (Some(noun), true) => (noun, i + 2),
+            _ => {
+                let (_, b) = first_noun(&tokens[i + 1..]).filter(|n| n.0 == 0)?;
+                (tokens[i + 1..i + 1 + b].to_vec(), i + 1 + b)
+            }
+        };
+        let at = &tokens[i];
+        let many = matches!(
+            super::look_up(text(noun.last()?)),
+            Some(super::Sense::Noun(_, true))
+        );
+        if many || talk.fits(&noun) < 2 {
+            return None;
+        }
+        if !is(out.last(), &["the", "that", "my"]) {
+            out.extend(led("the", at, &[]));
+        }
         let side = led(if front { "ahead of me" } else { "behind me" }, at, &[]);
-        let there = [noun, &side].concat();
+        let there = [&noun[..], &side].concat();
         if talk.fits(&there) == 1 {
             out.extend(there);
         } else {
-            out.extend(led(if front { "frontmost" } else { "rearmost" }, at, &[noun]));
+            out.extend(led(if front { "frontmost" } else { "rearmost" }, at, &[&noun]));
         }
-        Some(i + 1 + b)
+        Some(end)
     })
 }
 

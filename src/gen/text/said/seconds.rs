@@ -50,7 +50,7 @@ const COPY: &[&str] = &["copy", "duplicate", "clone", "replica", "double", "twin
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    one_more(who_comes(copied(tokens, talk), talk), talk)
+    one_more(who_comes(companion(copied(tokens, talk), talk), talk), talk)
 }
 
 fn joins(t: Option<&Token>) -> bool {
@@ -87,10 +87,45 @@ fn who_comes(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&who, &tokens[says..]].concat()
 }
 
+/// "the cyclist gets a companion riding behind him": another cyclist there.
+fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const GETS: &[&str] = &[
+        "gets", "has", "should have", "should get", "needs", "now has", "has got", "is given", "receives", "finds",
+        "gets joined by", "is joined by",
+    ];
+    const MATES: &[&str] = &[
+        "a companion", "a partner", "a mate", "a buddy", "a twin", "a second of its kind", "a peer", "a fellow",
+        "company", "a colleague",
+    ];
+    let Some((a, b)) = first_noun(&tokens).filter(|n| n.0 < 4 && is(tokens.first(), &["the", "my", "that"])) else {
+        return tokens;
+    };
+    let gets = leads(&tokens[b..], GETS).and_then(|n| leads(&tokens[b + n..], MATES).map(|m| b + n + m));
+    let Some(from) = gets.filter(|_| talk.fits(&tokens[..b]) == 1) else {
+        return tokens;
+    };
+    let verb = usize::from(is(
+        tokens.get(from),
+        &["riding", "driving", "walking", "standing", "parked", "waiting", "going", "right", "directly"],
+    ));
+    let verb = verb + usize::from(verb == 1 && is(tokens.get(from + 1), &["right", "directly", "just"]));
+    let place = &tokens[from + verb..];
+    let him = place.iter().position(|t| is(Some(t), &["him", "her", "it"]));
+    let Some(k) = him.filter(|k| is_place(place) && joins(place.get(k + 1))) else {
+        return tokens;
+    };
+    let another = led("add another", &tokens[0], &[&tokens[a..b]]);
+    [&another, &place[..k], &tokens[..b], &place[k + 1..]].concat()
+}
+
 /// "a second bus follows the first one": add another one following the bus.
 fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let lead = leads(&tokens, &["and", "also", "then", "please", "now"]).unwrap_or(0);
-    let adds = usize::from(is(tokens.get(lead), &["add", "put", "place", "insert"]));
+    const ADDS: &[&str] = &[
+        "add", "put", "place", "insert", "make", "create", "i need", "i want", "we need", "there is", "there should be",
+        "give me", "there must be", "i would like", "id like", "show",
+    ];
+    let adds = leads(&tokens[lead..], ADDS).unwrap_or(0);
     let body = &tokens[lead + adds..];
     let article = usize::from(is(body.first(), &["a", "an", "one"]));
     let nth = body.get(article).and_then(|t| ordinal(text(t)));
@@ -118,6 +153,9 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let first = leads(&rest[k..], FIRST).filter(|n| there == 1 && joins(rest.get(k + n)) || is_place(&rest[k + n..]));
         let first = first.filter(|_| there == 1);
         let others = leads(&rest[k..], REST);
+        // ("between the other two")
+        let two = leads(&rest[k..], &["the other two", "the first two", "those two", "the two others", "the existing two"])
+            .filter(|n| there == 2 && joins(rest.get(k + n)));
         // ("the first bus", "the other cyclist")
         let named = is(rest.get(k), &["the"])
             && is(rest.get(k + 1), &["first", "other", "existing", "old"])
@@ -128,6 +166,10 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         } else if named && there == 1 {
             out.extend(led("the", &rest[k], &[&rest[k + 2..k + 3]]));
             k += 3;
+        } else if let Some(n) = two {
+            let last = &noun[noun.len() - 1];
+            out.extend(led("the two", &rest[k], &[&noun[..noun.len() - 1], &led(&plural(text(last)), last, &[])]));
+            k += n;
         } else if let Some(n) = others {
             out.extend(led("the", &rest[k], &[&noun[..noun.len() - 1]]));
             let last = &noun[noun.len() - 1];
