@@ -197,7 +197,7 @@ fn asks(before: &[Token]) -> bool {
     let says = has_noun(before)
         && (before
             .iter()
-            .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false))
+            .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) || is(Some(t), &["more", "less", "fewer", "no"]))
             || (1..before.len()).any(|k| is_place(&before[k..])));
     orders && before.len() > 1 || says
 }

@@ -129,7 +129,7 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
     const AREAS: &[&str] = &[
         "lot", "car park", "parking lot", "carpark", "scene", "site", "map", "picture", "image", "view", "place",
         "area", "whole area", "whole scene", "whole lot", "whole place", "whole site", "whole car park", "stage",
-        "whole picture", "building site", "construction site", "canvas", "junction", "intersection", "roundabout",
+        "whole picture", "building site", "construction site", "canvas",
     ];
     const ROADS: &[&str] = &[
         "street", "road", "highway", "motorway", "whole street", "whole road", "whole highway", "freeway",
@@ -146,7 +146,7 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
     let strip = (at..tokens.len().min(at + 4)).find(|k| {
         is(
             tokens.get(*k),
-            &["lane", "lanes", "sidewalk", "pavement", "footpath", "crossing", "zebra", "kerb", "roadside", "shoulder"],
+            &["lane", "lanes", "sidewalk", "pavement", "footpath", "crossing", "zebra", "kerb", "roadside", "shoulder", "junction", "intersection", "roundabout"],
         )
     });
     let strip = strip.map(|k| k + 1 - at).filter(|m| !has_noun(&tokens[at..at + m]));
@@ -189,7 +189,7 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
             led(if lane { "in" } else { "on" }, &tokens[0], &[&tokens[n..at + m]])
         }
     };
-    let all = led("remove all the objects", &tokens[0], &[&place]);
+    let all = led("remove all objects", &tokens[0], &[&place]);
     [&all, &led("except", &tokens[0], &[&np])[..]].concat()
 }
 

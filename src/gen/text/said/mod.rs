@@ -198,6 +198,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = tidy::plain(spoken::sides_named(body.to_vec()), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
     let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
+    let out = notes::gone(out, talk);
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);

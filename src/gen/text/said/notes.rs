@@ -7,7 +7,7 @@ use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed};
+use super::words::{first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed, word};
 use crate::scene::graph::LaneRole as L;
 
 const TO: &[&str] = &[
@@ -91,6 +91,71 @@ fn same_strip(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     } else {
         tokens
     }
+}
+
+/// "the truck behind me away", "cyclist gone, child too", "the truck ahead of me gone, a van in its place".
+pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if tokens.len() > 40 {
+        return tokens;
+    }
+    let body = trimmed(&tokens);
+    let mut out: Vec<Token> = Vec::new();
+    let mut before = false;
+    for (k, p) in parts(body).into_iter().enumerate() {
+        let goes = leaves(p, before, talk);
+        if k == 0 && goes.is_none() {
+            return tokens;
+        }
+        let fresh = is(p.first(), &["a", "an", "another"]) || number(&p[0]).is_some();
+        let there = super::predicate::in_place(p).is_some() || is(p.last(), &["instead"]);
+        let put = goes.is_none() && fresh && there && !p.iter().any(says);
+        if k > 0 {
+            let and = goes.is_some() || put;
+            out.push(if and { word("and", &p[0]) } else { comma(&p[0]) });
+        }
+        match goes {
+            Some(who) => {
+                let the = is(who.first(), &["the", "both", "all", "my", "that", "these", "those"]);
+                out.extend(led(if the { "remove" } else { "remove the" }, &p[0], &[who]));
+                before = true;
+            }
+            None => {
+                if put {
+                    out.push(word("put", &p[0]));
+                }
+                out.extend_from_slice(p);
+                before = false;
+            }
+        }
+    }
+    out
+}
+
+fn comma(at: &Token) -> Token {
+    Token {
+        kind: TokenKind::Comma,
+        ..word(",", at)
+    }
+}
+
+fn says(t: &Token) -> bool {
+    HELPERS.contains(&text(t)) || is_finite(text(t), false)
+}
+
+/// Who goes by a part of a note; "child too" goes as who was named before.
+fn leaves<'t>(p: &'t [Token], before: bool, talk: &Talk<'_>) -> Option<&'t [Token]> {
+    let (last, who) = p.split_last()?;
+    let away = is(Some(last), &["gone", "away", "out", "off"]) || before && is(Some(last), &["too", "also"]);
+    let (a, b) = first_noun(who).filter(|n| away && n.0 < 4)?;
+    let fresh = is(who.first(), &["a", "an", "another", "some", "no", "more"])
+        || who[..a].iter().any(|t| is_verb(t) || number(t).is_some_and(|_| !is(Some(t), &["both"])));
+    let place = &who[b..];
+    let plain = place.is_empty()
+        || is_place(place)
+            && !has_noun(place)
+            && !place.iter().any(|t| number(t).is_some())
+            && is(place.last(), &["me", "us", "left", "right", "lane", "road", "street", "sidewalk", "pavement"]);
+    (!fresh && plain && !who.iter().any(says) && talk.fits(who) > 0).then_some(who)
 }
 
 /// One of a note's parts: who, where to.

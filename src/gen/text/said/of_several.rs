@@ -84,6 +84,12 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
         if many || talk.fits(&noun) < 2 {
             return None;
         }
+        // ("rear truck 30 m behind me")
+        let opens = out.iter().all(|t| is(Some(t), &["the"]));
+        if opens && is_place(&tokens[end..]) && number(&tokens[end]).is_some() {
+            out.clear();
+            out.extend(led("move", at, &[]));
+        }
         if !is(out.last(), &["the", "that", "my"]) {
             out.extend(led("the", at, &[]));
         }

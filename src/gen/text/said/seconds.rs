@@ -161,6 +161,11 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && is(rest.get(k + 1), &["first", "other", "existing", "old"])
             && rest.get(k + 2).is_some_and(|t| noun.last().is_some_and(|n| text(t) == text(n)));
         if let Some(n) = first {
+            // ("with the first one")
+            if is(out.last(), &["with"]) {
+                out.pop();
+                out.extend(led("next to", &rest[k], &[]));
+            }
             out.extend(led("the", &rest[k], &[noun]));
             k += n;
         } else if named && there == 1 {
@@ -188,7 +193,7 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .is_some_and(|t| is_finite(text(t), false) || is(Some(t), &["is", "should", "has", "will", "must"]));
     if !verb {
         // a note, which names where: "second taxi, right behind the first"
-        let placed = (0..rest.len()).any(|k| is_place(&rest[k..]));
+        let placed = (0..rest.len()).any(|k| is_place(&rest[k..])) || pointed;
         return if placed && (pointed || nth.is_some()) { out } else { tokens };
     }
     if !pointed {

@@ -13,6 +13,8 @@ pub(super) fn verb_last(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let stays = (0..tokens.len()).find(|k| {
         let link = tokens[*k].kind == TokenKind::Comma || text(&tokens[*k]) == "but";
         let rest = trimmed(&tokens[*k..]);
+        let put = usize::from(is(rest.last(), &["put"]));
+        let rest = &rest[..rest.len() - put];
         link && is(rest.first(), &["the", "both", "all"])
             && is(rest.last(), &["stay", "stays", "remain", "remains"])
             && talk.fits(&rest[..rest.len() - 1]) > 0
