@@ -354,10 +354,6 @@ impl<'t> Reader<'t> {
             ));
         }
         let whole = &super::said::spared(&chosen(&pointed, &talk))[..];
-        if std::env::var_os("DBGP").is_some() {
-            let w = |t: &[Token]| t.iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" ");
-            eprintln!("IN {} => CH {} => W {}", w(&self.tokens[from..end]), w(whole), w(&worded(whole, &talk)));
-        }
         let cut = except(whole);
         let pieces = said(&worded(cut.as_ref().map_or(whole, |c| &c.0), &talk), &talk);
         let mut out: Vec<Command> = Vec::new();

@@ -288,8 +288,21 @@ fn judgement(rest: &[Token]) -> bool {
         .is_some_and(|n| mood(&rest[n..]))
 }
 
-/// "so nobody runs into it", "so that people notice it": what for.
+/// What something is put there to do.
+const AIMS: &[&str] = &[
+    "to warn", "to protect", "to alert", "to remind", "to prevent", "to discourage", "to deter", "to impress",
+    "to scare", "to shield", "to safeguard", "to slow down", "to divert", "to annoy", "to stop people", "to stop cars",
+    "to stop drivers", "to stop traffic", "to stop anyone", "to stop others", "to keep people", "to keep cars",
+    "to keep drivers", "to keep traffic", "to keep anyone", "to keep others", "to keep everyone", "in order to warn",
+    "in order to protect",
+];
+
+/// "so nobody runs into it", "so that people notice it", "to warn other drivers": what for.
 fn purpose(rest: &[Token]) -> bool {
+    if let Some(n) = leads(rest, AIMS) {
+        let mark = |t: &Token| t.kind != TokenKind::Word || is(Some(t), &["and", "then", "but", "by", "with"]);
+        return rest.len() > n && rest.len() < n + 8 && !rest.iter().any(mark);
+    }
     let Some(n) = leads(rest, &["so that", "so"]) else {
         return false;
     };

@@ -167,9 +167,17 @@ pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
             "but not", "leave only", "keep only", "leaving only", "keeping only", "save for", "bar", "but", "aside from",
             "other than", "leaving", "keeping", "with the exception of", "but leave only", "but keep only", "only leave",
             "only keep", "just leave", "just keep", "and leave just", "excluding", "and leave", "and keep",
+            "only", "just",
         ],
     );
     let np = but.and_then(|b| tokens.get(k + b..)).unwrap_or(&[]);
+    // ("only the bus may remain")
+    let stays = np.iter().rposition(|t| is(Some(t), &["stay", "stays", "remain", "remains", "left", "kept"]));
+    let helped = stays.filter(|s| s + 1 == np.len()).map(|s| {
+        let helpers = np[..s].iter().rev().take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["may", "can", "to"]));
+        s - helpers.count()
+    });
+    let np = &np[..helped.unwrap_or(np.len())];
     let known = is(np.first(), &["the", "my", "that", "those", "these", "both", "our", "all"])
         && first_noun(np).is_some_and(|x| x.0 < 5)
         && !np.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));

@@ -5,11 +5,11 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::lists::HELPERS;
 use super::topics::singular_of;
-use super::words::{find, first_noun, is, is_place, led, text};
+use super::words::{find, first_noun, is, is_place, led, number, text};
 
 /// "make the bus a lorry, the motorcycle a car": make each.
 pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
-    let tokens = let_each(tokens);
+    let tokens = make_others(let_each(tokens));
     if !is(tokens.first(), &["make"]) || !is(tokens.get(1), &["the", "both", "all", "that"]) {
         return tokens;
     }
@@ -38,6 +38,37 @@ pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "make both pedestrians cyclists", "make the bus ahead of us two cars": the one is replaced.
+fn make_others(tokens: Vec<Token>) -> Vec<Token> {
+    let made = is(tokens.first(), &["make"])
+        && is(tokens.get(1), &["the", "both", "all", "those", "these", "that", "my"]);
+    let Some((a, b)) = first_noun(&tokens).filter(|x| made && x.0 < 5) else {
+        return tokens;
+    };
+    let end = tokens.len()
+        - tokens
+            .iter()
+            .rev()
+            .take_while(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "instead", "now"]))
+            .count();
+    let whole = |k: usize, at: usize| first_noun(&tokens[k..]).is_some_and(|x| x.0 == at && k + x.1 == end);
+    let many = |k: usize| matches!(look_up(text(&tokens[k])), Some(Sense::Noun(_, true)));
+    // (nouns that stand together are read as one)
+    let b = (a + 1..b).find(|k| many(k - 1) && whole(*k, 0)).unwrap_or(b);
+    let placed = |k: usize| k == b || is_place(&tokens[b..]) && is(tokens.get(k - 1), &["me", "us", "left", "right"]);
+    let found = (b..end).find(|k| {
+        let counted = number(&tokens[*k]).is_some_and(|n| n > 1) && whole(*k, 1);
+        placed(*k) && (counted || many(*k) && whole(*k, 0) && many(b - 1))
+    });
+    match found {
+        Some(k) => {
+            let with = led("with", &tokens[k], &[&tokens[k..]]);
+            led("replace", &tokens[0], &[&tokens[1..k], &with])
+        }
+        None => tokens,
+    }
 }
 
 /// "let the blue car be a bus and the red one a motorcycle": make each.

@@ -108,7 +108,9 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         }
         let fresh = is(p.first(), &["a", "an", "another"]) || number(&p[0]).is_some();
         let there = super::predicate::in_place(p).is_some() || is(p.last(), &["instead"]);
-        let put = goes.is_none() && fresh && there && !p.iter().any(says);
+        // ("motorcycle in its place")
+        let bare = first_noun(p).filter(|n| n.0 == 0 && talk.fits(&p[..n.1]) == 0);
+        let put = goes.is_none() && (fresh || bare.is_some()) && there && !p.iter().any(says);
         if k > 0 {
             let and = goes.is_some() || put;
             out.push(if and { word("and", &p[0]) } else { comma(&p[0]) });
@@ -121,7 +123,7 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             }
             None => {
                 if put {
-                    out.push(word("put", &p[0]));
+                    out.extend(led(if fresh { "put" } else { "put a" }, &p[0], &[]));
                 }
                 out.extend_from_slice(p);
                 before = false;

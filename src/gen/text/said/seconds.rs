@@ -147,6 +147,12 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let rest = &body[from + b..];
     let mut out = led("add another", &tokens[0], &[np]);
+    // ("third pedestrian, same sidewalk": with the others, where more of a kind come to stand anyhow)
+    let tail = trimmed(rest);
+    let same = leads(tail, &["same", "the same", "on the same", "in the same", "at the same"]);
+    if same.is_some_and(|n| n + 1 == tail.len() && is(tail.last(), &["lane", "sidewalk", "pavement", "side", "edge", "street"])) {
+        return out;
+    }
     let mut pointed = false;
     let mut k = 0;
     while k < rest.len() {
