@@ -6,7 +6,7 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::lists::HELPERS;
+use super::lists::{HELPERS, MATES};
 use super::words::{first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed, word};
 use crate::scene::graph::LaneRole as L;
 
@@ -33,7 +33,9 @@ fn their_own(mut tokens: Vec<Token>) -> Vec<Token> {
         "can remain", "may remain", "is to stay", "shall stay", "has to stay", "should remain", "is kept",
     ];
     for i in 0..tokens.len() {
-        let own = is(tokens.get(i), &["their", "his", "her", "its"]) && (i == 0 || !is_verb(&tokens[i - 1]));
+        let own = is(tokens.get(i), &["their", "his", "her", "its"])
+            && !is(tokens.get(i + 1), &MATES)
+            && (i == 0 || !is_verb(&tokens[i - 1]));
         let stays = own
             && first_noun(&tokens[i + 1..]).is_some_and(|n| n.0 < 2 && leads(&tokens[i + 1 + n.1..], STAYS).is_some());
         if stays {

@@ -199,7 +199,15 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .is_some_and(|t| is_finite(text(t), false) || is(Some(t), &["is", "should", "has", "will", "must"]));
     if !verb {
         // a note, which names where: "second taxi, right behind the first"
-        let placed = (0..rest.len()).any(|k| is_place(&rest[k..])) || pointed;
+        // ("shows up on the left sidewalk" has a verb of its own)
+        let opens = rest.first().is_some_and(|t| {
+            t.kind == TokenKind::Comma
+                || is_place(rest)
+                || is(Some(t), &["with", "parked"])
+                || text(t).ends_with("ing")
+                || is_place(&rest[1..]) && is(Some(t), &["right", "directly", "just", "close", "also", "immediately"])
+        });
+        let placed = opens && (0..rest.len()).any(|k| is_place(&rest[k..])) || pointed;
         return if placed && (pointed || nth.is_some()) { out } else { tokens };
     }
     if !pointed {
@@ -220,7 +228,7 @@ fn copied(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .filter(|n| is(tokens.get(*n), &["a", "one", "another"]) && is(tokens.get(n + 1), COPY))
         .filter(|n| is(tokens.get(n + 2), &["of"]))
         .map(|n| n + 3);
-    let Some(from) = made.or_else(|| is(tokens.first(), COPY).then_some(1)) else {
+    let Some(from) = made.or_else(|| is(tokens.first(), &["copy", "duplicate", "clone", "replicate"]).then_some(1)) else {
         return tokens;
     };
     let known = is(tokens.get(from), &["the", "that", "this", "my"]);

@@ -81,7 +81,9 @@ pub(super) fn off_site(tokens: Vec<Token>) -> Vec<Token> {
     let found = (1 + b..tokens.len().min(b + 10)).find_map(|i| {
         let n = leads(&tokens[i..], SITES).or_else(|| leads(&tokens[i..], ROADS).filter(|_| gets && !walks(&tokens[1 + a..1 + b])))?;
         let end = tokens.get(i + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "completely"]));
-        end.then_some((i, i + n))
+        // ("off the road and onto the sidewalk")
+        let goes_on = (i + n..tokens.len().min(i + n + 3)).any(|k| is(tokens.get(k), &["to", "onto", "into", "over", "on"]));
+        (end && !goes_on).then_some((i, i + n))
     });
     match found {
         Some((i, end)) => led("remove", &tokens[0], &[&tokens[1..i], &tokens[end..]]),
