@@ -9,7 +9,9 @@ use super::edit_command::{imperatives, target_part};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
-use super::said::{Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, without_asides, worded};
+use super::said::{
+    Left, Piece, Room, Talk, apart, chosen, except, room_of, said, told_once, without_asides, worded,
+};
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
 use super::wording::begins;

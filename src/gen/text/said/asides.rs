@@ -134,15 +134,68 @@ const JUDGES: &[&str] = &[
 ];
 /// What somebody is to be spared.
 const HARM: &[&str] = &[
-    "runs", "run", "drives", "drive", "bumps", "bump", "crashes", "crash", "falls", "fall", "trips", "trip",
-    "stumbles", "stumble", "hits", "hit", "gets", "get", "touches", "touch", "misses", "miss", "parks", "park",
-    "enters", "enter", "collides", "collide", "slips", "slip", "rides", "ride", "can", "could", "overlooks",
-    "has", "needs",
+    "runs",
+    "run",
+    "drives",
+    "drive",
+    "bumps",
+    "bump",
+    "crashes",
+    "crash",
+    "falls",
+    "fall",
+    "trips",
+    "trip",
+    "stumbles",
+    "stumble",
+    "hits",
+    "hit",
+    "gets",
+    "get",
+    "touches",
+    "touch",
+    "misses",
+    "miss",
+    "parks",
+    "park",
+    "enters",
+    "enter",
+    "collides",
+    "collide",
+    "slips",
+    "slip",
+    "rides",
+    "ride",
+    "can",
+    "could",
+    "overlooks",
+    "has",
+    "needs",
 ];
 /// What somebody is to be able to do.
 const HELP: &[&str] = &[
-    "notice", "notices", "see", "sees", "slow", "slows", "know", "knows", "avoid", "avoids", "pass", "passes",
-    "understand", "react", "can", "could", "brake", "brakes", "get", "gets", "are", "is",
+    "notice",
+    "notices",
+    "see",
+    "sees",
+    "slow",
+    "slows",
+    "know",
+    "knows",
+    "avoid",
+    "avoids",
+    "pass",
+    "passes",
+    "understand",
+    "react",
+    "can",
+    "could",
+    "brake",
+    "brakes",
+    "get",
+    "gets",
+    "are",
+    "is",
 ];
 
 /// A text without such remarks.
@@ -164,24 +217,25 @@ pub fn without(tokens: Vec<Token>) -> Vec<Token> {
 /// Where the remark at the end of a sentence begins.
 fn begin(sentence: &[Token]) -> Option<usize> {
     let from = sentence.len().saturating_sub(16).max(2);
-    (from..sentence.len()).find(|i| {
-        let before = &sentence[..*i];
-        let rest = &sentence[*i..];
-        if !asks(before) {
-            return false;
-        }
-        let after_mark = matches!(before[i - 1].kind, TokenKind::Comma | TokenKind::Mark);
-        let why = leads(rest, &["because", "since", "as", "for", "cause", "cos"]).unwrap_or(0);
-        (after_mark || why > 0) && (feeling(&rest[why..]) || judgement(&rest[why..])) || purpose(rest)
-    })
-    // (the mark or "and" before goes with it)
-    .map(|i| {
-        let marks = sentence[..i]
-            .iter()
-            .rev()
-            .take_while(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)));
-        i - marks.count()
-    })
+    (from..sentence.len())
+        .find(|i| {
+            let before = &sentence[..*i];
+            let rest = &sentence[*i..];
+            if !asks(before) {
+                return false;
+            }
+            let after_mark = matches!(before[i - 1].kind, TokenKind::Comma | TokenKind::Mark);
+            let why = leads(rest, &["because", "since", "as", "for", "cause", "cos"]).unwrap_or(0);
+            (after_mark || why > 0) && (feeling(&rest[why..]) || judgement(&rest[why..])) || purpose(rest)
+        })
+        // (the mark or "and" before goes with it)
+        .map(|i| {
+            let marks = sentence[..i]
+                .iter()
+                .rev()
+                .take_while(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)));
+            i - marks.count()
+        })
 }
 
 /// True if these words command or tell something of what is in the scene.
@@ -195,17 +249,19 @@ fn asks(before: &[Token]) -> bool {
     });
     let orders = first.is_some_and(is_verb);
     let says = has_noun(before)
-        && (before
-            .iter()
-            .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) || is(Some(t), &["more", "less", "fewer", "no"]))
-            || (1..before.len()).any(|k| is_place(&before[k..])));
+        && (before.iter().any(|t| {
+            HELPERS.contains(&text(t))
+                || is_finite(text(t), false)
+                || is(Some(t), &["more", "less", "fewer", "no"])
+        }) || (1..before.len()).any(|k| is_place(&before[k..])));
     orders && before.len() > 1 || says
 }
 
 /// True if nothing in these words could tell how something is or where.
 fn vague(rest: &[Token]) -> bool {
     // ("I can't stand the noise")
-    let the = usize::from(is(rest.first(), &["the", "this", "all", "that", "such", "these"]) && !has_noun(rest));
+    let the =
+        usize::from(is(rest.first(), &["the", "this", "all", "that", "such", "these"]) && !has_noun(rest));
     let rest = &rest[the..];
     rest.len() < 6
         && rest.iter().enumerate().all(|(k, t)| {
@@ -215,13 +271,20 @@ fn vague(rest: &[Token]) -> bool {
                 && !is(
                     Some(t),
                     &[
-                        "the", "my", "our", "a", "an", "this", "these", "those", "another", "more", "no", "not", "only",
-                        "gone", "there", "if", "when", "instead", "one", "ones", "other", "others", "rest",
+                        "the", "my", "our", "a", "an", "this", "these", "those", "another", "more", "no",
+                        "not", "only", "gone", "there", "if", "when", "instead", "one", "ones", "other",
+                        "others", "rest",
                     ],
                 )
                 && !matches!(
                     sense,
-                    Some(Sense::Weather(_) | Sense::Time(_) | Sense::State(..) | Sense::Color(_) | Sense::Place(..))
+                    Some(
+                        Sense::Weather(_)
+                            | Sense::Time(_)
+                            | Sense::State(..)
+                            | Sense::Color(_)
+                            | Sense::Place(..)
+                    )
                 )
                 && (is(Some(t), &["to"]) || !is_place(&rest[k..]))
         })
@@ -235,7 +298,9 @@ fn feeling(rest: &[Token]) -> bool {
     let mut k = who;
     while is(
         rest.get(k),
-        &["really", "just", "simply", "always", "rather", "do", "much", "truly", "quite"],
+        &[
+            "really", "just", "simply", "always", "rather", "do", "much", "truly", "quite",
+        ],
     ) {
         k += 1;
     }
@@ -248,20 +313,27 @@ fn feeling(rest: &[Token]) -> bool {
     }
     // ("I'm tired of buses")
     let feels = leads(rest, FEELS).or_else(|| {
-        FEELS.iter().filter_map(|f| f.strip_prefix("am ").or_else(|| f.strip_prefix("have "))).find_map(|f| {
-            leads(rest, &[f]).filter(|_| who == 1 && k > 0)
-        })
+        FEELS
+            .iter()
+            .filter_map(|f| f.strip_prefix("am ").or_else(|| f.strip_prefix("have ")))
+            .find_map(|f| leads(rest, &[f]).filter(|_| who == 1 && k > 0))
     });
     feels.is_some_and(|n| {
         let what = &rest[n..];
-        let way = leads(what, &["it this way", "it that way", "it like this", "it like that"]);
+        let way = leads(
+            what,
+            &["it this way", "it that way", "it like this", "it like that"],
+        );
         way == Some(what.len()) || vague(what)
     })
 }
 
 /// "much more peaceful here".
 fn mood(rest: &[Token]) -> bool {
-    let n = rest.iter().take_while(|t| is(Some(t), DEGREES) && !is(Some(t), MOODS)).count();
+    let n = rest
+        .iter()
+        .take_while(|t| is(Some(t), DEGREES) && !is(Some(t), MOODS))
+        .count();
     let said = is(rest.get(n), MOODS) || is(rest.get(n), DEGREES) && n > 0;
     let tail = &rest[(n + 1).min(rest.len())..];
     let tail = &tail[usize::from(is(tail.first(), &["and", "here", "now"])).min(tail.len())..];
@@ -271,8 +343,22 @@ fn mood(rest: &[Token]) -> bool {
                 || is(
                     Some(t),
                     &[
-                        "here", "now", "that", "this", "way", "again", "for", "everyone", "everybody", "all", "us", "me",
-                        "like", "in", "today", "of",
+                        "here",
+                        "now",
+                        "that",
+                        "this",
+                        "way",
+                        "again",
+                        "for",
+                        "everyone",
+                        "everybody",
+                        "all",
+                        "us",
+                        "me",
+                        "like",
+                        "in",
+                        "today",
+                        "of",
                     ],
                 )
         })
@@ -290,29 +376,75 @@ fn judgement(rest: &[Token]) -> bool {
 
 /// What something is put there to do.
 const AIMS: &[&str] = &[
-    "to warn", "to protect", "to alert", "to remind", "to prevent", "to discourage", "to deter", "to impress",
-    "to scare", "to shield", "to safeguard", "to slow down", "to divert", "to annoy", "to stop people", "to stop cars",
-    "to stop drivers", "to stop traffic", "to stop anyone", "to stop others", "to keep people", "to keep cars",
-    "to keep drivers", "to keep traffic", "to keep anyone", "to keep others", "to keep everyone", "in order to warn",
+    "to warn",
+    "to protect",
+    "to alert",
+    "to remind",
+    "to prevent",
+    "to discourage",
+    "to deter",
+    "to impress",
+    "to scare",
+    "to shield",
+    "to safeguard",
+    "to slow down",
+    "to divert",
+    "to annoy",
+    "to stop people",
+    "to stop cars",
+    "to stop drivers",
+    "to stop traffic",
+    "to stop anyone",
+    "to stop others",
+    "to keep people",
+    "to keep cars",
+    "to keep drivers",
+    "to keep traffic",
+    "to keep anyone",
+    "to keep others",
+    "to keep everyone",
+    "in order to warn",
     "in order to protect",
 ];
 
 /// "so nobody runs into it", "so that people notice it", "to warn other drivers": what for.
 fn purpose(rest: &[Token]) -> bool {
     if let Some(n) = leads(rest, AIMS) {
-        let mark = |t: &Token| t.kind != TokenKind::Word || is(Some(t), &["and", "then", "but", "by", "with"]);
+        let mark =
+            |t: &Token| t.kind != TokenKind::Word || is(Some(t), &["and", "then", "but", "by", "with"]);
         return rest.len() > n && rest.len() < n + 8 && !rest.iter().any(mark);
     }
     let Some(n) = leads(rest, &["so that", "so"]) else {
         return false;
     };
     let rest = &rest[n..];
-    let none = leads(rest, &["nobody", "no one", "nothing", "no car", "no cars", "no driver", "no drivers"]);
+    let none = leads(
+        rest,
+        &[
+            "nobody",
+            "no one",
+            "nothing",
+            "no car",
+            "no cars",
+            "no driver",
+            "no drivers",
+        ],
+    );
     let some = leads(
         rest,
         &[
-            "people", "drivers", "everyone", "everybody", "others", "motorists", "other drivers", "the drivers",
-            "road users", "one", "you", "the others",
+            "people",
+            "drivers",
+            "everyone",
+            "everybody",
+            "others",
+            "motorists",
+            "other drivers",
+            "the drivers",
+            "road users",
+            "one",
+            "you",
+            "the others",
         ],
     );
     let (verbs, n) = match (none, some) {
@@ -322,9 +454,14 @@ fn purpose(rest: &[Token]) -> bool {
     };
     let what = &rest[n..];
     let tail = &what[1.min(what.len())..];
-    let ends = |t: &Token| !matches!(t.kind, TokenKind::Word | TokenKind::Number(_)) || is(Some(t), &["and", "then"]);
+    let ends = |t: &Token| {
+        !matches!(t.kind, TokenKind::Word | TokenKind::Number(_)) || is(Some(t), &["and", "then"])
+    };
     let gets = is(what.first(), &["has", "are", "is", "needs"]);
-    let hurt = is(tail.first(), &["hurt", "warned", "safe", "careful", "to", "injured"]);
+    let hurt = is(
+        tail.first(),
+        &["hurt", "warned", "safe", "careful", "to", "injured"],
+    );
     is(what.first(), verbs) && !tail.iter().any(ends) && (!gets || hurt) && !has_noun(tail)
 }
 

@@ -43,7 +43,10 @@ pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
 /// "make both pedestrians cyclists", "make the bus ahead of us two cars": the one is replaced.
 fn make_others(tokens: Vec<Token>) -> Vec<Token> {
     let made = is(tokens.first(), &["make"])
-        && is(tokens.get(1), &["the", "both", "all", "those", "these", "that", "my"]);
+        && is(
+            tokens.get(1),
+            &["the", "both", "all", "those", "these", "that", "my"],
+        );
     let Some((a, b)) = first_noun(&tokens).filter(|x| made && x.0 < 5) else {
         return tokens;
     };
@@ -57,7 +60,8 @@ fn make_others(tokens: Vec<Token>) -> Vec<Token> {
     let many = |k: usize| matches!(look_up(text(&tokens[k])), Some(Sense::Noun(_, true)));
     // (nouns that stand together are read as one)
     let b = (a + 1..b).find(|k| many(k - 1) && whole(*k, 0)).unwrap_or(b);
-    let placed = |k: usize| k == b || is_place(&tokens[b..]) && is(tokens.get(k - 1), &["me", "us", "left", "right"]);
+    let placed =
+        |k: usize| k == b || is_place(&tokens[b..]) && is(tokens.get(k - 1), &["me", "us", "left", "right"]);
     let found = (b..end).find(|k| {
         let counted = number(&tokens[*k]).is_some_and(|n| n > 1) && whole(*k, 1);
         placed(*k) && (counted || many(*k) && whole(*k, 0) && many(b - 1))

@@ -412,11 +412,38 @@ fn made_another(tokens: &[Token]) -> bool {
         let of_place = is(
             tokens.get(k - 1),
             &[
-                "behind", "beside", "near", "by", "at", "on", "in", "of", "to", "alongside", "opposite", "between",
-                "and", "past", "with", "from", "over", "after", "before", "against", "like", "into", "onto", "than",
+                "behind",
+                "beside",
+                "near",
+                "by",
+                "at",
+                "on",
+                "in",
+                "of",
+                "to",
+                "alongside",
+                "opposite",
+                "between",
+                "and",
+                "past",
+                "with",
+                "from",
+                "over",
+                "after",
+                "before",
+                "against",
+                "like",
+                "into",
+                "onto",
+                "than",
             ],
         );
-        let end = tokens.len() - tokens[k..].iter().rev().take_while(|t| t.kind != TokenKind::Word).count();
+        let end = tokens.len()
+            - tokens[k..]
+                .iter()
+                .rev()
+                .take_while(|t| t.kind != TokenKind::Word)
+                .count();
         !of_place
             && is(tokens.get(k + into), &["a", "an"])
             && first_noun(&tokens[k + into..]).is_some_and(|n| n.0 < 4 && k + into + n.1 == end)

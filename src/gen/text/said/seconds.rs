@@ -20,7 +20,13 @@ const FIRST: &[&str] = &[
     "the original one",
     "the original",
 ];
-const REST: &[&str] = &["the others", "the other ones", "the rest", "the first ones", "the existing ones"];
+const REST: &[&str] = &[
+    "the others",
+    "the other ones",
+    "the rest",
+    "the first ones",
+    "the existing ones",
+];
 const COMES: &[&str] = &[
     "is coming",
     "comes",
@@ -64,7 +70,8 @@ fn who_comes(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let np = &tokens[..b];
     let the = is(np.first(), &["the"]) && talk.has_none(np);
-    let fresh = is(np.first(), &["a", "an", "another"]) || number(&np[0]) == Some(1) && is(np.get(1), &["more"]);
+    let fresh =
+        is(np.first(), &["a", "an", "another"]) || number(&np[0]) == Some(1) && is(np.get(1), &["more"]);
     let Some(n) = leads(&tokens[b..], COMES).filter(|_| the || fresh) else {
         return tokens;
     };
@@ -72,7 +79,10 @@ fn who_comes(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     while k < tokens.len() && (tokens[k].kind == TokenKind::Comma || is(tokens.get(k), &["and"])) {
         k += 1;
     }
-    let he = is(tokens.get(k), &["it", "he", "she", "who", "which", "that", "this"]);
+    let he = is(
+        tokens.get(k),
+        &["it", "he", "she", "who", "which", "that", "this"],
+    );
     let says = k + usize::from(he);
     let verb = tokens
         .get(says)
@@ -90,14 +100,33 @@ fn who_comes(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "the cyclist gets a companion riding behind him": another cyclist there.
 fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const GETS: &[&str] = &[
-        "gets", "has", "should have", "should get", "needs", "now has", "has got", "is given", "receives", "finds",
-        "gets joined by", "is joined by",
+        "gets",
+        "has",
+        "should have",
+        "should get",
+        "needs",
+        "now has",
+        "has got",
+        "is given",
+        "receives",
+        "finds",
+        "gets joined by",
+        "is joined by",
     ];
     const MATES: &[&str] = &[
-        "a companion", "a partner", "a mate", "a buddy", "a twin", "a second of its kind", "a peer", "a fellow",
-        "company", "a colleague",
+        "a companion",
+        "a partner",
+        "a mate",
+        "a buddy",
+        "a twin",
+        "a second of its kind",
+        "a peer",
+        "a fellow",
+        "company",
+        "a colleague",
     ];
-    let Some((a, b)) = first_noun(&tokens).filter(|n| n.0 < 4 && is(tokens.first(), &["the", "my", "that"])) else {
+    let Some((a, b)) = first_noun(&tokens).filter(|n| n.0 < 4 && is(tokens.first(), &["the", "my", "that"]))
+    else {
         return tokens;
     };
     let gets = leads(&tokens[b..], GETS).and_then(|n| leads(&tokens[b + n..], MATES).map(|m| b + n + m));
@@ -106,7 +135,9 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let verb = usize::from(is(
         tokens.get(from),
-        &["riding", "driving", "walking", "standing", "parked", "waiting", "going", "right", "directly"],
+        &[
+            "riding", "driving", "walking", "standing", "parked", "waiting", "going", "right", "directly",
+        ],
     ));
     let verb = verb + usize::from(verb == 1 && is(tokens.get(from + 1), &["right", "directly", "just"]));
     let place = &tokens[from + verb..];
@@ -122,8 +153,22 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let lead = leads(&tokens, &["and", "also", "then", "please", "now"]).unwrap_or(0);
     const ADDS: &[&str] = &[
-        "add", "put", "place", "insert", "make", "create", "i need", "i want", "we need", "there is", "there should be",
-        "give me", "there must be", "i would like", "id like", "show",
+        "add",
+        "put",
+        "place",
+        "insert",
+        "make",
+        "create",
+        "i need",
+        "i want",
+        "we need",
+        "there is",
+        "there should be",
+        "give me",
+        "there must be",
+        "i would like",
+        "id like",
+        "show",
     ];
     let adds = leads(&tokens[lead..], ADDS).unwrap_or(0);
     let body = &tokens[lead + adds..];
@@ -149,23 +194,44 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let mut out = led("add another", &tokens[0], &[np]);
     // ("third pedestrian, same sidewalk": with the others, where more of a kind come to stand anyhow)
     let tail = trimmed(rest);
-    let same = leads(tail, &["same", "the same", "on the same", "in the same", "at the same"]);
-    if same.is_some_and(|n| n + 1 == tail.len() && is(tail.last(), &["lane", "sidewalk", "pavement", "side", "edge", "street"])) {
+    let same = leads(
+        tail,
+        &["same", "the same", "on the same", "in the same", "at the same"],
+    );
+    if same.is_some_and(|n| {
+        n + 1 == tail.len()
+            && is(
+                tail.last(),
+                &["lane", "sidewalk", "pavement", "side", "edge", "street"],
+            )
+    }) {
         return out;
     }
     let mut pointed = false;
     let mut k = 0;
     while k < rest.len() {
-        let first = leads(&rest[k..], FIRST).filter(|n| there == 1 && joins(rest.get(k + n)) || is_place(&rest[k + n..]));
+        let first = leads(&rest[k..], FIRST)
+            .filter(|n| there == 1 && joins(rest.get(k + n)) || is_place(&rest[k + n..]));
         let first = first.filter(|_| there == 1);
         let others = leads(&rest[k..], REST);
         // ("between the other two")
-        let two = leads(&rest[k..], &["the other two", "the first two", "those two", "the two others", "the existing two"])
-            .filter(|n| there == 2 && joins(rest.get(k + n)));
+        let two = leads(
+            &rest[k..],
+            &[
+                "the other two",
+                "the first two",
+                "those two",
+                "the two others",
+                "the existing two",
+            ],
+        )
+        .filter(|n| there == 2 && joins(rest.get(k + n)));
         // ("the first bus", "the other cyclist")
         let named = is(rest.get(k), &["the"])
             && is(rest.get(k + 1), &["first", "other", "existing", "old"])
-            && rest.get(k + 2).is_some_and(|t| noun.last().is_some_and(|n| text(t) == text(n)));
+            && rest
+                .get(k + 2)
+                .is_some_and(|t| noun.last().is_some_and(|n| text(t) == text(n)));
         if let Some(n) = first {
             // ("with the first one")
             if is(out.last(), &["with"]) {
@@ -179,12 +245,20 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             k += 3;
         } else if let Some(n) = two {
             let last = &noun[noun.len() - 1];
-            out.extend(led("the two", &rest[k], &[&noun[..noun.len() - 1], &led(&plural(text(last)), last, &[])]));
+            out.extend(led(
+                "the two",
+                &rest[k],
+                &[&noun[..noun.len() - 1], &led(&plural(text(last)), last, &[])],
+            ));
             k += n;
         } else if let Some(n) = others {
             out.extend(led("the", &rest[k], &[&noun[..noun.len() - 1]]));
             let last = &noun[noun.len() - 1];
-            let many = if there == 1 { text(last).to_string() } else { plural(text(last)) };
+            let many = if there == 1 {
+                text(last).to_string()
+            } else {
+                plural(text(last))
+            };
             out.extend(led(&many, last, &[]));
             k += n;
         } else {
@@ -205,16 +279,34 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 || is_place(rest)
                 || is(Some(t), &["with", "parked"])
                 || text(t).ends_with("ing")
-                || is_place(&rest[1..]) && is(Some(t), &["right", "directly", "just", "close", "also", "immediately"])
+                || is_place(&rest[1..])
+                    && is(
+                        Some(t),
+                        &["right", "directly", "just", "close", "also", "immediately"],
+                    )
         });
         let placed = opens && (0..rest.len()).any(|k| is_place(&rest[k..])) || pointed;
-        return if placed && (pointed || nth.is_some()) { out } else { tokens };
+        return if placed && (pointed || nth.is_some()) {
+            out
+        } else {
+            tokens
+        };
     }
     if !pointed {
         return tokens;
     }
     let at = np.len() + 2;
-    let follows = leads(&rest[..], &["follows", "is following", "should follow", "trails", "is trailing", "tails"]);
+    let follows = leads(
+        &rest[..],
+        &[
+            "follows",
+            "is following",
+            "should follow",
+            "trails",
+            "is trailing",
+            "tails",
+        ],
+    );
     let tail = out[at..].to_vec();
     match follows {
         Some(n) => [&out[..at], &led("following", &rest[0], &[&tail[n..]])].concat(),
@@ -224,11 +316,18 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "copy the truck and put the copy behind us", "make a copy of the bus behind the car": another one there.
 fn copied(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let made = leads(&tokens, &["make", "create", "add", "put", "place", "insert", "i want", "i need"])
-        .filter(|n| is(tokens.get(*n), &["a", "one", "another"]) && is(tokens.get(n + 1), COPY))
-        .filter(|n| is(tokens.get(n + 2), &["of"]))
-        .map(|n| n + 3);
-    let Some(from) = made.or_else(|| is(tokens.first(), &["copy", "duplicate", "clone", "replicate"]).then_some(1)) else {
+    let made = leads(
+        &tokens,
+        &[
+            "make", "create", "add", "put", "place", "insert", "i want", "i need",
+        ],
+    )
+    .filter(|n| is(tokens.get(*n), &["a", "one", "another"]) && is(tokens.get(n + 1), COPY))
+    .filter(|n| is(tokens.get(n + 2), &["of"]))
+    .map(|n| n + 3);
+    let Some(from) =
+        made.or_else(|| is(tokens.first(), &["copy", "duplicate", "clone", "replicate"]).then_some(1))
+    else {
         return tokens;
     };
     let known = is(tokens.get(from), &["the", "that", "this", "my"]);
@@ -246,7 +345,12 @@ fn copied(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let link = rest[i].kind != TokenKind::Word || is(rest.get(i), &["and", "then"]);
         link.then_some(())?;
         let open = trimmed(&rest[i..]);
-        let verb = leads(open, &["put", "place", "move", "set", "park", "position", "stick", "have", "let", "insert"]);
+        let verb = leads(
+            open,
+            &[
+                "put", "place", "move", "set", "park", "position", "stick", "have", "let", "insert",
+            ],
+        );
         let k = verb.unwrap_or(0);
         let the = usize::from(is(open.get(k), &["the", "that", "this", "its"]));
         let copy = is(open.get(k + the), COPY) && the == 1
@@ -264,8 +368,17 @@ fn copied(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             };
             [&another, &parked, &there(place)[..]].concat()
         }
-        Some((None, says)) if says.first().is_some_and(|t| is_finite(text(t), false) || is(Some(t), &["is", "should"])) => {
-            match leads(says, &["goes", "should go", "belongs", "comes", "should be", "is"]).filter(|n| is_place(&says[*n..])) {
+        Some((None, says))
+            if says
+                .first()
+                .is_some_and(|t| is_finite(text(t), false) || is(Some(t), &["is", "should"])) =>
+        {
+            match leads(
+                says,
+                &["goes", "should go", "belongs", "comes", "should be", "is"],
+            )
+            .filter(|n| is_place(&says[*n..]))
+            {
                 Some(n) => [&another, &there(&says[n..])[..]].concat(),
                 None => [&another[1..], says].concat(),
             }
@@ -279,9 +392,11 @@ fn copied(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// Where a copy comes to: "into the left lane" is in it.
 fn there(place: &[Token]) -> Vec<Token> {
     match leads(place, &["to", "into", "onto"]) {
-        Some(n) if !is(place.get(n), &["my", "our"]) || is(place.get(n + 1), &["lane"]) => {
-            led(if is(place.first(), &["onto"]) { "on" } else { "in" }, &place[0], &[&place[n..]])
-        }
+        Some(n) if !is(place.get(n), &["my", "our"]) || is(place.get(n + 1), &["lane"]) => led(
+            if is(place.first(), &["onto"]) { "on" } else { "in" },
+            &place[0],
+            &[&place[n..]],
+        ),
         _ => place.to_vec(),
     }
 }

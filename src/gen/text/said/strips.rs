@@ -72,17 +72,29 @@ pub(super) fn off_site(tokens: Vec<Token>) -> Vec<Token> {
     let gets = is(tokens.first(), &["get", "take", "have"]);
     let sends = is(
         tokens.first(),
-        &["move", "bring", "drive", "push", "pull", "send", "kick", "lift", "clear", "shoo", "usher", "lead"],
+        &[
+            "move", "bring", "drive", "push", "pull", "send", "kick", "lift", "clear", "shoo", "usher",
+            "lead",
+        ],
     );
-    let whom = is(tokens.get(1), &["the", "both", "all", "my", "that", "those", "these", "every"]);
-    let Some((a, b)) = first_noun(tokens.get(1..).unwrap_or(&[])).filter(|n| n.0 < 5 && whom && (gets || sends)) else {
+    let whom = is(
+        tokens.get(1),
+        &["the", "both", "all", "my", "that", "those", "these", "every"],
+    );
+    let Some((a, b)) =
+        first_noun(tokens.get(1..).unwrap_or(&[])).filter(|n| n.0 < 5 && whom && (gets || sends))
+    else {
         return tokens;
     };
     let found = (1 + b..tokens.len().min(b + 10)).find_map(|i| {
-        let n = leads(&tokens[i..], SITES).or_else(|| leads(&tokens[i..], ROADS).filter(|_| gets && !walks(&tokens[1 + a..1 + b])))?;
-        let end = tokens.get(i + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "completely"]));
+        let n = leads(&tokens[i..], SITES)
+            .or_else(|| leads(&tokens[i..], ROADS).filter(|_| gets && !walks(&tokens[1 + a..1 + b])))?;
+        let end = tokens.get(i + n).is_none_or(|t| {
+            t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "completely"])
+        });
         // ("off the road and onto the sidewalk")
-        let goes_on = (i + n..tokens.len().min(i + n + 3)).any(|k| is(tokens.get(k), &["to", "onto", "into", "over", "on"]));
+        let goes_on = (i + n..tokens.len().min(i + n + 3))
+            .any(|k| is(tokens.get(k), &["to", "onto", "into", "over", "on"]));
         (end && !goes_on).then_some((i, i + n))
     });
     match found {

@@ -33,8 +33,10 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = rewritten(&tokens, |i, out| {
         let n = begins(&tokens[i..], INSTEAD_OF_IT)?;
         let goes = |k: usize| {
-            let opens = k == 0 || out[k - 1].kind != TokenKind::Word || is(out.get(k - 1), &["and", "please"]);
-            opens && removes(out.get(k)) || is(out.get(k), &["gone", "left", "away", "out", "disappears", "goes"])
+            let opens =
+                k == 0 || out[k - 1].kind != TokenKind::Word || is(out.get(k - 1), &["and", "please"]);
+            opens && removes(out.get(k))
+                || is(out.get(k), &["gone", "left", "away", "out", "disappears", "goes"])
         };
         let gone = talk.room == Room::Gone || (0..out.len()).any(goes);
         gone.then(|| {
@@ -42,19 +44,33 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             // ("instead of it, please put a truck")
             let opens = i == 0 || tokens[i - 1].kind != TokenKind::Word;
             let small = |t: &&Token| t.kind == TokenKind::Comma || is(Some(t), &["please", "there", "now"]);
-            i + n + if opens { tokens[i + n..].iter().take_while(small).count() } else { 0 }
+            i + n
+                + if opens {
+                    tokens[i + n..].iter().take_while(small).count()
+                } else {
+                    0
+                }
         })
     });
     let alone = talk.room == Room::Gone
         && is(out.last(), &["instead"])
-        && is(out.first(), &["add", "put", "insert", "place", "use", "take", "show", "have", "drop"])
+        && is(
+            out.first(),
+            &[
+                "add", "put", "insert", "place", "use", "take", "show", "have", "drop",
+            ],
+        )
         && (is(out.get(1), &["a", "an"]) || out.get(1).is_some_and(|t| number(t).is_some()))
         && first_noun(&out).is_some_and(|n| n.1 + 1 == out.len());
     if !alone {
         return out;
     }
     let at = &out[0];
-    led("put", at, &[&out[1..out.len() - 1], &led("in its place", at, &[])])
+    led(
+        "put",
+        at,
+        &[&out[1..out.len() - 1], &led("in its place", at, &[])],
+    )
 }
 
 /// What a clause that was read leaves.
