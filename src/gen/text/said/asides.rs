@@ -324,7 +324,12 @@ fn feeling(rest: &[Token]) -> bool {
             what,
             &["it this way", "it that way", "it like this", "it like that"],
         );
-        way == Some(what.len()) || vague(what)
+        // ("I can't bear to watch")
+        let does = is(what.first(), &["to"])
+            && is(what.get(1), &["watch", "look", "see", "think"])
+            && what.len() < 5
+            && !has_noun(what);
+        way == Some(what.len()) || does || vague(what)
     })
 }
 
