@@ -142,7 +142,8 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let mut before = false;
     for (k, p) in parts(body).into_iter().enumerate() {
         let goes = leaves(p, before, talk);
-        if k == 0 && goes.is_none() {
+        // ("cyclists off, mopeds on" is one for the other)
+        if k == 0 && goes.is_none() || is(p.last(), &["on", "in"]) {
             return tokens;
         }
         let fresh = is(p.first(), &["a", "an", "another"]) || number(&p[0]).is_some();

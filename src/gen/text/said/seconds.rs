@@ -220,7 +220,6 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             &[
                 "the other two",
                 "the first two",
-                "those two",
                 "the two others",
                 "the existing two",
             ],
