@@ -88,7 +88,14 @@ fn ordinals(tokens: &[Token]) -> Vec<Token> {
 fn without_courtesy(tokens: &[Token]) -> Vec<Token> {
     let comma = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Comma);
     rewritten(tokens, |i, out| {
-        let mut i = i + begins(&tokens[i..], COURTESY)?;
+        // (", please," between two clauses)
+        let please = tokens[i].text == "please"
+            && comma(out.last())
+            && comma(tokens.get(i + 1))
+            && tokens
+                .get(i + 2)
+                .is_some_and(|t| matches!(t.text.as_str(), "and" | "but"));
+        let mut i = i + begins(&tokens[i..], COURTESY).or(please.then_some(1))?;
         if comma(tokens.get(i)) && (comma(out.last()) || out.is_empty()) {
             i += 1;
             let inside =

@@ -611,7 +611,10 @@ impl Editor<'_> {
             "a sixth",
         ]
         .iter()
-        .any(|w| more.contains(w));
+        .any(|w| more.contains(w))
+            || ["second ", "third ", "fourth ", "fifth "]
+                .iter()
+                .any(|w| more.starts_with(w));
         if more && spec.relations.is_empty() {
             let alike: Vec<BoxId> = self
                 .boxes

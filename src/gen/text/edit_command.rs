@@ -415,10 +415,10 @@ fn is_adjective(item: &Item) -> bool {
 pub(super) fn note_definite(c: &mut Command, mentions: &[Mention]) {
     // "next to truck": what is named bare is looked for, too
     let known = |m: &&Mention| m.definite || m.bare && m.is_anchor && !m.plural;
-    c.picks
-        .extend(mentions.iter().filter_map(|m| Some((m.spec.span, m.pick?))));
     c.definite
         .extend(mentions.iter().filter(known).map(|m| m.spec.span));
+    c.picks
+        .extend(mentions.iter().filter_map(|m| m.pick.map(|p| (m.spec.span, p))));
 }
 
 pub(super) fn target_part(text: &str, items: &[Item], c: &mut Command) {

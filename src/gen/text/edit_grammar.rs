@@ -10,7 +10,8 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, chosen, except, pointed_back, room_of, said, told_once, unasked, worded,
+    Left, Piece, Room, Talk, apart, chosen, except, pointed_back, room_of, said, told_once, unasked,
+    without_asides, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -260,7 +261,10 @@ impl<'t> Reader<'t> {
         Self {
             text,
             tokens: unasked(apart(unasked(labelled_apart(super::parker::parker(
-                &told_once(pointed_back(super::common::plain(&tokens(text)), text)),
+                &told_once(without_asides(pointed_back(
+                    super::common::plain(&tokens(text)),
+                    text,
+                ))),
                 true,
             ))))),
             at: 0,

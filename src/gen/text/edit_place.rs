@@ -10,6 +10,7 @@ use super::mention::{Mention, Pre};
 use super::place::{Placement, place_from};
 use super::select::{fitting, of_size, rank, where_is};
 use super::to_graph::to_graph;
+use super::words::edits::Pick;
 use super::words::objects::NOUNS;
 use crate::scene::graph::{Locked, Node, RelationKind};
 use crate::scene::{BoxId, SceneBox};
@@ -149,13 +150,15 @@ impl Editor<'_> {
                 self.note(format!("no {} is in the scene: one is added", o.noun));
                 continue;
             }
-            let pick = self.picks.iter().find(|p| p.0 == o.span).map(|p| p.1);
-            if let Some(pick) = pick.filter(|_| o.count.n == 1) {
-                fits.sort_by(|a, b| rank(a, pick).total_cmp(&rank(b, pick)));
-                fits.truncate(1);
-            }
             if o.count.n == 1 {
                 fits = self.likely(fits, &o);
+                // ("next to the nearest cyclist")
+                let pick = self.picks.iter().find(|(span, p)| *span == o.span && one_of(*p));
+                if let Some((_, pick)) = pick {
+                    let cost = |b: &SceneBox| rank(b, *pick);
+                    fits.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+                    fits.truncate(1);
+                }
                 if fits.len() > 1 {
                     self.out.questions.push(Question {
                         text: format!("{} {}: which?", fits.len(), o.noun),
@@ -414,4 +417,9 @@ impl Editor<'_> {
         };
         heading * speed
     }
+}
+
+/// True if a word picks a certain one.
+fn one_of(pick: Pick) -> bool {
+    !matches!(pick, Pick::All | Pick::Any | Pick::More)
 }

@@ -294,7 +294,6 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
             None => Chosen::None(what),
         };
     }
-    let cost = |id: &BoxId, pick: Pick| rank(&boxes[id], pick);
     // ("all the kids" spares the grown-ups)
     let fit = match fit.len() {
         0 | 1 => fit,
@@ -315,7 +314,8 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
         }
         let n = if m.uncounted { 1 } else { m.spec.count.n as usize };
         let mut sorted = fit;
-        sorted.sort_by(|a, b| cost(a, pick).total_cmp(&cost(b, pick)));
+        let cost = |id: &BoxId| rank(&boxes[id], pick);
+        sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         sorted.truncate(n.max(1));
         return Chosen::These(sorted);
     }

@@ -159,6 +159,22 @@ const SETS: &[(&str, &str)] = &[
         include_str!("../../../../tests/data/causes_q.jsonl"),
     ),
     (
+        "strangers_26.jsonl",
+        include_str!("../../../../tests/data/strangers_26.jsonl"),
+    ),
+    (
+        "causes_p.jsonl",
+        include_str!("../../../../tests/data/causes_p.jsonl"),
+    ),
+    (
+        "strangers_27.jsonl",
+        include_str!("../../../../tests/data/strangers_27.jsonl"),
+    ),
+    (
+        "strangers_28.jsonl",
+        include_str!("../../../../tests/data/strangers_28.jsonl"),
+    ),
+    (
         "variants.jsonl",
         include_str!("../../../../tests/data/variants.jsonl"),
     ),

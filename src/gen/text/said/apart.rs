@@ -306,7 +306,21 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
         &["away", "off", "out", "up", "down", "over", "in"],
     )) + 2 * usize::from(is(clause.get(1), &["rid"]));
     let object = &clause[(1 + off).min(clause.len())..];
-    let named = object.first().is_some_and(is_determiner) || noun_at(object).is_some();
+    let whoever = is(
+        object.first(),
+        &[
+            "each",
+            "both",
+            "every",
+            "everybody",
+            "everyone",
+            "everything",
+            "nothing",
+            "nobody",
+            "another",
+        ],
+    );
+    let named = whoever || object.first().is_some_and(is_determiner) || noun_at(object).is_some();
     named && first_noun(object).is_some_and(|n| n.0 < 6) && !is_place(object)
 }
 

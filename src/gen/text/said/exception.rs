@@ -152,6 +152,176 @@ pub fn except(tokens: &[Token]) -> Option<(Vec<Token>, Vec<Token>)> {
     has_noun(&rest).then(|| (rest, tokens[from..end].to_vec()))
 }
 
+/// "clear the lot, except for the van", "clear the scene but leave the bus": all else there goes.
+pub(super) fn cleared_but(tokens: Vec<Token>) -> Vec<Token> {
+    const AREAS: &[&str] = &[
+        "lot",
+        "car park",
+        "parking lot",
+        "carpark",
+        "scene",
+        "site",
+        "map",
+        "picture",
+        "image",
+        "view",
+        "place",
+        "area",
+        "whole area",
+        "whole scene",
+        "whole lot",
+        "whole place",
+        "whole site",
+        "whole car park",
+        "stage",
+        "whole picture",
+        "building site",
+        "construction site",
+        "canvas",
+    ];
+    const ROADS: &[&str] = &[
+        "street",
+        "road",
+        "highway",
+        "motorway",
+        "whole street",
+        "whole road",
+        "whole highway",
+        "freeway",
+        "whole motorway",
+        "carriageway",
+    ];
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "clear out",
+            "empty out",
+            "clear",
+            "empty",
+            "vacate",
+            "sweep",
+            "wipe",
+            "tidy up",
+        ],
+    ) else {
+        return tokens;
+    };
+    let at = n + usize::from(is(tokens.get(n), &["the", "this", "that", "my", "our"]));
+    let area = leads(&tokens[at.min(tokens.len())..], AREAS);
+    let road = leads(&tokens[at.min(tokens.len())..], ROADS);
+    // "clear my lane but keep the truck"
+    let strip = (at..tokens.len().min(at + 4)).find(|k| {
+        is(
+            tokens.get(*k),
+            &[
+                "lane",
+                "lanes",
+                "sidewalk",
+                "pavement",
+                "footpath",
+                "crossing",
+                "zebra",
+                "kerb",
+                "roadside",
+                "shoulder",
+                "junction",
+                "intersection",
+                "roundabout",
+            ],
+        )
+    });
+    let strip = strip
+        .map(|k| k + 1 - at)
+        .filter(|m| !has_noun(&tokens[at..at + m]));
+    let Some(m) = area.or(road).or(strip).filter(|_| at > n) else {
+        return tokens;
+    };
+    let mut k = at + m;
+    while tokens.get(k).is_some_and(|t| {
+        t.kind != super::super::tokens::TokenKind::Word || matches!(text(t), "out" | "completely" | "please")
+    }) {
+        k += 1;
+    }
+    let but = leads(
+        &tokens[k..],
+        &[
+            "except for",
+            "except",
+            "apart from",
+            "but for",
+            "but leave",
+            "but keep",
+            "and leave only",
+            "and keep only",
+            "but not",
+            "leave only",
+            "keep only",
+            "leaving only",
+            "keeping only",
+            "save for",
+            "bar",
+            "but",
+            "aside from",
+            "other than",
+            "leaving",
+            "keeping",
+            "with the exception of",
+            "but leave only",
+            "but keep only",
+            "only leave",
+            "only keep",
+            "just leave",
+            "just keep",
+            "and leave just",
+            "excluding",
+            "and leave",
+            "and keep",
+            "only",
+            "just",
+        ],
+    );
+    let np = but.and_then(|b| tokens.get(k + b..)).unwrap_or(&[]);
+    // ("only the bus may remain")
+    let stays = np
+        .iter()
+        .rposition(|t| is(Some(t), &["stay", "stays", "remain", "remains", "left", "kept"]));
+    let helped = stays.filter(|s| s + 1 == np.len()).map(|s| {
+        let helpers = np[..s]
+            .iter()
+            .rev()
+            .take_while(|t| HELPERS.contains(&text(t)) || is(Some(t), &["may", "can", "to"]));
+        s - helpers.count()
+    });
+    let np = &np[..helped.unwrap_or(np.len())];
+    let known = is(
+        np.first(),
+        &["the", "my", "that", "those", "these", "both", "our", "all"],
+    ) && first_noun(np).is_some_and(|x| x.0 < 5)
+        && !np
+            .iter()
+            .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
+    if !known {
+        return tokens;
+    }
+    let np: Vec<Token> = np
+        .iter()
+        .filter(|t| {
+            !is(Some(t), &["alone", "there", "untouched", "in", "place"]) || is_place(std::slice::from_ref(t))
+        })
+        .cloned()
+        .collect();
+    let place = match (area, road) {
+        (Some(_), _) => return led("keep only", &tokens[0], &[&np]),
+        (None, Some(_)) => led("on the road", &tokens[0], &[]),
+        _ => {
+            let lane = tokens[at..at + m].iter().any(|t| is(Some(t), &["lane", "lanes"]));
+            led(if lane { "in" } else { "on" }, &tokens[0], &[&tokens[n..at + m]])
+        }
+    };
+    let all = led("remove all objects", &tokens[0], &[&place]);
+    [&all, &led("except", &tokens[0], &[&np])[..]].concat()
+}
+
 /// "everything except the bus and the kids should disappear": only those stay.
 pub(super) fn everything_but(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, n)) = find(

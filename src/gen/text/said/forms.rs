@@ -516,7 +516,10 @@ pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
 /// "a tanker comes in its place", "put one lorry at the same place"
 pub(super) fn takes_place(inner: &[Token], i: usize, n: usize, talk: &Talk<'_>) -> Option<Vec<Piece>> {
     // "remove the car and put one in its place" is more than one command
-    if super::some_of::removes(inner.first()) {
+    // ("drop a van in its place" puts one there)
+    let drops = is(inner.first(), &["drop"])
+        && (is(inner.get(1), &["a", "an", "another"]) || inner.get(1).is_some_and(|t| number(t).is_some()));
+    if super::some_of::removes(inner.first()) && !drops {
         return None;
     }
     let mut rest: Vec<Token> = inner[..i].to_vec();

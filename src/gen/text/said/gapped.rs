@@ -5,10 +5,11 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::lists::HELPERS;
 use super::topics::singular_of;
-use super::words::{find, first_noun, is, is_place, led, text};
+use super::words::{find, first_noun, is, is_place, led, number, text};
 
 /// "make the bus a lorry, the motorcycle a car": make each.
 pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = make_others(let_each(tokens));
     if !is(tokens.first(), &["make"]) || !is(tokens.get(1), &["the", "both", "all", "that"]) {
         return tokens;
     }
@@ -37,6 +38,72 @@ pub(super) fn make_each(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "make both pedestrians cyclists", "make the bus ahead of us two cars": the one is replaced.
+fn make_others(tokens: Vec<Token>) -> Vec<Token> {
+    let made = is(tokens.first(), &["make"])
+        && is(
+            tokens.get(1),
+            &["the", "both", "all", "those", "these", "that", "my"],
+        );
+    let Some((a, b)) = first_noun(&tokens).filter(|x| made && x.0 < 5) else {
+        return tokens;
+    };
+    let end = tokens.len()
+        - tokens
+            .iter()
+            .rev()
+            .take_while(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "instead", "now"]))
+            .count();
+    let whole = |k: usize, at: usize| first_noun(&tokens[k..]).is_some_and(|x| x.0 == at && k + x.1 == end);
+    let many = |k: usize| matches!(look_up(text(&tokens[k])), Some(Sense::Noun(_, true)));
+    // (nouns that stand together are read as one)
+    let b = (a + 1..b).find(|k| many(k - 1) && whole(*k, 0)).unwrap_or(b);
+    let placed =
+        |k: usize| k == b || is_place(&tokens[b..]) && is(tokens.get(k - 1), &["me", "us", "left", "right"]);
+    let found = (b..end).find(|k| {
+        let counted = number(&tokens[*k]).is_some_and(|n| n > 1) && whole(*k, 1);
+        placed(*k) && (counted || many(*k) && whole(*k, 0) && many(b - 1))
+    });
+    match found {
+        Some(k) => {
+            let with = led("with", &tokens[k], &[&tokens[k..]]);
+            led("replace", &tokens[0], &[&tokens[1..k], &with])
+        }
+        None => tokens,
+    }
+}
+
+/// "let the blue car be a bus and the red one a motorcycle": make each.
+fn let_each(tokens: Vec<Token>) -> Vec<Token> {
+    let known = is(tokens.first(), &["let", "have"]) && is(tokens.get(1), &["the", "that"]);
+    let Some((_, b)) = first_noun(&tokens).filter(|x| known && x.0 < 5) else {
+        return tokens;
+    };
+    let be = (b..tokens.len().min(b + 6))
+        .find(|k| is(tokens.get(*k), &["be", "become"]) && is(tokens.get(k + 1), &["a", "an"]));
+    let Some(be) = be.filter(|be| *be == b || is_place(&tokens[b..])) else {
+        return tokens;
+    };
+    // (the other's place may stand before what it becomes)
+    let another = (be + 2..tokens.len()).find_map(|k| {
+        let link = is(tokens.get(k), &["and"]) || tokens[k].kind == super::super::tokens::TokenKind::Comma;
+        let the = k + 1 + usize::from(is(tokens.get(k + 1), &["and"]));
+        (link && is(tokens.get(the), &["the", "that"])).then_some(())?;
+        let next = &tokens[the..];
+        let (_, b) = first_noun(next).filter(|x| x.0 < 4)?;
+        let a = (b..next.len().min(b + 6)).find(|j| is(next.get(*j), &["a", "an"]))?;
+        let told = a == b || is_place(&next[b..]) && !is_place(&next[a - 1..a]);
+        (told && first_noun(&next[a..]).is_some_and(|x| x.0 < 4)).then_some((k, the))
+    });
+    match another {
+        Some((k, the)) => {
+            let first = led("make", &tokens[0], &[&tokens[1..be], &tokens[be + 1..k]]);
+            [&first, &led("and make", &tokens[k], &[&tokens[the..]])[..]].concat()
+        }
+        None => tokens,
+    }
 }
 
 /// "the second car should be a van, and the third one a bus": the verb again.

@@ -52,7 +52,7 @@ lists! {
         walked away|walk off|walks off|walked off|go away|goes away|went away|go home|goes home|went home|gone home|go|goes|\
         go off|gone off|gone away|moved on|moves on|move on|moved off|moves off|move off|moved away|rides off|rode off|ride off|\
         ridden off|ridden away|rolled away|rolls away|towed away|towed|towed off|unnecessary|superfluous|redundant|unwanted|\
-        obsolete|surplus|out of the scene|out of the picture|off the road|off the street|out of here|history|cleared away|\
+        obsolete|surplus|out of the scene|out of the picture|off the road|off the street|off the highway|off the motorway|off the freeway|off the carriageway|off the site|off the building site|off the construction site|off the premises|off the grounds|off the map|off the scene|off the set|off the lot|off the parking lot|off the car park|off the stage|off the screen|off the picture|off the plan|off the roadway|off the tarmac|out of here|history|cleared away|\
         cleared|taken|taken away|taken out|taken off|exit|exits|exited|clear off|clears off|withdrawn|retired|scrapped|dismissed|\
         absent|out of the way|carted off|carted away|hauled away|hauled off|removed|deleted|erased|eliminated|thrown out|\
         gotten rid of|got rid of|cut out|dropped|omitted|out|off|driven on|drives on|drove on|run off|ran off|runs off|run away|\

@@ -6,6 +6,7 @@
 mod acts;
 mod apart;
 mod arrivals;
+mod asides;
 mod asked;
 mod causing;
 mod colours;
@@ -28,6 +29,7 @@ mod likewise;
 mod limits;
 pub(super) mod lists;
 mod newcomers;
+mod notes;
 mod of_several;
 mod offhand;
 mod orders;
@@ -45,6 +47,7 @@ mod recast;
 mod remaining;
 mod remarks;
 mod riders;
+mod seconds;
 mod shorthand;
 mod sites;
 mod skies;
@@ -85,6 +88,7 @@ use super::tokens::{Span, Token, TokenKind};
 use super::words::edits::Verb;
 use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
+pub use asides::without as without_asides;
 pub use asked::unasked;
 pub use exception::except;
 use forms::{
@@ -154,6 +158,16 @@ impl Talk<'_> {
         m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
     }
 
+    /// The box that these words mean, if no other fits.
+    fn only(&self, np: &[Token]) -> Option<&SceneBox> {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let m = mentions.iter().find(|m| !m.is_anchor && !m.gone)?;
+        match fitting(self.map, self.boxes, m, &mentions).as_slice() {
+            [id] => self.boxes.get(id),
+            _ => None,
+        }
+    }
+
     /// How far the boxes are that fit these words, m, if they are all as far.
     fn range(&self, np: &[Token]) -> Option<f64> {
         let (_, mentions) = parse(self.text, &tag(np));
@@ -210,6 +224,9 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(spoken::sides_named(out), talk);
+    let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
+    let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
+    let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
@@ -223,7 +240,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return stop.to_vec();
     }
     let out = exception::the_one_spared(out);
-    let out = exception::all_stays_but(out);
+    let out = exception::all_stays_but(exception::cleared_but(out));
     let out = exception::everything_but(remaining::nobody_on_foot(out));
     let out = of_several::plain(out, talk);
     let mut out = totals::plain(out, talk);

@@ -120,9 +120,10 @@ fn has_beside_it(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let place = what + d;
     let end = (place + 1..tokens.len().min(place + 6)).find(|k| {
         is(tokens.get(*k), &["it", "him", "her", "them"])
-            && tokens
+            && (tokens
                 .get(k + 1)
                 .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "now"]))
+                || is_place(&tokens[k + 1..]))
     });
     let with = is(tokens.get(place), &["with"]);
     let Some(end) = end.filter(|_| {

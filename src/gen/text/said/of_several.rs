@@ -100,6 +100,57 @@ pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     })
 }
 
+/// "the front truck", "rear lorry": of several, the one ahead of us or behind us, else the first or last of them.
+pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let front = is(tokens.get(i), &["front", "leading"]);
+        let rear = is(tokens.get(i), &["rear", "back", "hind"]);
+        let opens = out.last().is_none_or(|t| {
+            t.kind != TokenKind::Word
+                || is(Some(t), &["the", "that", "and", "but", "my"])
+                || super::super::rephrase::is_verb(t) && front
+        });
+        if !opens || !(front || rear) {
+            return None;
+        }
+        // ("rear one a bus": of the kind named before)
+        let before = first_noun(out).map(|n| out[n.0..n.1].to_vec());
+        let one = is(tokens.get(i + 1), &["one"]);
+        let (noun, end) = match (before, one) {
+            (Some(noun), true) => (noun, i + 2),
+            _ => {
+                let (_, b) = first_noun(&tokens[i + 1..]).filter(|n| n.0 == 0)?;
+                (tokens[i + 1..i + 1 + b].to_vec(), i + 1 + b)
+            }
+        };
+        let at = &tokens[i];
+        let many = matches!(
+            super::look_up(text(noun.last()?)),
+            Some(super::Sense::Noun(_, true))
+        );
+        if many || talk.fits(&noun) < 2 {
+            return None;
+        }
+        // ("rear truck 30 m behind me")
+        let opens = out.iter().all(|t| is(Some(t), &["the"]));
+        if opens && is_place(&tokens[end..]) && number(&tokens[end]).is_some() {
+            out.clear();
+            out.extend(led("move", at, &[]));
+        }
+        if !is(out.last(), &["the", "that", "my"]) {
+            out.extend(led("the", at, &[]));
+        }
+        let side = led(if front { "ahead of me" } else { "behind me" }, at, &[]);
+        let there = [&noun[..], &side].concat();
+        if talk.fits(&there) == 1 {
+            out.extend(there);
+        } else {
+            out.extend(led(if front { "frontmost" } else { "rearmost" }, at, &[&noun]));
+        }
+        Some(end)
+    })
+}
+
 /// How many tokens a word takes that picks one: an ordinal, too.
 fn pick_at(tokens: &[Token]) -> Option<usize> {
     leads(tokens, PICKS).or_else(|| ordinal(text(tokens.first()?)).map(|_| 1))

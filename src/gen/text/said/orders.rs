@@ -225,6 +225,9 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
     {
         return None;
     }
+    if text(first) == "make" && made_another(&inner[1..]) {
+        return None;
+    }
     let mut from = 1;
     while is(inner.get(from), &["over", "back", "up", "forward", "down"])
         && inner
@@ -402,6 +405,54 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         p.main = whole;
     }
     acts::acts(&s, &said, true, inner, talk)
+}
+
+/// "make the truck behind me a bus": the place tells which, and what it becomes is named at the end.
+fn made_another(tokens: &[Token]) -> bool {
+    let Some((_, b)) = first_noun(tokens).filter(|n| n.0 < 4 && is_place(&tokens[n.1..])) else {
+        return false;
+    };
+    (b + 1..tokens.len()).any(|k| {
+        let into = usize::from(is(tokens.get(k), &["into"]));
+        let of_place = is(
+            tokens.get(k - 1),
+            &[
+                "behind",
+                "beside",
+                "near",
+                "by",
+                "at",
+                "on",
+                "in",
+                "of",
+                "to",
+                "alongside",
+                "opposite",
+                "between",
+                "and",
+                "past",
+                "with",
+                "from",
+                "over",
+                "after",
+                "before",
+                "against",
+                "like",
+                "into",
+                "onto",
+                "than",
+            ],
+        );
+        let end = tokens.len()
+            - tokens[k..]
+                .iter()
+                .rev()
+                .take_while(|t| t.kind != TokenKind::Word)
+                .count();
+        !of_place
+            && is(tokens.get(k + into), &["a", "an"])
+            && first_noun(&tokens[k + into..]).is_some_and(|n| n.0 < 4 && k + into + n.1 == end)
+    })
 }
 
 /// "the bus: make it a van", "turn it into a van".

@@ -9,7 +9,17 @@ use super::words::{first_noun, is, is_place, leads, led, number, text, trimmed};
 /// "truck delete, cars stay": the verb first.
 pub(super) fn verb_last(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     // "bus and pickup out, please"
-    let body = trimmed(&tokens);
+    // ("..., the red one stays" only says who is left)
+    let stays = (0..tokens.len()).find(|k| {
+        let link = tokens[*k].kind == TokenKind::Comma || text(&tokens[*k]) == "but";
+        let rest = trimmed(&tokens[*k..]);
+        let put = usize::from(is(rest.last(), &["put"]));
+        let rest = &rest[..rest.len() - put];
+        link && is(rest.first(), &["the", "both", "all"])
+            && is(rest.last(), &["stay", "stays", "remain", "remains"])
+            && talk.fits(&rest[..rest.len() - 1]) > 0
+    });
+    let body = trimmed(&tokens[..stays.unwrap_or(tokens.len())]);
     if let Some((last, nps)) = body.split_last()
         && is(Some(last), &["out", "away", "off", "gone"])
     {
@@ -20,7 +30,9 @@ pub(super) fn verb_last(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && list.iter().all(|np| {
                 first_noun(np).is_some_and(|x| x.0 < 3 && x.1 == np.len())
                     && !np.iter().any(|t| HELPERS.contains(&text(t)))
-                    && (np.len() == 1 || is(np.first(), &["the", "both", "all", "my"]))
+                    && (np.len() == 1
+                        || is(np.first(), &["the", "both", "all", "my"])
+                        || super::super::coloured_ones::is_colour(&np[0]))
                     && talk.fits(np) > 0
             });
         if named {
@@ -29,7 +41,7 @@ pub(super) fn verb_last(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 if k > 0 {
                     out.extend(led("and", last, &[]));
                 }
-                if np.len() == 1 {
+                if !is(np.first(), &["the", "both", "all", "my"]) {
                     out.extend(led("the", last, &[]));
                 }
                 out.extend_from_slice(np);

@@ -2,6 +2,7 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::Token;
+use super::Talk;
 use super::lists::HELPERS;
 use super::words::{self, find, is, is_place, led, text};
 
@@ -76,6 +77,24 @@ pub(super) fn sides_named(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "the two little ones", where nothing else is named: the children.
+pub(super) fn little_ones(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (1..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["little", "small", "young"]) && is(tokens.get(i + 1), &["ones", "one"])
+    });
+    let Some(i) = found.filter(|_| !words::has_noun(&tokens)) else {
+        return tokens;
+    };
+    let many = is(tokens.get(i + 1), &["ones"]);
+    let child = led(if many { "children" } else { "child" }, &tokens[i], &[]);
+    let vehicles = matches!(&talk.last, Some(last) if last != "pedestrian");
+    if vehicles || talk.fits(&child) == 0 {
+        return tokens;
+    }
+    tokens.splice(i..i + 2, child);
+    tokens
 }
 
 /// The words without "on foot" and "who is on foot".

@@ -42,6 +42,72 @@ pub(super) fn off_with(tokens: Vec<Token>) -> Vec<Token> {
     led("remove all", &tokens[0], &[&who, &place])
 }
 
+/// "get all three pedestrians off the site": they go.
+pub(super) fn off_site(tokens: Vec<Token>) -> Vec<Token> {
+    const SITES: &[&str] = &[
+        "off the site",
+        "off the building site",
+        "off the construction site",
+        "off the premises",
+        "off the grounds",
+        "off the map",
+        "off the scene",
+        "off the set",
+        "off the lot",
+        "off the parking lot",
+        "off the car park",
+        "off the stage",
+        "off the screen",
+        "off the picture",
+        "off the plan",
+    ];
+    const ROADS: &[&str] = &[
+        "off the road",
+        "off the street",
+        "off the highway",
+        "off the motorway",
+        "off the freeway",
+        "off the carriageway",
+    ];
+    let gets = is(tokens.first(), &["get", "take", "have"]);
+    let sends = is(
+        tokens.first(),
+        &[
+            "move", "bring", "drive", "push", "pull", "send", "kick", "lift", "clear", "shoo", "usher",
+            "lead",
+        ],
+    );
+    let whom = is(
+        tokens.get(1),
+        &["the", "both", "all", "my", "that", "those", "these", "every"],
+    );
+    let Some((a, b)) =
+        first_noun(tokens.get(1..).unwrap_or(&[])).filter(|n| n.0 < 5 && whom && (gets || sends))
+    else {
+        return tokens;
+    };
+    let found = (1 + b..tokens.len().min(b + 10)).find_map(|i| {
+        let n = leads(&tokens[i..], SITES)
+            .or_else(|| leads(&tokens[i..], ROADS).filter(|_| gets && !walks(&tokens[1 + a..1 + b])))?;
+        let end = tokens.get(i + n).is_none_or(|t| {
+            t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "completely"])
+        });
+        // ("off the road and onto the sidewalk")
+        let goes_on = (i + n..tokens.len().min(i + n + 3))
+            .any(|k| is(tokens.get(k), &["to", "onto", "into", "over", "on"]));
+        (end && !goes_on).then_some((i, i + n))
+    });
+    match found {
+        Some((i, end)) => led("remove", &tokens[0], &[&tokens[1..i], &tokens[end..]]),
+        None => tokens,
+    }
+}
+
+/// True if people are named.
+fn walks(noun: &[Token]) -> bool {
+    matches!(super::words::longest(noun), Some((Sense::Noun(n, _), _)) if n.classes[0] == crate::scene::Class::Pedestrian)
+}
+
 /// "clear the junction of cars": the cars there go.
 pub(super) fn cleared_of(tokens: Vec<Token>) -> Vec<Token> {
     let verb = is(

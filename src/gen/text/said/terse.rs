@@ -63,7 +63,10 @@ fn becomes(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let (old, new) = (trimmed(&tokens[..colon]), trimmed(&tokens[colon + 1..]));
     let whole = |np: &[Token]| {
-        first_noun(np).is_some_and(|x| x.0 < 3 && x.1 == np.len())
+        let ends = |b: usize| {
+            b == np.len() || np.as_ptr() == old.as_ptr() && is_place(&np[b..]) && !has_noun(&np[b..])
+        };
+        first_noun(np).is_some_and(|x| x.0 < 3 && ends(x.1))
             && !np.iter().any(|t| number(t).is_some_and(|n| n != 1))
     };
     let fresh = !is(new.first(), &["the", "both", "my", "all", "that", "no"]);

@@ -32,6 +32,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = replaced(&tokens, EVERYTHING, "everything");
     let out = replaced(&out, TRAFFIC, "all vehicles");
     let out = replaced(&out, WITH_IT, "to");
+    let out = replaced(&out, "out of here|outta here", "out");
     let out = replaced(&out, MEANT, "i meant");
     let out = match is(out.first(), &["i", "we"]) {
         true => replaced(&out, AROUND, ""),

@@ -6,10 +6,12 @@ use super::super::edit_grammar::Command;
 use super::super::rephrase::is_verb;
 use super::super::tag::tag;
 use super::super::tokens::{Span, Token, TokenKind};
+use super::super::wording::{begins, rewritten};
 use super::super::words::edits::Verb;
 use super::forms::takes_place;
 use super::lists::{ADVERBS, HELPERS, IN_PLACE, MOTION, MOVES};
-use super::words::{first_noun, has_noun, is, is_finite, leads, number, text, trimmed};
+use super::some_of::removes;
+use super::words::{first_noun, has_noun, is, is_finite, leads, led, number, text, trimmed};
 use super::{Piece, Talk};
 
 /// What went before leaves room.
@@ -22,6 +24,53 @@ pub enum Room {
     Moved,
     /// Something is gone: "there" is where it was, too.
     Gone,
+}
+
+const INSTEAD_OF_IT: &str = "instead of it|instead of him|instead of her|instead of them|instead of that|instead of those|in lieu of it|in lieu of them|in place of it|in place of him|in place of her|in place of them|in exchange for it|in exchange for them|as a replacement for it|as a replacement for them|to replace it|to make up for it";
+
+/// "put a truck instead of it", "add a truck instead", once what was there is gone: in its place.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], INSTEAD_OF_IT)?;
+        let goes = |k: usize| {
+            let opens =
+                k == 0 || out[k - 1].kind != TokenKind::Word || is(out.get(k - 1), &["and", "please"]);
+            opens && removes(out.get(k))
+                || is(out.get(k), &["gone", "left", "away", "out", "disappears", "goes"])
+        };
+        let gone = talk.room == Room::Gone || (0..out.len()).any(goes);
+        gone.then(|| {
+            out.extend(led("in its place", &tokens[i], &[]));
+            // ("instead of it, please put a truck")
+            let opens = i == 0 || tokens[i - 1].kind != TokenKind::Word;
+            let small = |t: &&Token| t.kind == TokenKind::Comma || is(Some(t), &["please", "there", "now"]);
+            i + n
+                + if opens {
+                    tokens[i + n..].iter().take_while(small).count()
+                } else {
+                    0
+                }
+        })
+    });
+    let alone = talk.room == Room::Gone
+        && is(out.last(), &["instead"])
+        && is(
+            out.first(),
+            &[
+                "add", "put", "insert", "place", "use", "take", "show", "have", "drop",
+            ],
+        )
+        && (is(out.get(1), &["a", "an"]) || out.get(1).is_some_and(|t| number(t).is_some()))
+        && first_noun(&out).is_some_and(|n| n.1 + 1 == out.len());
+    if !alone {
+        return out;
+    }
+    let at = &out[0];
+    led(
+        "put",
+        at,
+        &[&out[1..out.len() - 1], &led("in its place", at, &[])],
+    )
 }
 
 /// What a clause that was read leaves.

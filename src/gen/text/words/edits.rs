@@ -117,7 +117,10 @@ pub const PICKS: &[(Pick, &str)] = &[
         "right one of the|right hand one of the|right of the two|rightmost of the|right one|rightmost|right most|furthest right|farthest right",
     ),
     (Pick::Frontmost, "frontmost|foremost|front most|front one"),
-    (Pick::Rearmost, "rearmost|hindmost|backmost|rear most"),
+    (
+        Pick::Rearmost,
+        "rearmost|hindmost|backmost|rear most|rear one|back one|hind one",
+    ),
     (
         Pick::Largest,
         "bigger of the two|larger of the two|bigger of the|larger of the|biggest of the|largest of the|biggest|largest|longest|tallest",
