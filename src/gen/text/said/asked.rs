@@ -14,7 +14,7 @@ const TO: &str = "\
     couldnt you|cant you|wont you|could one|can one|i want to|i want you to|we want to|we want you to|i need to|\
     i need you to|we need to|we need you to|i would like to|id like to|i would like you to|id like you to|\
     we would like to|wed like to|we would like you to|wed like you to|i would love to|id love to|\
-    i would love you to|i wish to|we wish to|i prefer to|id prefer to|i would prefer to|id rather|i would rather|\
+    i would love you to|i wish to|we wish to|i prefer to|id prefer to|i would prefer to|\
     we should|i should|you should|you can|you could|you may|you must|you have to|you need to|we must|we have to|\
     we can|we could|we will|i will|ill|well|i must|i have to|let us|lets|its time to|it is time to|it is best to|\
     its best to|it is better to|its better to|it is necessary to|its necessary to|it is important to|\
@@ -32,7 +32,7 @@ const TO: &str = "\
     maybe we should|perhaps we should|maybe you could|perhaps you could|maybe|perhaps|we are going to|were going to|\
     i am going to|im going to|we now|we then|you then|i now|you might want to|you may want to|we might want to|\
     there is a need to|i have to ask you to|time to|next we|now we|next you|now you|i hereby ask you to|kindly|\
-    please|simply|quickly|just|and|also|then|now|next|so|ok|okay|hey|hi|hello|well then|alright|right then|first|\
+    please|simply|quickly|and|also|then|now|next|so|ok|okay|hey|hi|hello|well then|alright|right then|first|\
     firstly|second|secondly|third|thirdly|finally|lastly|last|besides|additionally|furthermore|moreover|oh|oh and|\
     ok so|okay so|first of all|to begin with|to start with|for starters|after that|afterwards|in addition|\
     instead of that|one more thing|another thing|later|meanwhile|actually|on second thought|on second thoughts|\

@@ -223,12 +223,12 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
-    let out = tidy::plain(spoken::sides_named(out), talk);
+    let out = tidy::plain(tails::plain(spoken::sides_named(out)), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
     let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
-    let out = newcomers::plain(plainly::plain(tails::plain(out), talk), talk);
+    let out = newcomers::plain(plainly::plain(out, talk), talk);
     let out = splits::plain(remarks::plain(out, talk), talk);
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
     let out = terse::plain(exchanges::plain(out, talk), talk);

@@ -176,7 +176,14 @@ fn more_of_them(tokens: &[Token]) -> Vec<Token> {
         let (a, b) = first_noun(clause).filter(|n| n.0 < 4 && is_fresh(clause.first()))?;
         let noun = clause[a..b].iter().map(text).collect::<Vec<_>>().join(" ");
         let noun = singular(&noun).to_string();
-        let noun = if many == 1 { noun } else { plural(&noun) };
+        let several = |one: &str| match one {
+            "man" => "men".to_string(),
+            "woman" => "women".to_string(),
+            "child" => "children".to_string(),
+            "person" => "people".to_string(),
+            _ => plural(one),
+        };
+        let noun = if many == 1 { noun } else { several(&noun) };
         out.push(tokens[i].clone());
         if more > 0 {
             out.push(word("more", &tokens[i]));

@@ -52,6 +52,10 @@ impl Part {
             return false;
         };
         let rest = &self.main[n..];
+        // "pulls away until it is 32 m ahead of us"
+        if is(rest.first(), &["until", "till"]) {
+            return false;
+        }
         // "goes at a distance of 25 m", "gone 5 m to the left"
         if leads(rest, &["at a distance", "by a distance"]).is_some()
             || is(rest.first(), &["at", "by"]) && rest.get(1).is_some_and(|t| number(t).is_some())

@@ -3,11 +3,12 @@
 use super::super::lexicon::plural;
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::rewritten;
+use super::super::wording::{replaced, rewritten};
 use super::words::{find, first_noun, is, is_finite, is_place, leads, led, number, text, trimmed, word};
 
 /// A sentence with such tails in plain words.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = replaced(&tokens, "sketch in|draw in|pencil in|paint in", "add");
     let out = both_placed(out_of_here(without_purpose(tokens)));
     but_there(&one_each(&out))
 }
@@ -26,8 +27,6 @@ fn without_purpose(tokens: Vec<Token>) -> Vec<Token> {
             "such that only",
             "until only",
             "so that just",
-            "leaving only",
-            "leaving just",
         ],
     )
     .filter(|x| x.0 > 2 && is(tokens.first(), REMOVES))
@@ -35,9 +34,7 @@ fn without_purpose(tokens: Vec<Token>) -> Vec<Token> {
         let rest = &tokens[x.0 + x.1..];
         // ("until only two are left" says how many)
         let known = is(rest.first(), &["the", "my", "our"]);
-        known
-            && (is(rest.last(), LEFT) || is(tokens.get(x.0), &["leaving"]))
-            && first_noun(rest).is_some_and(|n| n.0 < 4)
+        known && is(rest.last(), LEFT) && first_noun(rest).is_some_and(|n| n.0 < 4)
     });
     if let Some((i, _)) = only {
         return trimmed(&tokens[..i]).to_vec();
