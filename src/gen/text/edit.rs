@@ -366,6 +366,17 @@ impl Editor<'_> {
                     done.push("turned".into());
                 }
             }
+            // "the motorcycle is not required; replace it with a van": it is gone already
+            Verb::Replace if self.replaces_gone(c) => {
+                let by = c.by.iter().map(|m| m.spec.clone());
+                let new = Description {
+                    foreground: by.collect(),
+                    ..Description::default()
+                };
+                if self.add_in_place(&new) {
+                    done.push("added".into());
+                }
+            }
             Verb::Replace => {
                 if let Some(ids) = self.targets(c, false) {
                     self.replace_all(&ids, c);
@@ -425,6 +436,19 @@ impl Editor<'_> {
         (!done.is_empty()).then(|| done.join(", "))
     }
 
+    /// True if what a command replaces was taken away just before.
+    fn replaces_gone(&self, c: &Command) -> bool {
+        let Some(m) = c
+            .targets
+            .first()
+            .filter(|_| c.by.is_some() && c.targets.len() == 1)
+        else {
+            return false;
+        };
+        let gone = self.gone.iter().any(|b| m.classes.contains(&b.class));
+        gone && super::select::fitting(&self.map, &self.boxes, m, &c.mentions).is_empty()
+    }
+
     /// Time and weather; true if any was said.
     fn style_of(&mut self, c: &Command) -> bool {
         let d = &c.reading.description;
@@ -472,7 +496,15 @@ impl Editor<'_> {
                 Back::Same => self.last.clone(),
                 Back::Others => {
                     let rest = self.part_of.iter().filter(|id| !self.last.contains(id));
-                    rest.copied().collect()
+                    let rest: Vec<BoxId> = rest.copied().filter(|id| self.boxes.contains_key(id)).collect();
+                    // ("delete the car in front and let the other one fall back": of the kind that is gone)
+                    let kind = self.gone.first().map(|b| b.class).filter(|_| rest.is_empty());
+                    let alike = self
+                        .boxes
+                        .values()
+                        .filter(|b| Some(b.class) == kind)
+                        .map(|b| b.id);
+                    rest.iter().copied().chain(alike).collect()
                 }
                 Back::Person => self.someone(),
             };

@@ -73,7 +73,7 @@ const SHARED: &[&str] = &[
 
 /// What a sentence may begin with before its first clause.
 const POLITE: &[&str] = &[
-    "please", "kindly", "now", "then", "ok", "okay", "and", "just", "also", "next", "finally",
+    "only", "please", "kindly", "now", "then", "ok", "okay", "and", "just", "also", "next", "finally",
 ];
 
 /// Verbs of commands that nothing but a command begins with when an object follows.
@@ -202,7 +202,9 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         }
         let b = (a..sentence.len()).find(|k| !is_link(&sentence[*k]))?;
         let (left, right) = (&sentence[..a], &sentence[b..]);
-        let plain = !left.iter().any(shares) && !right.iter().any(shares);
+        // ("only one of the children is left, and the bus is gone")
+        let only = usize::from(is(left.first(), &["only"]));
+        let plain = !left[only..].iter().any(shares) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
         (plain && told_apart).then_some((a, b))
     })

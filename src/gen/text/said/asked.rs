@@ -253,7 +253,10 @@ fn step(rest: &[Token]) -> Option<usize> {
         return Some(k + 1);
     }
     let comma = rest.iter().take(7).position(|t| t.kind == TokenKind::Comma)?;
-    (comma > 1 && at(comma - 1)).then_some(comma + 1)
+    // ("for safety, ...")
+    let aim =
+        comma < 4 && is(rest.first(), &["for"]) && !has_noun(&rest[..comma]) && number(&rest[1]).is_none();
+    (comma > 1 && (aim || at(comma - 1))).then_some(comma + 1)
 }
 
 /// "because it looks better,", "to make it harder,": one past the comma, if a command follows.

@@ -51,6 +51,7 @@ mod seconds;
 mod shorthand;
 mod sites;
 mod skies;
+mod small_turns;
 mod some_of;
 mod spaces;
 mod splits;
@@ -223,7 +224,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
-    let out = tidy::plain(tails::plain(spoken::sides_named(out)), talk);
+    let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
     let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
     let out = notes::gone(out, talk);

@@ -145,6 +145,10 @@ fn but_there(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
         let but = tokens[i].kind == TokenKind::Comma && is(tokens.get(i + 1), &["but", "only", "though"]);
         let rest = tokens.get(i + 2..)?;
+        let end = rest
+            .iter()
+            .position(|t| is(Some(t), &["and"]) || t.kind == TokenKind::Comma);
+        let rest = &rest[..end.unwrap_or(rest.len())];
         let says = |t: &Token| is_verb(t) && !is_place(std::slice::from_ref(t)) || is_finite(text(t), false);
         let bare = but && is(rest.first(), &["on", "in", "at", "behind", "beside"]) && is_place(rest);
         (bare && out.first().is_some_and(is_verb) && !rest.iter().any(says)).then_some(i + 2)
