@@ -503,7 +503,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return Some(found);
     }
     // ("the white car stays where it is" goes nowhere)
-    if let Some((i, n)) = in_place(inner).filter(|x| !inner[..x.0].iter().any(|t| untouched::stands_still(t)))
+    if let Some((i, n)) = in_place(inner).filter(|x| !inner[..x.0].iter().any(untouched::stands_still))
         && let Some(found) = takes_place(inner, i, n, talk)
     {
         return Some(found);

@@ -371,7 +371,7 @@ fn in_the_way(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     ) {
         end += 1;
     }
-    if !them || end < tokens.len() || !first_noun(np).is_some_and(|x| x.1 == np.len()) || talk.fits(np) == 0 {
+    if !them || end < tokens.len() || first_noun(np).is_none_or(|x| x.1 != np.len()) || talk.fits(np) == 0 {
         return tokens;
     }
     led("remove", &tokens[0], &[np])

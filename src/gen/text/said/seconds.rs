@@ -296,7 +296,7 @@ fn one_more(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let at = np.len() + 2;
     let follows = leads(
-        &rest[..],
+        rest,
         &[
             "follows",
             "is following",
