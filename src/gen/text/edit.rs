@@ -123,6 +123,7 @@ pub(super) struct Editor<'a> {
     pub(super) last: Vec<BoxId>,    // what was spoken of last
     part_of: Vec<BoxId>,            // those that the last ones were picked from
     pub(super) gone: Vec<SceneBox>, // what was taken away last
+    gone_kind: Option<Class>,       // and of what class it was, also after something moved
     pub(super) left: Vec<SceneBox>, // where what was moved last had stood
     pub(super) out: EditReading,
 }
@@ -140,6 +141,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         last: Vec::new(),
         part_of: Vec::new(),
         gone: Vec::new(),
+        gone_kind: None,
         left: Vec::new(),
         out: EditReading::default(),
     };
@@ -215,7 +217,9 @@ impl Editor<'_> {
     pub(super) fn push(&mut self, edit: TextEdit) {
         match &edit {
             TextEdit::Remove { id } => {
-                self.gone.extend(self.boxes.remove(id));
+                let gone = self.boxes.remove(id);
+                self.gone_kind = gone.map(|b| b.class);
+                self.gone.extend(gone);
             }
             TextEdit::Add { object } | TextEdit::Replace { object, .. } => {
                 self.boxes.insert(object.id, *object);
@@ -498,7 +502,7 @@ impl Editor<'_> {
                     let rest = self.part_of.iter().filter(|id| !self.last.contains(id));
                     let rest: Vec<BoxId> = rest.copied().filter(|id| self.boxes.contains_key(id)).collect();
                     // ("delete the car in front and let the other one fall back": of the kind that is gone)
-                    let kind = self.gone.first().map(|b| b.class).filter(|_| rest.is_empty());
+                    let kind = self.gone_kind.filter(|_| rest.is_empty());
                     let alike = self
                         .boxes
                         .values()

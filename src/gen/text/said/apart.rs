@@ -203,7 +203,7 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let b = (a..sentence.len()).find(|k| !is_link(&sentence[*k]))?;
         let (left, right) = (&sentence[..a], &sentence[b..]);
         // ("only one of the children is left, and the bus is gone")
-        let only = usize::from(is(left.first(), &["only"]));
+        let only = 2 * usize::from(is(left.first(), &["only"]) && left.len() > 3 && is(left.get(2), &["of"]));
         let plain = !left[only..].iter().any(shares) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
         (plain && told_apart).then_some((a, b))

@@ -33,7 +33,7 @@ const TO: &str = "\
     i am going to|im going to|we now|we then|you then|i now|you might want to|you may want to|we might want to|\
     there is a need to|i have to ask you to|time to|next we|now we|next you|now you|i hereby ask you to|kindly|\
     please|simply|quickly|and|also|then|now|next|so|ok|okay|hey|hi|hello|well then|alright|right then|first|\
-    firstly|second|secondly|third|thirdly|finally|lastly|last|besides|additionally|furthermore|moreover|oh|oh and|\
+    firstly|second|secondly|third|thirdly|finally|lastly|last|additionally|furthermore|moreover|oh|oh and|\
     ok so|okay so|first of all|to begin with|to start with|for starters|after that|afterwards|in addition|\
     instead of that|one more thing|another thing|later|meanwhile|actually|on second thought|on second thoughts|\
     immediately|carefully|somebody|someone";
@@ -71,7 +71,7 @@ const TOLD: &str = "\
     it must be so|i insist|i demand|we demand|i request|i prefer|please note|note|note well|mind you|\
     just so you know|for your information|by now|nowadays|these days|this time|meanwhile|in the meantime|actually|\
     apparently|evidently|obviously|indeed|finally|and finally|now|then|next|also|so|ok|okay|hey|well|oh|please|and|\
-    besides|moreover|furthermore|on second thought|on second thoughts|suddenly|later|afterwards";
+    moreover|furthermore|on second thought|on second thoughts|suddenly|later|afterwards";
 /// Who or what states it.
 const SAYERS: &str = "\
     witness|witnesses|report|reports|log|statement|police report|accident report|video|footage|recording|data|notes|\

@@ -66,7 +66,9 @@ fn besides(tokens: Vec<Token>) -> Vec<Token> {
         rest,
         "there should also be|there must also be|there is also|there are also|there should be|i also want|i want also|i need also|i also need|add",
     );
-    if more.is_some() { rest.to_vec() } else { tokens }
+    // ("in addition to the five cones add two more" means cones)
+    let named = more.is_some_and(|m| first_noun(&rest[m..]).is_some());
+    if named { rest.to_vec() } else { tokens }
 }
 
 /// "one stays": nothing is to be done.
