@@ -271,14 +271,15 @@ fn tells_of_new(rest: &[Token], before: &[Token], talk: &Talk<'_>) -> bool {
     }
     let near = &inner[..inner.len().min(14)];
     let does = subject(near, talk, caused).is_some_and(|s| {
-        let verb = text(&near[s.pred]);
+        let verb = near.get(s.pred).map_or("", text);
         s.kind == Kind::Fresh && words::is_finite(verb, true) && !verb.ends_with("ed")
     });
     let (inner, mood) = unwrapped(before);
     let whole = inner.first().is_some_and(super::super::rephrase::is_verb) && has_noun(inner)
         || subject(inner, talk, mood.caused).is_some_and(|s| {
-            let verb = &inner[s.pred];
-            HELPERS.contains(&text(verb)) || words::is_finite(text(verb), s.plural || mood.caused)
+            let base = s.plural || mood.caused;
+            let verb = inner.get(s.pred).map_or("", text);
+            HELPERS.contains(&verb) || words::is_finite(verb, base)
         });
     does && whole
 }
