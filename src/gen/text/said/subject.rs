@@ -133,7 +133,9 @@ fn predicate_at(tokens: &[Token], from: usize, base: bool) -> Option<usize> {
                 continue;
             }
             // "both walkers, they must change"
-            TokenKind::Comma if is(tokens.get(k + 1), &PRONOUNS) => return Some(k + 2),
+            TokenKind::Comma if is(tokens.get(k + 1), &PRONOUNS) => {
+                return (k + 2 < tokens.len()).then_some(k + 2);
+            }
             TokenKind::Comma | TokenKind::Stop => return None,
             TokenKind::Mark | TokenKind::Symbol => {
                 // "excavator -> left roadside", "parked cars: four are enough"
