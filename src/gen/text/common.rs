@@ -29,7 +29,7 @@ fn is_number(t: &Token) -> bool {
 
 /// A text in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let out = ordinals(tokens);
+    let out = super::same_words::plain(&ordinals(tokens));
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");

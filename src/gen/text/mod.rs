@@ -47,6 +47,7 @@ mod rephrase;
 mod reports;
 pub mod road;
 mod said;
+mod same_words;
 mod select;
 mod shares;
 mod spaces;
