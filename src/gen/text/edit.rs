@@ -384,6 +384,10 @@ impl Editor<'_> {
             Verb::Replace => {
                 if let Some(ids) = self.targets(c, false) {
                     self.replace_all(&ids, c);
+                    let moved = ids.iter().filter(|_| c.destination.is_some());
+                    for id in moved.filter(|id| self.boxes.contains_key(id)).copied().collect::<Vec<_>>() {
+                        self.shift(id, c);
+                    }
                     done.push("replaced".into());
                 }
             }

@@ -314,6 +314,11 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             };
             let (r, m) = parse(text, &items[k + 1..]);
             c.by = m.first().cloned();
+            // "with a coach 16 m behind me": there, not where the old one stands
+            if let Some(spec) = r.description.foreground.first().filter(|s| verb == Verb::Replace && is_placed(s)) {
+                c.destination = Some(super::edit_grammar::Destination::Place(Box::new(spec.clone())));
+                c.anchors.clone_from(&r.description.foreground);
+            }
             c.reading.not_understood.extend(r.not_understood);
             target_part(text, &items[..k], &mut c);
             c.verb = verb;
@@ -376,6 +381,13 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
 }
 
 /// True if a verb is said of what is named.
+/// True if it is said where it shall be, not only which way it faces.
+fn is_placed(spec: &super::description::ObjectSpec) -> bool {
+    use crate::scene::graph::RelationKind as R;
+    let way = |r: R| matches!(r, R::SameDirection | R::OppositeDirection | R::Facing | R::FacingAway);
+    spec.relations.iter().any(|r| !way(r.relation) || r.distance_m.is_some())
+}
+
 fn says_something(tokens: &[Token]) -> bool {
     let noun = tokens.iter().position(super::rephrase::is_noun).unwrap_or(0);
     tokens[noun..].iter().any(|t| {

@@ -262,7 +262,7 @@ impl<'t> Reader<'t> {
             text,
             tokens: unasked(apart(unasked(labelled_apart(super::parker::parker(
                 &told_once(without_asides(pointed_back(
-                    super::same_words::commands(&super::common::plain(&tokens(text))),
+                    super::said::whole(super::same_words::commands(&super::common::plain(&tokens(text)))),
                     text,
                 ))),
                 true,

@@ -5,6 +5,7 @@ use super::lexicon::{Sense, look_up};
 use super::said::words::{is_unit, longest, noun_at, number};
 use super::tokens::{Token, TokenKind};
 use super::wording::{begins, rewritten, word};
+use crate::scene::Class;
 
 /// Things: the word that stands for them, and their other names, which say no more. Plurals follow by their own lists.
 const THINGS: &[(&str, &str)] = &[
@@ -91,6 +92,8 @@ const SEVERAL: &[(&str, &str)] = &[
     ("three", "a trio of|a threesome of"),
     ("four", "a quartet of|a foursome of"),
 ];
+/// What groups so many without saying more: "a bunch of three cyclists", "three pieces of fencing".
+const GROUP_OF: &str = "a bunch of|a group of|a set of|a handful of|a total of|a cluster of|a pack of|a gang of|a party of";
 const NUMBERS: [&str; 11] = [
     "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
 ];
@@ -208,6 +211,21 @@ fn numbers(tokens: &[Token]) -> Vec<Token> {
             let length = tokens.get(i + n).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(i + n + 1));
             return length.then_some(i + n);
         }
+        if let Some(n) = begins(&tokens[i..], GROUP_OF) {
+            let many = tokens.get(i + n).is_some_and(|t| number(t).is_some() && t.text != "a" && t.text != "an");
+            return many.then_some(i + n);
+        }
+        // "two further cars": two more
+        let more = begins(&tokens[i..], "further|additional|extra|supplementary").is_some()
+            && i > 0
+            && number(&tokens[i - 1]).is_some()
+            && tokens[i - 1].text != "a"
+            && !(i > 1 && matches!(tokens[i - 2].text.as_str(), "the" | "these" | "those" | "all"))
+            && noun_at(&tokens[i + 1..]).is_some();
+        if more {
+            out.push(word("more", &tokens[i]));
+            return Some(i + 1);
+        }
         let TokenKind::Number(v) = tokens[i].kind else {
             return None;
         };
@@ -242,12 +260,30 @@ const REMOVE: &str = "delete|erase|eliminate|get rid of|do away with|dispose of|
 const ADD: &str = "insert|introduce|spawn|throw in|stick in|drop in|put in|bring in|toss in|chuck in|slot in|include|generate|supply|conjure up|create|plonk|plop|pop in|inject|plonk down";
 const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|re position|re locate";
 const TURN: &str = "rotate|spin|swivel|pivot|reorient|revolve|turn round|turn around|spin round|spin around|twist";
+const CLEAR_ROAD: &str = "clear the highway|clear the motorway|clear the freeway|clear the street|clear the autobahn|clear the carriageway|empty the highway|empty the motorway|\
+    empty the road|empty the street|clear this road|clear this street|clear the whole road|clear the whole street|clear the entire road";
 const WHEEL: &str = "wheel|swing";
 const EXCHANGE: &str = "swap|switch|trade|exchange|supplant|supersede|swap out|switch out|change out|trade in|swap over|interchange";
 
 /// A command in its commonest verb: "ditch the van", "spawn a bus", where a clause begins.
 pub fn commands(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
+        // "our worker" is in the scene; "our car" is the ego vehicle
+        if matches!(tokens[i].text.as_str(), "our" | "my")
+            && let Some((Sense::Noun(noun, _), _)) = tokens.get(i + 1..).and_then(longest)
+            && matches!(
+                noun.classes[0],
+                Class::Pedestrian | Class::TrafficCone | Class::Barrier | Class::ConstructionVehicle
+            )
+        {
+            out.push(word("the", &tokens[i]));
+            return Some(i + 1);
+        }
+        if let Some(n) = begins(&tokens[i..], CLEAR_ROAD) {
+            out.extend(["clear", "the", "road"].map(|w| word(w, &tokens[i])));
+            let all = begins(&tokens[i + n..], "completely|entirely|of everything|totally|altogether").unwrap_or(0);
+            return Some(i + n + all);
+        }
         let starts = i == 0
             || matches!(tokens[i - 1].kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark)
             || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "just" | "so" | "now" | "also" | "but");
@@ -264,6 +300,11 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
             ("remove", n)
         } else if let Some(n) = begins(rest, ADD).filter(|n| before(*n, &new) || counted(*n)) {
             ("add", n)
+        } else if let Some(n) = begins(rest, "keep one more|keep another|keep two more|keep also one|keep also a") {
+            // (as Indian English has it)
+            out.push(word("add", &tokens[i]));
+            out.extend(tokens[i + 1..i + n].iter().filter(|t| t.text != "also").cloned());
+            return Some(i + n);
         } else if let Some(n) = begins(rest, MOVE).filter(|n| before(*n, &known)) {
             ("move", n)
         } else if let Some(n) = begins(rest, TURN).filter(|n| before(*n, &known)) {

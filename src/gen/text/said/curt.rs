@@ -233,7 +233,12 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
     else {
         return tokens;
     };
-    let (lead, rest) = (&tokens[..colon], &tokens[colon + 1..]);
+    let (mut lead, rest) = (&tokens[..colon], &tokens[colon + 1..]);
+    while let Some((_, first)) = lead.split_last().filter(|x| is(Some(x.0), &["well", "as", "too", "also", "please"])) {
+        lead = first;
+    }
+    // "some oncoming traffic: one tanker, one car": oncoming, all of them
+    let oncoming = lead.len() > 1 && is(lead.get(lead.len() - 2), &["oncoming"]);
     let wide = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() > 3);
     let general = is(
         lead.last(),
@@ -274,6 +279,9 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
             "small",
             "one",
             "please",
+            "we",
+            "i",
+            "there",
         ],
     );
     let fresh = rest
@@ -284,10 +292,17 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     if orders {
-        rest.to_vec()
-    } else {
-        led("add", &tokens[0], &[rest])
+        return rest.to_vec();
     }
+    let rest = super::super::wording::rewritten(rest, |i, out| {
+        let noun = oncoming && super::words::noun_at(&rest[i..]).is_some() && (i == 0 || super::words::noun_at(&rest[i - 1..]).is_none());
+        if !noun {
+            return None;
+        }
+        out.extend(led("oncoming", &rest[i], &[&rest[i..=i]]));
+        Some(i + 1)
+    });
+    led("add", &tokens[0], &[&rest])
 }
 
 /// "lorry -> trailer, same position": what takes a place is there anyhow.

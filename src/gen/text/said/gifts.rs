@@ -224,6 +224,14 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let new = &rest[..e];
     let tail = &rest[e..];
     let told = is(trimmed(tail).first(), &["who", "that", "which"]);
+    // "two colleagues on the same sidewalk": there
+    if super::words::leads(tail, &["on the same", "in the same", "at the same", "on the other", "on the opposite"]).is_some() {
+        let same = is(tail.get(2), &["same"]).then(|| super::briefs::strip_of(np, talk)).flatten();
+        if let (Some(strip), true) = (same, tail.len() < 5) {
+            return [&tokens[..i], &led("add", &tokens[i], &[new, &led(strip, &tokens[i], &[])])].concat();
+        }
+        return [&tokens[..i], &led("add", &tokens[i], &[new, tail])].concat();
+    }
     if told
         || is_place(tail)
         || tail

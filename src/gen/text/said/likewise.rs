@@ -564,6 +564,14 @@ fn just_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     } else {
         talk.fits(&at)
     };
+    // "two pedestrians wait at the crossing instead of one": one more comes there
+    let before = than.and_then(|k| number(&tokens[k + 2])).unwrap_or(0).max(0) as usize;
+    let grows = than.is_some() && before > 0 && many > before && there < many && talk.fits(np) == before;
+    if grows && whole && !place.is_empty() {
+        let more = led("add", &tokens[0], &[]);
+        let count = Token { kind: TokenKind::Number((many - before) as f64), ..tokens[lead].clone() };
+        return [&more[..], &[count], &led("more", &tokens[0], &[np]), &led("waiting", &tokens[0], &[place])].concat();
+    }
     if !whole || there == 0 || only && there <= many {
         return tokens;
     }

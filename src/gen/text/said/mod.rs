@@ -8,6 +8,7 @@ mod apart;
 mod arrivals;
 mod asides;
 mod asked;
+mod briefs;
 mod causing;
 mod colours;
 mod company;
@@ -91,6 +92,7 @@ use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
 pub use asides::without as without_asides;
 pub use asked::unasked;
+pub use briefs::whole;
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
@@ -222,7 +224,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
-    let out = sites::plain(kept::plain(out, talk), talk);
+    let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
