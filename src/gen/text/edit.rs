@@ -123,6 +123,7 @@ pub(super) struct Editor<'a> {
     pub(super) last: Vec<BoxId>,    // what was spoken of last
     part_of: Vec<BoxId>,            // those that the last ones were picked from
     pub(super) gone: Vec<SceneBox>, // what was taken away last
+    all_gone: Vec<SceneBox>,        // what was taken away before
     gone_kind: Option<Class>,       // and of what class it was, also after something moved
     pub(super) left: Vec<SceneBox>, // where what was moved last had stood
     pub(super) out: EditReading,
@@ -141,6 +142,7 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         last: Vec::new(),
         part_of: Vec::new(),
         gone: Vec::new(),
+        all_gone: Vec::new(),
         gone_kind: None,
         left: Vec::new(),
         out: EditReading::default(),
@@ -220,6 +222,7 @@ impl Editor<'_> {
                 let gone = self.boxes.remove(id);
                 self.gone_kind = gone.map(|b| b.class);
                 self.gone.extend(gone);
+                self.all_gone.extend(gone);
             }
             TextEdit::Add { object } | TextEdit::Replace { object, .. } => {
                 self.boxes.insert(object.id, *object);
@@ -316,6 +319,9 @@ impl Editor<'_> {
                     .into_iter()
                     .filter(|id| self.boxes.contains_key(id))
                     .collect();
+                if c.in_place {
+                    self.named_spot(c);
+                }
                 let put = c.in_place.then(|| self.put_in_place(c)).flatten();
                 let added = if let Some(put) = put {
                     if put {
@@ -442,6 +448,25 @@ impl Editor<'_> {
             self.gone = gone_before;
         }
         (!done.is_empty()).then(|| done.join(", "))
+    }
+
+    /// "where the taxi was": of all that is gone, the taxi.
+    fn named_spot(&mut self, c: &Command) {
+        let words = super::tokens::tokens(&c.text);
+        let text = |i: usize| words.get(i).map_or("", |t| t.text.as_str());
+        let Some(i) = (0..words.len()).find(|i| text(*i) == "where" && matches!(text(i + 1), "the" | "my" | "that")) else {
+            return;
+        };
+        let end = (i + 2..words.len()).find(|k| matches!(text(*k), "was" | "were" | "stood" | "is" | "used" | "had" | "sat" | "waited" | "parked" | "drove"));
+        let np = &words[i + 1..end.unwrap_or(words.len())];
+        let (_, mentions) = super::edit_command::parse(&c.text, &super::tag::tag(np));
+        let Some(m) = mentions.first() else { return };
+        let fit: Vec<&SceneBox> = self.all_gone.iter().filter(|b| super::names::may_be(b, m)).collect();
+        let spots: Vec<SceneBox> = super::names::called(fit, m).into_iter().copied().collect();
+        if !spots.is_empty() {
+            self.gone = spots;
+            self.left.clear();
+        }
     }
 
     /// True if what a command replaces was taken away just before.

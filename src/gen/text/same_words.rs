@@ -262,6 +262,7 @@ const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|
 const TURN: &str = "rotate|spin|swivel|pivot|reorient|revolve|turn round|turn around|spin round|spin around|twist";
 const CLEAR_ROAD: &str = "clear the highway|clear the motorway|clear the freeway|clear the street|clear the autobahn|clear the carriageway|empty the highway|empty the motorway|\
     empty the road|empty the street|clear this road|clear this street|clear the whole road|clear the whole street|clear the entire road";
+const SO_MANY: &str = "add|put|place|insert|draw|park|take|move|bring|remove|delete|send|line up|set up|paint|turn";
 const WHEEL: &str = "wheel|swing";
 const EXCHANGE: &str = "swap|switch|trade|exchange|supplant|supersede|swap out|switch out|change out|trade in|swap over|interchange";
 
@@ -270,6 +271,8 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
         // "our worker" is in the scene; "our car" is the ego vehicle
         if matches!(tokens[i].text.as_str(), "our" | "my")
+            && !(i > 0 && tokens[i - 1].text == "of")
+            && tokens.get(i + 1).is_some_and(|t| !matches!(t.text.as_str(), "driver" | "drivers" | "rider" | "passenger"))
             && let Some((Sense::Noun(noun, _), _)) = tokens.get(i + 1..).and_then(longest)
             && matches!(
                 noun.classes[0],
@@ -279,6 +282,11 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
             out.push(word("the", &tokens[i]));
             return Some(i + 1);
         }
+        // (a verb of motion, where it is none)
+        if begins(&tokens[i..], "broken down").is_some() && tokens.get(i + 2..).and_then(noun_at).is_some() {
+            out.push(word("stalled", &tokens[i]));
+            return Some(i + 2);
+        }
         if let Some(n) = begins(&tokens[i..], CLEAR_ROAD) {
             out.extend(["clear", "the", "road"].map(|w| word(w, &tokens[i])));
             let all = begins(&tokens[i + n..], "completely|entirely|of everything|totally|altogether").unwrap_or(0);
@@ -286,7 +294,7 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         }
         let starts = i == 0
             || matches!(tokens[i - 1].kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark)
-            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "just" | "so" | "now" | "also" | "but");
+            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "kindly" | "just" | "so" | "now" | "also" | "but");
         if !starts || tokens[i].kind != TokenKind::Word {
             return None;
         }
@@ -296,7 +304,18 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         let known = ["the", "all", "both", "every", "each", "that", "those", "these", "this", "it", "them", "him", "her", "one", "everything", "everyone", "everybody", "anything", "any", "whatever", "what", "whoever", "half", "my", "our"];
         let new = ["a", "an", "another", "some", "one", "more"];
         let clause = || rest.iter().take_while(|t| t.kind != TokenKind::Stop);
-        let (verb, n) = if let Some(n) = begins(rest, REMOVE).filter(|n| before(*n, &known) || counted(*n)) {
+        // "put exactly two cones there": so many come, whatever is there
+        let verb_at = begins(rest, SO_MANY).filter(|n| before(*n, &["exactly", "just", "precisely"]));
+        if let Some(n) = verb_at.filter(|n| counted(n + 1)) {
+            out.extend_from_slice(&rest[..n]);
+            return Some(i + n + 1);
+        }
+        // "cut the cones down to two" takes only some away
+        let partly = || clause().any(|t| matches!(t.text.as_str(), "down" | "to" | "by" | "half" | "short"));
+        let (verb, n) = if let Some(n) = begins(rest, REMOVE)
+            .filter(|n| before(*n, &known) || counted(*n))
+            .filter(|_| tokens[i].text != "cut" || !partly())
+        {
             ("remove", n)
         } else if let Some(n) = begins(rest, ADD).filter(|n| before(*n, &new) || counted(*n)) {
             ("add", n)

@@ -12,7 +12,7 @@ use crate::scene::Class;
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = instead_first(to_the_other(sky_last(tokens), talk), talk);
     let out = beyond(with_doing(out), talk);
-    let out = same_side(opposite_named(out), talk);
+    let out = same_side(opposite_named(not_that(in_other_words(out), talk)), talk);
     let out = out_and_in(pulls_out(out), talk);
     let out = farther_with(wanted_at(out, talk), talk);
     let out = nothing_but(out, talk);
@@ -117,14 +117,18 @@ fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let side = (0..i).rev().find_map(|k| {
         let (a, b) = first_noun(&tokens[k..i]).filter(|x| x.0 > 0 && is(tokens.get(k), &["the", "that"]))?;
         let _ = a;
-        place_of(&tokens[k..k + b], talk)
+        strip_of(&tokens[k..k + b], talk)
     });
-    let Some((p, _)) = side.filter(|s| s.0.y.abs() > 1.0) else {
+    let Some((_, end)) = first_noun(&tokens[..i]) else {
         return tokens;
     };
-    let words = if p.y > 0.0 { "on the left side of the road" } else { "on the right side of the road" };
+    let Some(words) = side else {
+        return tokens;
+    };
     let from = i - usize::from(tokens[i - 1].kind == TokenKind::Comma);
-    [&tokens[..from], &led(words, &tokens[i], &[])[..], &tokens[i + n..]].concat()
+    // (behind the other's name it would tell where that one stands)
+    let strip = led(words, &tokens[i], &[]);
+    [&tokens[..end.min(from)], &strip, &tokens[end.min(from)..from], &tokens[i + n..]].concat()
 }
 
 /// "let the bus pull out: it drives in my lane now": it does not go away.
@@ -173,7 +177,7 @@ fn out_and_in(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let rest = trimmed(&new[b..]);
     let verbs = new.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) || is(Some(t), &OUT));
     let there = begins(rest, SAME_SPOT).filter(|n| *n == rest.len());
-    let fresh = counted || talk.fits(&new[..b]) == 0;
+    let fresh = counted || talk.fits(&new[..b]) == 0 || there.is_some_and(|n| n > 1);
     if !named || definite || verbs || !fresh || talk.fits(who) == 0 || (rest.is_empty() || there.is_none() && !is_place(rest)) {
         return tokens;
     }
@@ -448,6 +452,20 @@ pub fn whole(mut tokens: Vec<Token>) -> Vec<Token> {
             tokens[i].kind = TokenKind::Comma;
         }
     }
+    // "onlookers! Four of them, on the left sidewalk"
+    tokens = rewritten(&tokens, |i, out| {
+        let alone = i == 1 || i > 1 && tokens[i - 2].kind == TokenKind::Stop;
+        let noun = i > 0 && alone && tokens[i].kind == TokenKind::Stop && super::words::noun_at(&tokens[i - 1..i]).is_some();
+        let of_them = tokens.get(i + 1).is_some_and(|t| number(t).is_some()) && leads(tokens.get(i + 2..)?, &["of them"]).is_some();
+        if !(noun && of_them) {
+            return None;
+        }
+        let name = out.pop()?;
+        out.extend(led("add", &name, &[&tokens[i + 1..i + 2]]));
+        out.push(name);
+        // (the comma after it)
+        Some(i + 4 + usize::from(tokens.get(i + 4).is_some_and(|t| t.kind == TokenKind::Comma)))
+    });
     let mut out = Vec::with_capacity(tokens.len());
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         let (body, stop) = match sentence.split_last() {
@@ -466,4 +484,41 @@ pub fn whole(mut tokens: Vec<Token>) -> Vec<Token> {
         out.extend_from_slice(stop);
     }
     out
+}
+
+/// "..., in other words swap them over": said before.
+fn in_other_words(mut tokens: Vec<Token>) -> Vec<Token> {
+    const SAID: &[&str] = &["in other words", "that is to say", "put differently", "in short", "to put it differently", "to say it differently"];
+    if let Some((k, _)) = find(&tokens, SAID).filter(|x| x.0 > 3 && has_noun(&tokens[..x.0])) {
+        tokens.truncate(k);
+        while tokens.last().is_some_and(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_))) {
+            tokens.pop();
+        }
+    }
+    tokens
+}
+
+/// "it's a coach that comes at us, not a car": the car that does becomes a coach.
+fn not_that(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["its", "it is", "it was", "that is", "thats", "this is", "it should be", "it must be", "it has to be"]) else {
+        return tokens;
+    };
+    let Some(k) = (n + 2..tokens.len()).find(|k| {
+        tokens[*k].kind == TokenKind::Comma && is(tokens.get(k + 1), &["not", "and"]) && leads(&tokens[k + 1..], &["not a", "not an", "and not a", "and not an", "not the"]).is_some()
+    }) else {
+        return tokens;
+    };
+    let m = leads(&tokens[k + 1..], &["not", "and not"]).unwrap_or(1);
+    let old = &tokens[k + 1 + m + 1..];
+    let new = &tokens[n..k];
+    let Some((_, b)) = first_noun(new).filter(|x| x.0 < 4 && is(new.first(), &["a", "an"])) else {
+        return tokens;
+    };
+    let clause = &new[b..];
+    let told = clause.is_empty() || is(clause.first(), &["that", "which", "who"]) || is_place(clause);
+    let bare = first_noun(old).is_some_and(|x| x.0 < 3 && x.1 == old.len());
+    if !told || !bare || talk.fits(old) == 0 {
+        return tokens;
+    }
+    [&led("replace the", &tokens[0], &[old, clause])[..], &led("with", &tokens[0], &[&new[..b]])].concat()
 }
