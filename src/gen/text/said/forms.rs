@@ -1,6 +1,6 @@
 //! Clauses of a form of their own: numbers, halves, places before their subject, one thing for another.
 
-use super::super::edit_command::target_part;
+use super::super::edit_command::{target_part, verb_of};
 use super::super::edit_grammar::Command;
 use super::super::lexicon::{Sense, look_up};
 use super::super::tag::tag;
@@ -292,11 +292,13 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
             "every second one of the",
         ],
     )?;
+    // ("knock off half of the cones")
     let removing = i == 1
         && matches!(
             text(&inner[0]),
-            "remove" | "delete" | "take" | "erase" | "drop" | "clear" | "lose" | "scrap" | "bin"
-        );
+            "take" | "drop" | "clear"
+        )
+        || (1..3).contains(&i) && verb_of(&inner[..i]) == Some(Verb::Remove);
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
     let been = predicate::parts(&inner[end..], true)

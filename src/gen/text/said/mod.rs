@@ -8,6 +8,7 @@ mod apart;
 mod arrivals;
 mod asides;
 mod asked;
+mod bare;
 mod causing;
 mod colours;
 mod company;
@@ -37,6 +38,7 @@ mod owned;
 mod parting;
 mod passing;
 mod passive;
+mod placing;
 mod plainly;
 mod pointers;
 mod predicate;
@@ -222,6 +224,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = placing::plain(bare::plain(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);

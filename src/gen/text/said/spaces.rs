@@ -2,6 +2,7 @@
 
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::gifts::begins_at;
 use super::words::{find, first_noun, has_noun, is, is_unit, leads, led, longest, number, text, trimmed};
@@ -82,8 +83,88 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..start], &out, &tokens[metres + 2..]].concat()
 }
 
+/// "so empty the pavement": who is on it goes.
+fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
+    for i in 0..tokens.len() {
+        let verb = is(tokens.get(i), &["empty", "depopulate", "evacuate"]) && begins_at(&tokens, i);
+        let the = is(tokens.get(i + 1), &["the", "our", "my", "both"]);
+        let place = tokens.get(i + 2..).and_then(longest);
+        if let (true, true, Some((Sense::Place(..), n))) = (verb, the, place)
+            && tokens.get(i + 2 + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "of"]))
+        {
+            tokens[i].text = "clear".into();
+        }
+    }
+    tokens
+}
+
+/// "fill two more spaces with cars": two more are parked.
+pub(super) fn spaces_filled(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        (is(tokens.get(i), &["fill", "occupy", "use"]) && begins_at(&tokens, i)).then_some(())?;
+        let up = i + 1 + usize::from(is(tokens.get(i + 1), &["up"]));
+        number(tokens.get(up)?)?;
+        let of = leads(&tokens[up + 1..], &["of the"]).unwrap_or(0);
+        let mut k = up + 1 + of;
+        while is(
+            tokens.get(k),
+            &["more", "other", "further", "additional", "free", "empty", "vacant", "parking", "car", "remaining"],
+        ) {
+            k += 1;
+        }
+        is(
+            tokens.get(k),
+            &["space", "spaces", "bay", "bays", "spot", "spots", "slot", "slots", "place", "places"],
+        )
+        .then_some(())?;
+        is(tokens.get(k + 1), &["with", "by"]).then_some(())?;
+        let article = usize::from(is(tokens.get(k + 2), &["a", "an", "one"]));
+        let from = k + 2 + article;
+        let (_, b) = first_noun(tokens.get(from..)?).filter(|n| n.0 < 3)?;
+        let each = usize::from(is(tokens.get(from + b), &["each"]));
+        Some((i, up, from, from + b, from + b + each))
+    });
+    match found {
+        Some((i, many, from, to, end)) => [
+            &tokens[..i],
+            &led("add", &tokens[i], &[&tokens[many..=many]]),
+            &led("more parked", &tokens[i], &[&tokens[from..to]]),
+            &tokens[end..],
+        ]
+        .concat(),
+        None => tokens,
+    }
+}
+
+/// "slip a fourth car into the left-hand row": parked at that edge, where others are.
+pub(super) fn into_row(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = leads(
+            &tokens[i..],
+            &["into the", "in the", "to the", "onto the", "inside the", "within the"],
+        )?;
+        let side = tokens.get(i + n).filter(|t| is(Some(t), &["left", "right"]))?;
+        let hand = usize::from(is(tokens.get(i + n + 1), &["hand"]));
+        let row = i + n + 1 + hand;
+        is(tokens.get(row), &["row", "line"]).then_some(())?;
+        let of = leads(&tokens[row + 1..], &["of"]).unwrap_or(0);
+        let noun = match of {
+            0 => 0,
+            _ => of + first_noun(&tokens[row + 2..]).filter(|x| x.0 < 3)?.1,
+        };
+        let edge = led("roadside", side, &[]);
+        let there = [&led("on the", side, &[std::slice::from_ref(side)])[..], &edge].concat();
+        let parked = led("all parked vehicles", side, &[&there]);
+        (talk.fits(&parked) > 0).then_some(())?;
+        out.extend(led("parked", side, &[&there]));
+        Some(row + 1 + noun)
+    })
+}
+
+
 /// "the crossing is empty now", "our lane must be free of cones": who is there goes.
 pub(super) fn emptied(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = empties(tokens);
     let body = trimmed(&tokens);
     let the = usize::from(is(body.first(), &["the", "our", "my"]));
     let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest) else {
