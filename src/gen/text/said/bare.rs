@@ -1,11 +1,11 @@
 //! Things named without an article before what is said of them, as second-language speakers do: "scooter no need", "scooter not
-//! good, change to bicycle", "scooter move to left side", "white van, please let it disappear".
+//! good, change to bicycle", "scooter move to left side", "white van, please let it disappear", "silver drops back".
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::gifts::begins_at;
-use super::words::{first_noun, is, is_finite, is_place, leads, led, text, trimmed};
+use super::words::{first_noun, is, is_finite, is_place, leads, led, noun_at, text, trimmed};
 
 const NO_NEED: &[&str] = &[
     "no need", "not need", "no needed", "not needed", "no want", "not want", "not wanted", "no necessary",
@@ -26,17 +26,47 @@ const DOES: &[&str] = &[
 ];
 const OBJECTS: &[&str] = &["it", "them", "him", "her"];
 
+/// How many of them are looked for in a sentence.
+const MOST: usize = 4;
+
 /// A sentence (without its stop) with its articles and helpers.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let found = (0..tokens.len()).find_map(|i| {
-        let end = bare(&tokens, i).filter(|end| talk.fits(&tokens[i..*end]) > 0)?;
-        let new = unwanted(&tokens, i, end)
-            .or_else(|| exchanged(&tokens, i, end))
-            .or_else(|| ordered(&tokens, i, end))
-            .or_else(|| does(&tokens, i, end))?;
+    let mut tokens = coloured_subject(tokens);
+    // ("bus no need, taxi no need")
+    for _ in 0..MOST {
+        match whole(&tokens, talk) {
+            Some(new) => tokens = new,
+            None => break,
+        }
+    }
+    arrived(tokens, talk)
+}
+
+/// The first bare subject with what it lacks.
+fn whole(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    (0..tokens.len()).find_map(|i| {
+        let end = bare(tokens, i).filter(|end| talk.fits(&tokens[i..*end]) > 0)?;
+        let new = unwanted(tokens, i, end)
+            .or_else(|| exchanged(tokens, i, end))
+            .or_else(|| ordered(tokens, i, end))
+            .or_else(|| does(tokens, i, end))?;
         Some([&tokens[..i], &new[..]].concat())
-    });
-    arrived(found.unwrap_or(tokens), talk)
+    })
+}
+
+/// "silver drops back": the silver one.
+fn coloured_subject(tokens: Vec<Token>) -> Vec<Token> {
+    let colour = tokens
+        .first()
+        .is_some_and(|t| matches!(look_up(text(t)), Some(Sense::Color(_))));
+    let does = tokens
+        .get(1)
+        .is_some_and(|t| is_finite(text(t), false) && noun_at(&tokens[1..]).is_none());
+    if colour && does {
+        let the = led("the", &tokens[0], &[&tokens[..1]]);
+        return [&the[..], &led("vehicle", &tokens[0], &[&tokens[1..]])].concat();
+    }
+    tokens
 }
 
 /// Where a noun ends that begins a clause with nothing before it but words that describe it.

@@ -298,7 +298,7 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
             text(&inner[0]),
             "take" | "drop" | "clear"
         )
-        || (1..3).contains(&i) && verb_of(&inner[..i]) == Some(Verb::Remove);
+        || (1..3).contains(&i) && verb_of(&inner[..=i]) == Some(Verb::Remove);
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
     let been = predicate::parts(&inner[end..], true)

@@ -229,7 +229,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
-    let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
+    let out = of_several::front_and_rear(spoken::engine(spoken::little_ones(out, talk), talk), talk);
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(out, talk), talk);
@@ -579,7 +579,9 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return acts::acts(&s, &parts, true, inner, talk);
     }
     // "fire engine in" of one that is there: more of it is not meant
-    if is(pred.first(), &["in"]) {
+    // ("I want it in our lane" says where)
+    let where_to = matches!(s.kind, Kind::Back(_)) && pred.len() > 1;
+    if is(pred.first(), &["in"]) && !where_to {
         return None;
     }
     // "the fourth is still crossing": as before

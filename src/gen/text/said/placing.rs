@@ -49,8 +49,9 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         ));
         let place = tokens.get(end + state..)?;
         // ("display the car behind the bus" may tell which)
-        (is_place(place) && !is(place.first(), &["out", "off", "up"]) && talk.fits(&tokens[from..end]) == 1)
-            .then_some((i, from, end))
+        let fits = talk.fits(&tokens[from..end]);
+        let sure = fits == 1 || fits > 1 && !is(tokens.get(i), &["show", "display"]);
+        (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {
         Some((i, from, end)) => [

@@ -123,7 +123,7 @@ impl Part {
             && self.main.len() > 1
             && n == 1
             && text(&self.main[0]) != "left";
-        let side = text(&self.main[0]) == "left" && !self.perfect;
+        let side = text(&self.main[0]) == "left" && n == 1 && !self.perfect;
         ends && !(bare && !rest.is_empty() && rest[0].kind != TokenKind::Comma) && !side
     }
 }

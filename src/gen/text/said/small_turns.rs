@@ -1,10 +1,9 @@
 //! Small turns of speech of edits, each put into words that other rules read: "one child fewer", "station one of the officers there",
 //! "turn him into a jogger on the pavement", "one stays".
 
-use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, replaced, rewritten};
-use super::words::{first_noun, is, is_finite, is_place, led, noun_at, number, text, trimmed};
+use super::words::{first_noun, is, is_place, led, noun_at, number, text, trimmed};
 
 const STAYS_SO: &str = "the rain should go on|the rain goes on|the rain should continue|the rain continues|the rain must go on|the rain can go on|the rain stays|\
     the rain should stay|the rain remains|the snow should go on|the snow goes on|the snow should continue|the snow stays|the snow should stay|the snow remains|\
@@ -22,7 +21,6 @@ pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
     let out = replaced(&out, WHATEVER, "delete whatever is");
     let out = replaced(&out, "double park|double parks", "park");
     let out = replaced(&out, OFF_THEY_GO, "remove them");
-    let out = coloured_subject(out);
     let out = cut_from(out);
     let out = one_stays(fewer(besides(out)));
     let out = keeps_beside(too_many(stationed(out)));
@@ -37,21 +35,6 @@ fn cut_from(mut tokens: Vec<Token>) -> Vec<Token> {
     });
     if is(tokens.first(), &["cut", "strike", "edit"]) && known && whole {
         tokens[0].text = "remove".into();
-    }
-    tokens
-}
-
-/// "silver drops back": the silver one.
-fn coloured_subject(tokens: Vec<Token>) -> Vec<Token> {
-    let colour = tokens
-        .first()
-        .is_some_and(|t| matches!(look_up(text(t)), Some(Sense::Color(_))));
-    let does = tokens
-        .get(1)
-        .is_some_and(|t| is_finite(text(t), false) && noun_at(&tokens[1..]).is_none());
-    if colour && does {
-        let the = led("the", &tokens[0], &[&tokens[..1]]);
-        return [&the[..], &led("vehicle", &tokens[0], &[&tokens[1..]])].concat();
     }
     tokens
 }

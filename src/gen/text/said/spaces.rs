@@ -129,6 +129,7 @@ pub(super) fn spaces_filled(tokens: Vec<Token>) -> Vec<Token> {
             &tokens[..i],
             &led("add", &tokens[i], &[&tokens[many..=many]]),
             &led("more parked", &tokens[i], &[&tokens[from..to]]),
+            &led("in the car park", &tokens[i], &[]),
             &tokens[end..],
         ]
         .concat(),
@@ -156,7 +157,7 @@ pub(super) fn into_row(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let there = [&led("on the", side, &[std::slice::from_ref(side)])[..], &edge].concat();
         let parked = led("all parked vehicles", side, &[&there]);
         (talk.fits(&parked) > 0).then_some(())?;
-        out.extend(led("parked", side, &[&there]));
+        out.extend(there);
         Some(row + 1 + noun)
     })
 }

@@ -2,6 +2,7 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::lists::HELPERS;
 use super::words::{self, find, is, is_place, led, text};
@@ -127,6 +128,22 @@ pub(super) fn little_ones(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token>
     }
     tokens.splice(i..i + 2, child);
     tokens
+}
+
+/// "beside the engine", where a fire engine is: that one.
+pub(super) fn engine(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let called = |b: &crate::scene::SceneBox| b.label.name.as_str().to_lowercase().starts_with("fire");
+    if !tokens.iter().any(|t| is(Some(t), &["engine", "appliance"])) || !talk.boxes.values().any(called) {
+        return tokens;
+    }
+    rewritten(&tokens, |i, out| {
+        let named = is(tokens.get(i), &["engine", "appliance"]) && is(out.last(), &["the", "that", "our", "my"]);
+        // ("with the engine running")
+        let part = out.len() > 1 && is(out.get(out.len() - 2), &["with", "turn", "switch", "start", "off", "on"]);
+        (named && !part).then_some(())?;
+        out.extend(led("fire engine", &tokens[i], &[]));
+        Some(i + 1)
+    })
 }
 
 /// The words without "on foot" and "who is on foot".
