@@ -3,9 +3,11 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::gifts::begins_at;
-use super::words::{first_noun, is, is_finite, is_place, leads, led, noun_at, text, trimmed};
+use super::lists::{HELPERS, PRONOUNS};
+use super::words::{first_noun, is, is_finite, is_place, leads, led, noun_at, number, text, trimmed};
 
 const NO_NEED: &[&str] = &[
     "no need", "not need", "no needed", "not needed", "no want", "not want", "not wanted", "no necessary",
@@ -47,6 +49,7 @@ fn whole(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     (0..tokens.len()).find_map(|i| {
         let end = bare(tokens, i).filter(|end| talk.fits(&tokens[i..*end]) > 0)?;
         let new = unwanted(tokens, i, end)
+            .or_else(|| enough(tokens, i, end))
             .or_else(|| exchanged(tokens, i, end))
             .or_else(|| ordered(tokens, i, end))
             .or_else(|| does(tokens, i, end))?;
@@ -54,19 +57,21 @@ fn whole(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     })
 }
 
-/// "silver drops back": the silver one.
+/// "silver drops back", "white out, red stays": the silver one.
 fn coloured_subject(tokens: Vec<Token>) -> Vec<Token> {
-    let colour = tokens
-        .first()
-        .is_some_and(|t| matches!(look_up(text(t)), Some(Sense::Color(_))));
-    let does = tokens
-        .get(1)
-        .is_some_and(|t| is_finite(text(t), false) && noun_at(&tokens[1..]).is_none());
-    if colour && does {
-        let the = led("the", &tokens[0], &[&tokens[..1]]);
-        return [&the[..], &led("vehicle", &tokens[0], &[&tokens[1..]])].concat();
-    }
-    tokens
+    rewritten(&tokens, |i, out| {
+        let opens = begins_at(&tokens, i) && matches!(look_up(text(&tokens[i])), Some(Sense::Color(_)));
+        let next = tokens.get(i + 1).filter(|_| opens)?;
+        let does = is_finite(text(next), false) && noun_at(&tokens[i + 1..]).is_none();
+        let away = is(Some(next), &["out", "away", "gone", "off"]) && closes(tokens.get(i + 2));
+        // ("paint the bus red and white" tells how)
+        let list = i > 0 && matches!(look_up(text(&tokens[i - 1])), Some(Sense::Color(_)))
+            || is(out.last(), &["and", "but"]) && i > 1 && matches!(look_up(text(&tokens[i - 2])), Some(Sense::Color(_)));
+        ((does || away) && !list).then_some(())?;
+        out.extend(led("the", &tokens[i], &[&tokens[i..=i]]));
+        out.extend(led("vehicle", &tokens[i], &[]));
+        Some(i + 1)
+    })
 }
 
 /// Where a noun ends that begins a clause with nothing before it but words that describe it.
@@ -95,6 +100,18 @@ fn unwanted(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
         .then(|| led("remove the", &tokens[i], &[&tokens[i..end], &rest[n + more..]]))
 }
 
+/// "pedestrian one is enough": one of them is.
+fn enough(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
+    let many = tokens.get(end).filter(|t| number(t).is_some())?;
+    let n = leads(
+        &tokens[end + 1..],
+        &["is enough", "are enough", "enough", "is ok", "are ok", "will do", "is sufficient", "is plenty", "are plenty"],
+    )?;
+    let rest = &tokens[end + 1 + n..];
+    closes(rest.first())
+        .then(|| led("keep only", &tokens[i], &[std::slice::from_ref(many), &tokens[i..end], rest]))
+}
+
 /// "scooter not good, change to bicycle": one for the other.
 fn exchanged(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
     let n = leads(&tokens[end..], NOT_GOOD)?;
@@ -113,6 +130,10 @@ fn ordered(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
     (tokens.get(end)?.kind == TokenKind::Comma).then_some(())?;
     let please = usize::from(is(tokens.get(end + 1), &["please", "just"]));
     let order = &tokens[end + 1 + please..];
+    // "bus, it should drive behind us"
+    if is(order.first(), &PRONOUNS) && order.get(1).is_some_and(|t| HELPERS.contains(&text(t))) {
+        return Some(led("the", &tokens[i], &[&tokens[i..end], &order[1..]]));
+    }
     let verb = super::super::rephrase::is_verb(order.first()?) || is(order.first(), &["let", "have"]);
     (verb && is(order.get(1), OBJECTS)).then(|| {
         let the = led("the", &tokens[i], &[&tokens[i..end]]);

@@ -167,7 +167,7 @@ pub(super) fn fragment(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 }
 
 /// "behind the truck comes a car": the thing after its place and verb.
-pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
+pub(super) fn inverted(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if !is_place(inner) || super::super::rephrase::is_verb(&inner[0]) {
         return None;
     }
@@ -192,6 +192,17 @@ pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
         return None;
     }
     let end = from + noun.1;
+    // "on the left roadside there should be four cars": in all
+    let many = inner.get(from).filter(|t| number(t).is_some() && !is(Some(t), &["a", "an", "one"]));
+    let total = many.is_some()
+        && is(inner.get(verb), &["should", "must", "shall", "ought"])
+        && find(&inner[verb - 1..from], &["there should be", "there must be", "there shall be", "there ought to be"]).is_some()
+        && !inner[from..end].iter().any(|t| is(Some(t), &["more", "other", "further", "additional", "extra"]))
+        && inner.len() == end;
+    let before = &inner[..verb.saturating_sub(1)];
+    if total && talk.fits(&[&inner[from + 1..end], before].concat()) > 0 {
+        return Some(vec![Piece::Plain(led("keep exactly", &inner[0], &[&inner[from..end], before]))]);
+    }
     // (a comma parts the place from what more is said)
     Some(vec![Piece::Plain(led(
         "add",

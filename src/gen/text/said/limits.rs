@@ -121,6 +121,19 @@ pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
         let end = noun.end.max(k + 1);
         Some((i, k, noun, end))
     });
+    // "the crew consists of five workers"
+    let found = found.or_else(|| {
+        is(tokens.first(), &["the", "that", "this", "our"]).then_some(())?;
+        is(tokens.get(1), GROUP).then_some(())?;
+        let n = leads(
+            &tokens[2..],
+            &["consists of", "is made up of", "numbers", "should consist of", "should number", "should have", "now has"],
+        )?;
+        let k = 2 + n + usize::from(is(tokens.get(2 + n), &["just", "only", "exactly"]));
+        tokens.get(k).filter(|t| number(t).is_some())?;
+        let (_, b) = first_noun(tokens.get(k + 1..)?).filter(|x| x.0 < 3)?;
+        (!is(tokens.get(k + 1), &["more"])).then_some((0, k, k + 1..k + 1 + b, k + 1 + b))
+    });
     let Some((i, k, noun, end)) = found else {
         return tokens;
     };

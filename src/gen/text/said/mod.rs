@@ -161,6 +161,16 @@ impl Talk<'_> {
         m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
     }
 
+    /// True if these words mean so many boxes as they name: "the lorry", where a pickup is a truck, too.
+    fn tells(&self, np: &[Token]) -> bool {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let Some(m) = mentions.iter().find(|m| !m.is_anchor && !m.gone) else {
+            return false;
+        };
+        let n = super::names::plainly(self.boxes_of(np), m).len();
+        n == 1 || n > 1 && m.plural
+    }
+
     /// The box that these words mean, if no other fits.
     fn only(&self, np: &[Token]) -> Option<&SceneBox> {
         let (_, mentions) = parse(self.text, &tag(np));
@@ -494,7 +504,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         };
     }
     if let Some(found) = fragment(inner, talk)
-        .or_else(|| inverted(inner))
+        .or_else(|| inverted(inner, talk))
         .or_else(|| only_so_many(inner, talk))
     {
         return Some(found);

@@ -4,9 +4,9 @@
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::gifts::begins_at;
+use super::gifts::{begins_at, remark};
 use super::lists::{OFF_SITE, UNTIL};
-use super::words::{first_noun, is, is_goal, is_place, leads, led, longest, text};
+use super::words::{first_noun, is, is_goal, is_place, leads, led, longest, number, text};
 
 const SHOWS: &[&str] = &[
     "show", "show me", "show us", "picture", "depict", "portray", "display", "initialise", "initialize",
@@ -22,7 +22,7 @@ const WHOLE: &[&str] = &["the", "both", "all", "that", "those", "these", "my", "
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = still_so(tokens, talk);
-    let out = shown(out, talk);
+    let out = shown(seen(out, talk), talk);
     let out = lifted(thrown(out, talk));
     past(until(out, talk), talk)
 }
@@ -30,7 +30,9 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// Where the words end that name something known, which begin at `from`.
 fn known(tokens: &[Token], from: usize) -> Option<usize> {
     let np = tokens.get(from..)?;
-    let (_, b) = first_noun(np).filter(|n| n.0 < 5 && is(np.first(), WHOLE))?;
+    // ("two of the cones" are there, too)
+    let part = usize::from(np.first().is_some_and(|t| number(t).is_some()) && is(np.get(1), &["of"])) * 2;
+    let (_, b) = first_noun(np).filter(|n| n.0 < 5 && is(np.get(part), WHOLE))?;
     Some(from + b)
 }
 
@@ -48,9 +50,7 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        // ("display the car behind the bus" may tell which)
-        let fits = talk.fits(&tokens[from..end]);
-        let sure = fits == 1 || fits > 1 && !is(tokens.get(i), &["show", "display"]);
+        let sure = talk.tells(&tokens[from..end]);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {
@@ -62,6 +62,22 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .concat(),
         None => tokens,
     }
+}
+
+/// "show the pickup from the back", "show the bus": it is there, and stays as it is.
+fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let end = opens_with(&tokens, 0, &["show", "show me", "show us", "display"])
+        .and_then(|from| Some((from, known(&tokens, from)?)));
+    let Some((from, end)) = end.filter(|x| talk.fits(&tokens[x.0..x.1]) > 0) else {
+        return tokens;
+    };
+    let rest = &tokens[end..];
+    let view = rest.is_empty()
+        || leads(
+            rest,
+            &["from the back", "from behind", "from the front", "from above", "from the side", "please", "again", "to me"],
+        ) == Some(rest.len());
+    if view { remark(&tokens[from..end]) } else { tokens }
 }
 
 /// "chuck the barriers across to the right edge of the road": moved there, not thrown away.
@@ -160,7 +176,7 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         None => return tokens,
     };
     let fresh = tokens[..from].iter().any(|t| {
-        is(Some(t), &["a", "an", "another", "some", "more"]) || super::words::number(t).is_some()
+        is(Some(t), &["a", "an", "another", "some", "more"]) || number(t).is_some()
     });
     // ("..., same place" is said of what takes it)
     let replaces = tokens[..i]
@@ -177,19 +193,24 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..i - link], &tokens[end..]].concat()
 }
 
-/// "the cyclist should be past the bus": ahead of it, as the bus is turned where it comes towards us behind it.
+/// "the cyclist should be past the bus", "beyond the cones": ahead of them, or behind what is turned to us.
 fn past(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let found = (2..tokens.len()).find_map(|i| {
+    let found = (1..tokens.len()).find_map(|i| {
         let the = is(tokens.get(i), &["past"]) && is(tokens.get(i + 1), &["the", "that", "both", "all"]);
         let stands = is(tokens.get(i - 1), &["be", "is", "are", "already", "now", "well", "just"])
             || super::words::noun_at(&tokens[i - 1..i]).is_some();
-        let end = known(&tokens, i + 1).filter(|_| the && stands)?;
-        let boxes = talk.boxes_of(&tokens[i + 1..end]);
+        let far = leads(&tokens[i..], &["beyond", "on the far side of", "at the far side of", "to the far side of"]);
+        let np = i + far.or((the && stands).then_some(1))?;
+        let end = known(&tokens, np)?;
+        let boxes = talk.boxes_of(&tokens[np..end]);
         let first = boxes.first()?;
-        Some((i, if first.yaw_rad.cos() < 0.0 { "behind" } else { "ahead of" }))
+        // (seen from us what is beyond something behind us is farther back)
+        let back = first.center_m.x < 0.0 && far.is_some();
+        let behind = (first.yaw_rad.cos() < 0.0) != back;
+        Some((i, np, if behind { "behind" } else { "ahead of" }))
     });
     match found {
-        Some((i, rel)) => [&tokens[..i], &led(rel, &tokens[i], &[&tokens[i + 1..]])].concat(),
+        Some((i, np, rel)) => [&tokens[..i], &led(rel, &tokens[i], &[&tokens[np..]])].concat(),
         None => tokens,
     }
 }

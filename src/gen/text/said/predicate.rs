@@ -174,6 +174,10 @@ fn boarded(main: &[Token]) -> bool {
             "taken seats in",
         ],
     );
+    // ("has boarded it")
+    if n.is_some_and(|n| is(main.get(n), &["it", "them"]) && main.len() == n + 1) && !is(main.first(), &["inside"]) {
+        return true;
+    }
     let Some(np) = n
         .map(|n| &main[n..])
         .filter(|np| is(np.first(), &["the", "a", "an", "our", "my", "that", "one"]))

@@ -8,11 +8,38 @@ use crate::scene::Class;
 
 /// A sentence in plain words.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
-    mounts(climbs_out(mounted(tokens)))
+    mounts(climbs_out(mounted(put_on(tokens))))
 }
 
 fn two_wheels(t: &Token) -> bool {
     matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() == 1 && matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
+}
+
+/// "put one of the pedestrians on a bicycle": he becomes one.
+fn put_on(tokens: Vec<Token>) -> Vec<Token> {
+    let person = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] == Class::Pedestrian);
+    let found = is(tokens.first(), &["put", "set", "seat", "get", "place", "sit"])
+        .then(|| first_noun(&tokens[1..]))
+        .flatten()
+        .filter(|n| n.0 < 5 && person(&tokens[n.1]));
+    let known = tokens[..tokens.len().min(6)]
+        .iter()
+        .any(|t| is(Some(t), &["the", "both", "that", "my", "our", "those"]));
+    let Some((_, b)) = found.filter(|_| known) else {
+        return tokens;
+    };
+    let on = leads(&tokens[1 + b..], &["on a", "on an", "onto a", "onto an"]).map(|n| 1 + b + n);
+    let Some((from, end)) = on.and_then(|k| Some((k, k + first_noun(&tokens[k..]).filter(|x| x.0 < 3)?.1))) else {
+        return tokens;
+    };
+    if !two_wheels(&tokens[end - 1]) {
+        return tokens;
+    }
+    [
+        &led("replace", &tokens[0], &[&tokens[1..=b]])[..],
+        &led("with a", &tokens[0], &[&tokens[from..]]),
+    ]
+    .concat()
 }
 
 /// "a courier on a motorbike": the motorbike, which he rides.

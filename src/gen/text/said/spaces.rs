@@ -87,6 +87,10 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
     for i in 0..tokens.len() {
         let verb = is(tokens.get(i), &["empty", "depopulate", "evacuate"]) && begins_at(&tokens, i);
+        let frees = verb || is(tokens.get(i), &["clear", "free", "vacate"]) && begins_at(&tokens, i);
+        if let Some(new) = frees.then(|| car_park_emptied(&tokens, i)).flatten() {
+            return new;
+        }
         let the = is(tokens.get(i + 1), &["the", "our", "my", "both"]);
         let place = tokens.get(i + 2..).and_then(longest);
         if let (true, true, Some((Sense::Place(..), n))) = (verb, the, place)
@@ -96,6 +100,32 @@ fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     tokens
+}
+
+/// "empty two of the parking spaces", "clear the car park": so many of the parked ones go, or all.
+fn car_park_emptied(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
+    const PARKS: &[&str] = &[
+        "the car park", "the parking lot", "the whole car park", "the entire car park", "the parking area",
+        "the whole parking lot", "the entire parking lot", "all the parking spaces", "all parking spaces", "all the spaces",
+        "all the bays",
+    ];
+    let up = i + 1 + usize::from(is(tokens.get(i + 1), &["up", "out"]));
+    if let Some(n) = leads(&tokens[up..], PARKS) {
+        let ends = tokens.get(up + n).is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and", "completely"]));
+        let spares = tokens[up + n..].iter().any(|t| is(Some(t), &["except", "but", "apart", "save", "of"]));
+        let all = led("remove all the parked vehicles", &tokens[i], &[&tokens[up + n..]]);
+        return (ends && !spares).then(|| [&tokens[..i], &all].concat());
+    }
+    let many = tokens.get(up).filter(|t| number(t).is_some())?;
+    let of = leads(&tokens[up + 1..], &["of the"]).unwrap_or(0);
+    let mut k = up + 1 + of;
+    while is(tokens.get(k), &["parking", "car", "occupied", "taken", "filled"]) {
+        k += 1;
+    }
+    is(tokens.get(k), &["space", "spaces", "bay", "bays", "spot", "spots", "slot", "slots"]).then_some(())?;
+    let any = led("remove any", &tokens[i], &[std::slice::from_ref(many)]);
+    let parked = led("of the parked vehicles", &tokens[i], &[&tokens[k + 1..]]);
+    Some([&tokens[..i], &any, &parked].concat())
 }
 
 /// "fill two more spaces with cars": two more are parked.

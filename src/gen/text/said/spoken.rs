@@ -106,6 +106,10 @@ fn side_added(mut tokens: Vec<Token>) -> Vec<Token> {
         Some((the, i, side, end))
     });
     if let Some((the, comma, side, end)) = found {
+        // ("the other lane, the one on our left, should be empty")
+        let encloses = tokens.get(end).is_some_and(|t| t.kind == TokenKind::Comma)
+            && tokens.get(end + 1).is_some_and(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), true));
+        let end = end + usize::from(encloses);
         let (left, strip) = (tokens[side].clone(), tokens[comma - 1].clone());
         tokens.splice(the + 1..end, [left, strip]);
     }
