@@ -371,7 +371,10 @@ fn this_side(tokens: &[Token]) -> Vec<Token> {
     const NEAR: &str = "on this side of|on our side of|on the near side of|on the nearer side of|this side of|to this side of|at the near side of";
     rewritten(tokens, |i, out| {
         let n = begins(&tokens[i..], NEAR)?;
-        let the = matches!(tokens.get(i + n)?.text.as_str(), "the" | "those" | "these" | "all" | "both");
+        let the = matches!(
+            tokens.get(i + n)?.text.as_str(),
+            "the" | "those" | "these" | "all" | "both"
+        );
         let many = usize::from(tokens.get(i + n + 1).is_some_and(is_number));
         let thing = tokens.get(i + n + 1 + many).is_some_and(super::ellipsis::is_noun);
         (the && thing).then_some(())?;

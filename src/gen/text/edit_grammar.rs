@@ -311,6 +311,22 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// "keep the bus; remove the others" is one sentence.
+    fn join_kept(&mut self, from: usize) {
+        const OTHERS: &str = "remove the others|delete the others|erase the others|remove the rest|delete the rest|erase the rest|remove all others|\
+            delete all others|remove everything else|delete everything else|clear the rest|take the others away|take the rest away";
+        let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
+        let keeps = begins(
+            &self.tokens[from..],
+            "keep the|leave the|keep my|keep only the|leave only the|keep both|keep just the",
+        );
+        if let (Some(stop), Some(_)) = (stop, keeps)
+            && begins(&self.tokens[stop + 1..], OTHERS).is_some()
+        {
+            self.tokens[stop].kind = TokenKind::Comma;
+        }
+    }
+
     /// The commands of the next sentence; `None` at the end.
     pub(super) fn next(
         &mut self,
@@ -323,6 +339,7 @@ impl<'t> Reader<'t> {
         }
         let from = self.at;
         self.join_enough(from);
+        self.join_kept(from);
         let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
         // "Woman to my right. Same distance." is one sentence
         let stop = stop.map(|s| {

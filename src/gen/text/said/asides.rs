@@ -244,12 +244,30 @@ fn begin(sentence: &[Token]) -> Option<usize> {
 fn shows_it(rest: &[Token]) -> bool {
     let ask = leads(
         rest,
-        &["can you", "could you", "can you please", "could you please", "would you", "please", "you can", "so please", "so can you", "do"],
+        &[
+            "can you",
+            "could you",
+            "can you please",
+            "could you please",
+            "would you",
+            "please",
+            "you can",
+            "so please",
+            "so can you",
+            "do",
+        ],
     )
     .unwrap_or(0);
-    is(rest.get(ask), &["show", "display", "draw", "depict", "include", "picture"])
-        && is(rest.get(ask + 1), &["it", "that", "this", "them", "him", "her"])
-        && rest[ask + 2..].iter().all(|t| is(Some(t), &["please", "too", "there", "here", "for", "me", "us", "as", "well"]))
+    is(
+        rest.get(ask),
+        &["show", "display", "draw", "depict", "include", "picture"],
+    ) && is(rest.get(ask + 1), &["it", "that", "this", "them", "him", "her"])
+        && rest[ask + 2..].iter().all(|t| {
+            is(
+                Some(t),
+                &["please", "too", "there", "here", "for", "me", "us", "as", "well"],
+            )
+        })
 }
 
 /// True if these words command or tell something of what is in the scene.

@@ -10,21 +10,75 @@ use super::lists::{HELPERS, PRONOUNS};
 use super::words::{first_noun, is, is_finite, is_place, leads, led, noun_at, number, text, trimmed};
 
 const NO_NEED: &[&str] = &[
-    "no need", "not need", "no needed", "not needed", "no want", "not want", "not wanted", "no necessary",
-    "not necessary", "no longer need", "no more need", "dont need", "unneeded", "not required",
+    "no need",
+    "not need",
+    "no needed",
+    "not needed",
+    "no want",
+    "not want",
+    "not wanted",
+    "no necessary",
+    "not necessary",
+    "no longer need",
+    "no more need",
+    "dont need",
+    "unneeded",
+    "not required",
 ];
 const NOT_GOOD: &[&str] = &[
-    "not good", "no good", "is not good", "is no good", "not ok", "not okay", "not right", "not suitable",
-    "not correct", "not fitting", "wrong", "is wrong", "bad",
+    "not good",
+    "no good",
+    "is not good",
+    "is no good",
+    "not ok",
+    "not okay",
+    "not right",
+    "not suitable",
+    "not correct",
+    "not fitting",
+    "wrong",
+    "is wrong",
+    "bad",
 ];
 const BECOMES: &[&str] = &[
-    "change to", "change into", "change it to", "change it into", "change for", "replace with", "replace by",
-    "replace it with", "replace it by", "make it", "make", "swap for", "swap with", "swap it for", "turn into",
-    "turn it into", "switch to", "switch it to", "use",
+    "change to",
+    "change into",
+    "change it to",
+    "change it into",
+    "change for",
+    "replace with",
+    "replace by",
+    "replace it with",
+    "replace it by",
+    "make it",
+    "make",
+    "swap for",
+    "swap with",
+    "swap it for",
+    "turn into",
+    "turn it into",
+    "switch to",
+    "switch it to",
+    "use",
 ];
 const DOES: &[&str] = &[
-    "move", "go", "come", "turn", "stay", "disappear", "vanish", "stand", "wait", "drive", "become", "change",
-    "leave", "walk", "ride", "face", "shift",
+    "move",
+    "go",
+    "come",
+    "turn",
+    "stay",
+    "disappear",
+    "vanish",
+    "stand",
+    "wait",
+    "drive",
+    "become",
+    "change",
+    "leave",
+    "walk",
+    "ride",
+    "face",
+    "shift",
 ];
 const OBJECTS: &[&str] = &["it", "them", "him", "her"];
 
@@ -33,7 +87,7 @@ const MOST: usize = 4;
 
 /// A sentence (without its stop) with its articles and helpers.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let mut tokens = coloured_subject(tokens);
+    let mut tokens = coloured_subject(instead_of(tokens, talk));
     // ("bus no need, taxi no need")
     for _ in 0..MOST {
         match whole(&tokens, talk) {
@@ -57,6 +111,25 @@ fn whole(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     })
 }
 
+/// "instead bus I want a tram": instead of it; "need one ambulance": add it.
+fn instead_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    // ("need one ambulance" is a wish)
+    if is(tokens.first(), &["need", "want"])
+        && tokens
+            .get(1)
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "more"]))
+    {
+        return led("add", &tokens[0], &[&tokens[1..]]);
+    }
+    let noun = first_noun(tokens.get(1..).unwrap_or_default()).filter(|n| n.0 == 0);
+    match noun {
+        Some((_, b)) if is(tokens.first(), &["instead"]) && talk.fits(&tokens[1..=b]) > 0 => {
+            led("instead of the", &tokens[0], &[&tokens[1..]])
+        }
+        _ => tokens,
+    }
+}
+
 /// "silver drops back", "white out, red stays": the silver one.
 fn coloured_subject(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
@@ -66,7 +139,9 @@ fn coloured_subject(tokens: Vec<Token>) -> Vec<Token> {
         let away = is(Some(next), &["out", "away", "gone", "off"]) && closes(tokens.get(i + 2));
         // ("paint the bus red and white" tells how)
         let list = i > 0 && matches!(look_up(text(&tokens[i - 1])), Some(Sense::Color(_)))
-            || is(out.last(), &["and", "but"]) && i > 1 && matches!(look_up(text(&tokens[i - 2])), Some(Sense::Color(_)));
+            || is(out.last(), &["and", "but"])
+                && i > 1
+                && matches!(look_up(text(&tokens[i - 2])), Some(Sense::Color(_)));
         ((does || away) && !list).then_some(())?;
         out.extend(led("the", &tokens[i], &[&tokens[i..=i]]));
         out.extend(led("vehicle", &tokens[i], &[]));
@@ -95,9 +170,12 @@ fn closes(t: Option<&Token>) -> bool {
 fn unwanted(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
     let rest = &tokens[end..];
     let n = leads(rest, NO_NEED)?;
-    let more = leads(&rest[n..], &["any more", "anymore", "now", "please", "here", "at all"]).unwrap_or(0);
-    closes(rest.get(n + more))
-        .then(|| led("remove the", &tokens[i], &[&tokens[i..end], &rest[n + more..]]))
+    let more = leads(
+        &rest[n..],
+        &["any more", "anymore", "now", "please", "here", "at all"],
+    )
+    .unwrap_or(0);
+    closes(rest.get(n + more)).then(|| led("remove the", &tokens[i], &[&tokens[i..end], &rest[n + more..]]))
 }
 
 /// "pedestrian one is enough": one of them is.
@@ -105,11 +183,26 @@ fn enough(tokens: &[Token], i: usize, end: usize) -> Option<Vec<Token>> {
     let many = tokens.get(end).filter(|t| number(t).is_some())?;
     let n = leads(
         &tokens[end + 1..],
-        &["is enough", "are enough", "enough", "is ok", "are ok", "will do", "is sufficient", "is plenty", "are plenty"],
+        &[
+            "is enough",
+            "are enough",
+            "enough",
+            "is ok",
+            "are ok",
+            "will do",
+            "is sufficient",
+            "is plenty",
+            "are plenty",
+        ],
     )?;
     let rest = &tokens[end + 1 + n..];
-    closes(rest.first())
-        .then(|| led("keep only", &tokens[i], &[std::slice::from_ref(many), &tokens[i..end], rest]))
+    closes(rest.first()).then(|| {
+        led(
+            "keep only",
+            &tokens[i],
+            &[std::slice::from_ref(many), &tokens[i..end], rest],
+        )
+    })
 }
 
 /// "scooter not good, change to bicycle": one for the other.
@@ -158,15 +251,21 @@ fn arrived(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (2..tokens.len()).find(|i| {
         tokens[i - 1].kind == TokenKind::Comma
             && is(tokens.get(*i), &["now"])
-            && is(tokens.get(i + 1), &["both", "all", "they", "he", "she", "it", "each"])
+            && is(
+                tokens.get(i + 1),
+                &["both", "all", "they", "he", "she", "it", "each"],
+            )
     });
     let Some(i) = found else {
         return tokens;
     };
     let before = &tokens[..i - 1];
-    let over = before
-        .iter()
-        .any(|t| is(Some(t), &["finish", "finished", "done", "already", "arrived", "crossed"]));
+    let over = before.iter().any(|t| {
+        is(
+            Some(t),
+            &["finish", "finished", "done", "already", "arrived", "crossed"],
+        )
+    });
     let Some((_, b)) = first_noun(before).filter(|n| n.0 < 3 && over && talk.fits(&before[..n.1]) > 0) else {
         return tokens;
     };
@@ -175,7 +274,11 @@ fn arrived(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !stands || !tokens.get(verb + 1..).is_some_and(is_place) {
         return tokens;
     }
-    let the = if is(before.first(), &["the", "both", "all", "my", "that"]) { "" } else { "the" };
+    let the = if is(before.first(), &["the", "both", "all", "my", "that"]) {
+        ""
+    } else {
+        "the"
+    };
     let mut out = before[..b].to_vec();
     if !the.is_empty() {
         out.insert(0, super::words::word(the, &tokens[0]));

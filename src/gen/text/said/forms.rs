@@ -193,15 +193,32 @@ pub(super) fn inverted(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     let end = from + noun.1;
     // "on the left roadside there should be four cars": in all
-    let many = inner.get(from).filter(|t| number(t).is_some() && !is(Some(t), &["a", "an", "one"]));
+    let many = inner
+        .get(from)
+        .filter(|t| number(t).is_some() && !is(Some(t), &["a", "an", "one"]));
     let total = many.is_some()
         && is(inner.get(verb), &["should", "must", "shall", "ought"])
-        && find(&inner[verb - 1..from], &["there should be", "there must be", "there shall be", "there ought to be"]).is_some()
-        && !inner[from..end].iter().any(|t| is(Some(t), &["more", "other", "further", "additional", "extra"]))
+        && find(
+            &inner[verb - 1..from],
+            &[
+                "there should be",
+                "there must be",
+                "there shall be",
+                "there ought to be",
+            ],
+        )
+        .is_some()
+        && !inner[from..end]
+            .iter()
+            .any(|t| is(Some(t), &["more", "other", "further", "additional", "extra"]))
         && inner.len() == end;
     let before = &inner[..verb.saturating_sub(1)];
     if total && talk.fits(&[&inner[from + 1..end], before].concat()) > 0 {
-        return Some(vec![Piece::Plain(led("keep exactly", &inner[0], &[&inner[from..end], before]))]);
+        return Some(vec![Piece::Plain(led(
+            "keep exactly",
+            &inner[0],
+            &[&inner[from..end], before],
+        ))]);
     }
     // (a comma parts the place from what more is said)
     Some(vec![Piece::Plain(led(
@@ -304,11 +321,7 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
         ],
     )?;
     // ("knock off half of the cones")
-    let removing = i == 1
-        && matches!(
-            text(&inner[0]),
-            "take" | "drop" | "clear"
-        )
+    let removing = i == 1 && matches!(text(&inner[0]), "take" | "drop" | "clear")
         || (1..3).contains(&i) && verb_of(&inner[..=i]) == Some(Verb::Remove);
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)

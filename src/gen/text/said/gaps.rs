@@ -100,7 +100,12 @@ fn noun_before(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
 /// "mark the trailer with a cone at its front and another": a cone, where the first that was named is there already.
 fn fresh_before(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
     let (a, b) = first_noun(&tokens[..i])?;
-    let the = |t: &Token| is(Some(t), &["the", "that", "both", "all", "my", "our", "these", "those"]);
+    let the = |t: &Token| {
+        is(
+            Some(t),
+            &["the", "that", "both", "all", "my", "our", "these", "those"],
+        )
+    };
     tokens[..a].iter().rev().take(3).any(the).then_some(())?;
     let from = (b..i).find(|k| {
         (is(tokens.get(*k), &["a", "an"]) || number(&tokens[*k]).is_some())
@@ -291,7 +296,11 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
                         "there" | "right" | "just" | "that" | "who" | "parked" | "too"
                     )
             });
-        if let (false, true, Some(noun)) = (own, ends, fresh_before(&tokens, i).or_else(|| noun_before(&tokens, i))) {
+        if let (false, true, Some(noun)) = (
+            own,
+            ends,
+            fresh_before(&tokens, i).or_else(|| noun_before(&tokens, i)),
+        ) {
             let more = led("another", &tokens[i], &[&noun]);
             let end = i + more.len();
             tokens.splice(i..i + n, more);

@@ -43,13 +43,21 @@ fn content_with(tokens: Vec<Token>) -> Vec<Token> {
         let be = out.len().checked_sub(adverb + 1)?;
         let wishes = is(out.get(be), &["be", "im", "am", "were", "are"])
             && out[..be].iter().all(|t| {
-                is(Some(t), &["i", "we", "id", "wed", "would", "will", "could", "ill", "well", "and", "but", "so"])
+                is(
+                    Some(t),
+                    &[
+                        "i", "we", "id", "wed", "would", "will", "could", "ill", "well", "and", "but", "so",
+                    ],
+                )
             });
         // ("happy with a tram instead of the bus" wants one)
         let new = only == 0 && is(tokens.get(i + n), &["a", "an", "another"]);
         (wishes && (many || new)).then_some(())?;
         // (everything before only says who is)
-        let link = out[..be].iter().take_while(|t| is(Some(t), &["and", "but", "so"])).count();
+        let link = out[..be]
+            .iter()
+            .take_while(|t| is(Some(t), &["and", "but", "so"]))
+            .count();
         out.truncate(link);
         out.extend(led(if new { "add" } else { "keep only" }, &tokens[i], &[]));
         Some(i + n + only)

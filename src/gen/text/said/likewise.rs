@@ -447,7 +447,8 @@ fn enough_there(tokens: Vec<Token>) -> Vec<Token> {
         && first_noun(np).is_some_and(|x| x.1 == np.len() && x.0 < 4);
     // ("..., and put the others on the right" needs them)
     let rest = &place[end..];
-    let moves = find(rest, &["the others", "the other", "the rest"]).is_some_and(|x| (x.0 + x.1..rest.len()).any(|k| is_place(&rest[k..])))
+    let moves = find(rest, &["the others", "the other", "the rest"])
+        .is_some_and(|x| (x.0 + x.1..rest.len()).any(|k| is_place(&rest[k..])))
         && !rest.iter().any(|t| super::some_of::removes(Some(t)));
     if moves || !counted || end == 0 || !is_place(&place[..end]) || has_noun(&place[..end]) {
         return tokens;

@@ -89,14 +89,33 @@ pub(super) fn now_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "cut the queue to a single person": so many of them are kept.
 pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
     const GROUP: &[&str] = &[
-        "queue", "line", "row", "crowd", "group", "column", "bunch", "file", "crew", "lot", "gang", "string", "stack", "convoy",
+        "queue", "line", "row", "crowd", "group", "column", "bunch", "file", "crew", "lot", "gang", "string",
+        "stack", "convoy",
     ];
     let found = (0..tokens.len()).find_map(|i| {
         let n = leads(
             &tokens[i..],
             &[
-                "cut", "cut down", "cut back", "reduce", "thin", "thin out", "trim", "shrink", "whittle", "whittle down",
-                "slim", "slim down", "pare", "pare down", "bring", "bring down", "shorten", "limit", "get", "downsize",
+                "cut",
+                "cut down",
+                "cut back",
+                "reduce",
+                "thin",
+                "thin out",
+                "trim",
+                "shrink",
+                "whittle",
+                "whittle down",
+                "slim",
+                "slim down",
+                "pare",
+                "pare down",
+                "bring",
+                "bring down",
+                "shorten",
+                "limit",
+                "get",
+                "downsize",
             ],
         )?;
         is(tokens.get(i + n), &["the", "that", "this", "our"]).then_some(())?;
@@ -127,7 +146,15 @@ pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
         is(tokens.get(1), GROUP).then_some(())?;
         let n = leads(
             &tokens[2..],
-            &["consists of", "is made up of", "numbers", "should consist of", "should number", "should have", "now has"],
+            &[
+                "consists of",
+                "is made up of",
+                "numbers",
+                "should consist of",
+                "should number",
+                "should have",
+                "now has",
+            ],
         )?;
         let k = 2 + n + usize::from(is(tokens.get(2 + n), &["just", "only", "exactly"]));
         tokens.get(k).filter(|t| number(t).is_some())?;
@@ -137,7 +164,11 @@ pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
     let Some((i, k, noun, end)) = found else {
         return tokens;
     };
-    let many = if is(tokens.get(k), &["single"]) { word("one", &tokens[k]) } else { tokens[k].clone() };
+    let many = if is(tokens.get(k), &["single"]) {
+        word("one", &tokens[k])
+    } else {
+        tokens[k].clone()
+    };
     [
         &tokens[..i],
         &led("keep exactly", &tokens[i], &[&[many], &tokens[noun]]),

@@ -108,7 +108,7 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
         let rear = is(tokens.get(i), &["rear", "back", "hind"]);
         let opens = out.last().is_none_or(|t| {
             t.kind != TokenKind::Word
-                || is(Some(t), &["the", "that", "and", "but", "my"])
+                || is(Some(t), &["the", "that", "and", "but", "my", "our"])
                 || super::super::rephrase::is_verb(t) && front && !lead
         });
         if !opens || !(front || rear) {
@@ -142,6 +142,9 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
         if opens && is_place(&tokens[end..]) && number(&tokens[end]).is_some() {
             out.clear();
             out.extend(led("move", at, &[]));
+        }
+        if lead && is(out.last(), &["my", "our"]) {
+            out.pop();
         }
         if !is(out.last(), &["the", "that", "my"]) {
             out.extend(led("the", at, &[]));

@@ -9,15 +9,27 @@ use super::lists::{OFF_SITE, UNTIL};
 use super::words::{first_noun, is, is_goal, is_place, leads, led, longest, number, text};
 
 const SHOWS: &[&str] = &[
-    "show", "show me", "show us", "picture", "depict", "portray", "display", "initialise", "initialize",
-    "instantiate", "spawn", "init",
+    "show",
+    "show me",
+    "show us",
+    "picture",
+    "depict",
+    "portray",
+    "display",
+    "initialise",
+    "initialize",
+    "instantiate",
+    "spawn",
+    "init",
 ];
 const THROWS: &[&str] = &[
-    "chuck", "throw", "toss", "fling", "sling", "kick", "dump", "lift", "haul", "tow", "heave", "cart", "boot",
-    "sweep", "pluck", "yank", "lob", "bundle", "hoist",
+    "chuck", "throw", "toss", "fling", "sling", "kick", "dump", "lift", "haul", "tow", "heave", "cart",
+    "boot", "sweep", "pluck", "yank", "lob", "bundle", "hoist", "fetch",
 ];
 const BACKS: &[&str] = &["reverse", "back", "back up", "roll", "wheel", "coast"];
-const WHOLE: &[&str] = &["the", "both", "all", "that", "those", "these", "my", "our", "every"];
+const WHOLE: &[&str] = &[
+    "the", "both", "all", "that", "those", "these", "my", "our", "every",
+];
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
@@ -75,7 +87,16 @@ fn seen(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let view = rest.is_empty()
         || leads(
             rest,
-            &["from the back", "from behind", "from the front", "from above", "from the side", "please", "again", "to me"],
+            &[
+                "from the back",
+                "from behind",
+                "from the front",
+                "from above",
+                "from the side",
+                "please",
+                "again",
+                "to me",
+            ],
         ) == Some(rest.len());
     if view { remark(&tokens[from..end]) } else { tokens }
 }
@@ -88,16 +109,37 @@ fn thrown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let way = leads(
             &tokens[end..],
             &[
-                "across", "over", "back", "straight", "right", "all the way", "down", "up", "off the road",
-                "off the street", "out of the way", "out of our lane", "off our lane", "out of my lane",
+                "across",
+                "over",
+                "back",
+                "straight",
+                "right",
+                "all the way",
+                "down",
+                "up",
+                "off the road",
+                "off the street",
+                "out of the way",
+                "out of our lane",
+                "off our lane",
+                "out of my lane",
             ],
         )
         .unwrap_or(0);
         let goal = &tokens[end + way..];
-        let strip = (1..goal.len().min(6)).any(|k| matches!(longest(&goal[k..]), Some((Sense::Place(..), _))));
+        let strip =
+            (1..goal.len().min(6)).any(|k| matches!(longest(&goal[k..]), Some((Sense::Place(..), _))));
         // ("tow it to the garage" is gone)
         let off = goal.iter().take(5).any(|t| OFF_SITE.contains(&text(t)));
-        (is_goal(goal) && strip && !off && talk.fits(&tokens[from..end]) > 0).then_some((i, from, end, end + way))
+        // ("fetch one of the lads over to the digger")
+        let thing = is(tokens.get(i), &["fetch"]) && first_noun(goal).is_some_and(|n| n.0 < 4);
+        let strip = strip || thing;
+        (is_goal(goal) && strip && !off && talk.fits(&tokens[from..end]) > 0).then_some((
+            i,
+            from,
+            end,
+            end + way,
+        ))
     });
     match found {
         Some((i, from, end, goal)) => [
@@ -117,7 +159,8 @@ fn lifted(mut tokens: Vec<Token>) -> Vec<Token> {
             .then(|| known(&tokens, i + 1))
             .flatten()
             .filter(|_| begins_at(&tokens, i));
-        let closes = |t: Option<&Token>| t.is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "but"]));
+        let closes =
+            |t: Option<&Token>| t.is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "but"]));
         if end.is_some_and(|end| closes(tokens.get(end))) {
             tokens[i].text = "remove".into();
         }
@@ -149,8 +192,8 @@ fn until(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "..., still in its own lane", "..., same kerb": what is not said of something stays as it was anyhow.
 fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const STRIPS: &[&str] = &[
-        "lane", "kerb", "curb", "side", "sidewalk", "pavement", "roadside", "edge", "verge", "shoulder", "distance",
-        "footpath", "row", "place", "spot",
+        "lane", "kerb", "curb", "side", "sidewalk", "pavement", "roadside", "edge", "verge", "shoulder",
+        "footpath", "row",
     ];
     let found = (3..tokens.len()).find_map(|i| {
         (tokens[i - 1].kind == TokenKind::Comma || is(tokens.get(i - 1), &["but", "and"])).then_some(())?;
@@ -159,10 +202,16 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             .unwrap_or(tokens.len());
         let rest = &tokens[i..end];
         let still = is(rest.first(), &["still"]) && rest.len() > 1 && rest.len() < 9;
-        let same = leads(rest, &["same", "the same", "on the same", "in the same", "at the same"])
-            .is_some_and(|n| n + 1 == rest.len() && is(rest.get(n), STRIPS));
+        let same = leads(
+            rest,
+            &["same", "the same", "on the same", "in the same", "at the same"],
+        )
+        .is_some_and(|n| n + 1 == rest.len() && is(rest.get(n), STRIPS));
+        // ("still coming towards us" may be new)
+        let there = is(rest.get(1), &["in", "on", "at"]) || rest.get(1).is_some_and(|t| number(t).is_some());
         let own = still
-            && (is_place(&rest[1..]) || matches!(longest(&rest[1..]), Some((Sense::State(..), n)) if n + 1 == rest.len()))
+            && (there && is_place(&rest[1..])
+                || matches!(longest(&rest[1..]), Some((Sense::State(..), n)) if n == 1 && rest.len() == 2))
             && first_noun(rest).is_none();
         (own || same).then_some((i, end, own))
     });
@@ -172,16 +221,25 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     // who is spoken of is there already
     let (from, b) = match first_noun(&tokens[..i]) {
         Some(n) => n,
-        None if own && tokens[..i].iter().any(|t| is(Some(t), &["it", "him", "her", "them"])) => (0, 0),
+        None if own
+            && tokens[..i]
+                .iter()
+                .any(|t| is(Some(t), &["it", "him", "her", "them"])) =>
+        {
+            (0, 0)
+        }
         None => return tokens,
     };
-    let fresh = tokens[..from].iter().any(|t| {
-        is(Some(t), &["a", "an", "another", "some", "more"]) || number(t).is_some()
-    });
-    // ("..., same place" is said of what takes it)
-    let replaces = tokens[..i]
+    let fresh = tokens[..from]
         .iter()
-        .any(|t| is(Some(t), &["replace", "swap", "into", "becomes", "change", "exchange"]));
+        .any(|t| is(Some(t), &["a", "an", "another", "some", "more"]) || number(t).is_some());
+    // ("..., same place" is said of what takes it)
+    let replaces = tokens[..i].iter().any(|t| {
+        is(
+            Some(t),
+            &["replace", "swap", "into", "becomes", "change", "exchange"],
+        )
+    });
     if fresh || replaces && !own || b > 0 && talk.fits(&tokens[from..b]) == 0 {
         return tokens;
     }
@@ -195,12 +253,24 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "the cyclist should be past the bus", "beyond the cones": ahead of them, or behind what is turned to us.
 fn past(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let found = (1..tokens.len()).find_map(|i| {
-        let the = is(tokens.get(i), &["past"]) && is(tokens.get(i + 1), &["the", "that", "both", "all"]);
-        let stands = is(tokens.get(i - 1), &["be", "is", "are", "already", "now", "well", "just"])
-            || super::words::noun_at(&tokens[i - 1..i]).is_some();
-        let far = leads(&tokens[i..], &["beyond", "on the far side of", "at the far side of", "to the far side of"]);
-        let np = i + far.or((the && stands).then_some(1))?;
+    let found = (0..tokens.len()).find_map(|i| {
+        let the =
+            i > 0 && is(tokens.get(i), &["past"]) && is(tokens.get(i + 1), &["the", "that", "both", "all"]);
+        let stands = the
+            && (is(
+                tokens.get(i - 1),
+                &["be", "is", "are", "already", "now", "well", "just"],
+            ) || super::words::noun_at(&tokens[i - 1..i]).is_some());
+        let far = leads(
+            &tokens[i..],
+            &[
+                "beyond",
+                "on the far side of",
+                "at the far side of",
+                "to the far side of",
+            ],
+        );
+        let np = i + far.or(stands.then_some(1))?;
         let end = known(&tokens, np)?;
         let boxes = talk.boxes_of(&tokens[np..end]);
         let first = boxes.first()?;

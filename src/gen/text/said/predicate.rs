@@ -175,7 +175,9 @@ fn boarded(main: &[Token]) -> bool {
         ],
     );
     // ("has boarded it")
-    if n.is_some_and(|n| is(main.get(n), &["it", "them"]) && main.len() == n + 1) && !is(main.first(), &["inside"]) {
+    if n.is_some_and(|n| is(main.get(n), &["it", "them"]) && main.len() == n + 1)
+        && !is(main.first(), &["inside"])
+    {
         return true;
     }
     let Some(np) = n

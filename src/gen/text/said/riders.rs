@@ -17,7 +17,8 @@ fn two_wheels(t: &Token) -> bool {
 
 /// "put one of the pedestrians on a bicycle": he becomes one.
 fn put_on(tokens: Vec<Token>) -> Vec<Token> {
-    let person = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] == Class::Pedestrian);
+    let person =
+        |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] == Class::Pedestrian);
     let found = is(tokens.first(), &["put", "set", "seat", "get", "place", "sit"])
         .then(|| first_noun(&tokens[1..]))
         .flatten()
@@ -29,7 +30,8 @@ fn put_on(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let on = leads(&tokens[1 + b..], &["on a", "on an", "onto a", "onto an"]).map(|n| 1 + b + n);
-    let Some((from, end)) = on.and_then(|k| Some((k, k + first_noun(&tokens[k..]).filter(|x| x.0 < 3)?.1))) else {
+    let Some((from, end)) = on.and_then(|k| Some((k, k + first_noun(&tokens[k..]).filter(|x| x.0 < 3)?.1)))
+    else {
         return tokens;
     };
     if !two_wheels(&tokens[end - 1]) {
@@ -46,12 +48,22 @@ fn put_on(tokens: Vec<Token>) -> Vec<Token> {
 fn mounted(tokens: Vec<Token>) -> Vec<Token> {
     let person = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, false)) if n.classes[0] == Class::Pedestrian);
     rewritten(&tokens, |i, out| {
-        let n = leads(&tokens[i..], &["on a", "on an", "on his", "on her", "riding a", "riding his", "riding her"])?;
+        let n = leads(
+            &tokens[i..],
+            &[
+                "on a",
+                "on an",
+                "on his",
+                "on her",
+                "riding a",
+                "riding his",
+                "riding her",
+            ],
+        )?;
         let (_, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3)?;
         // ("put the man on a bicycle" makes him ride)
-        let fresh = (1..4).any(|k| {
-            k < out.len() && is(out.get(out.len() - 1 - k), &["a", "an", "another", "one"])
-        });
+        let fresh =
+            (1..4).any(|k| k < out.len() && is(out.get(out.len() - 1 - k), &["a", "an", "another", "one"]));
         let rides = fresh && out.last().is_some_and(person) && two_wheels(&tokens[i + n + b - 1]);
         let of_his = is(tokens.get(i + n + b), &["s"]);
         (rides && !of_his).then_some(())?;

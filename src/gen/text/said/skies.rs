@@ -290,7 +290,10 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
         let verb = verb || over > 0;
         let from = i - usize::from(i > 0 && is(out.get(i - 1), &["the", "this", "that"]));
         let lead = is(out.get(from.wrapping_sub(1)), &["let", "make", "have"]);
-        verb.then_some((from - usize::from(lead && from > 0), i + 1 + helpers + over.max(1)))
+        verb.then_some((
+            from - usize::from(lead && from > 0),
+            i + 1 + helpers + over.max(1),
+        ))
     });
     if let Some((from, end)) = ended {
         let away = usize::from(is(out.get(end), &["away"]));

@@ -475,8 +475,10 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
         }
         let end = if is(tokens.get(i + 1), &["it", "him", "her", "them"]) {
             i + 2
-        } else if let Some(n) = leads(&tokens[i + 1..], &["the others", "the rest", "the other two", "the other one"])
-        {
+        } else if let Some(n) = leads(
+            &tokens[i + 1..],
+            &["the others", "the rest", "the other two", "the other one"],
+        ) {
             i + 1 + n
         } else {
             match first_noun(&tokens[i + 1..]).filter(|x| x.0 < 5) {
