@@ -49,7 +49,7 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = super::coloured_ones::named(&out);
     let out = sides_in_short(&out);
     let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));
-    super::carried::plain(some_so_many(&part_for_whole(&out)))
+    super::carried::plain(this_side(&some_so_many(&part_for_whole(&out))))
 }
 
 /// "1st", "2nd": in words.
@@ -363,6 +363,29 @@ fn part_for_whole(tokens: &[Token]) -> Vec<Token> {
 fn some_so_many(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, _| {
         (tokens[i].text == "some" && tokens.get(i + 1).is_some_and(is_number)).then_some(i + 1)
+    })
+}
+
+/// "just this side of the cones": between us and them, whichever way they are turned. "This side of the road" is a place.
+fn this_side(tokens: &[Token]) -> Vec<Token> {
+    const NEAR: &str = "on this side of|on our side of|on the near side of|on the nearer side of|this side of|to this side of|at the near side of";
+    rewritten(tokens, |i, out| {
+        let n = begins(&tokens[i..], NEAR)?;
+        let the = matches!(
+            tokens.get(i + n)?.text.as_str(),
+            "the" | "those" | "these" | "all" | "both"
+        );
+        let many = usize::from(tokens.get(i + n + 1).is_some_and(is_number));
+        let thing = tokens.get(i + n + 1 + many).is_some_and(super::ellipsis::is_noun);
+        (the && thing).then_some(())?;
+        if out
+            .last()
+            .is_some_and(|t| matches!(t.text.as_str(), "just" | "right" | "immediately" | "directly"))
+        {
+            out.pop();
+        }
+        out.extend(["between", "us", "and"].map(|w| word(w, &tokens[i])));
+        Some(i + n)
     })
 }
 

@@ -242,6 +242,12 @@ fn takes_it(words: &str) -> bool {
     removes && it && list.count() < 3
 }
 
+/// "keep exactly two cars": the rest of them goes.
+fn keeps_so_many(c: &Command) -> bool {
+    let counted = |m: &Mention| !m.definite && !m.uncounted && m.pick.is_none();
+    c.verb == Verb::Keep && c.change.is_none() && c.targets.first().is_some_and(counted)
+}
+
 /// Reads a text sentence by sentence, each with the scene that those before have left.
 pub(super) struct Reader<'t> {
     text: &'t str,
@@ -254,6 +260,8 @@ pub(super) struct Reader<'t> {
     named: Vec<Class>,
     /// What the sentence before left room for.
     room: Room,
+    /// The sentence before kept so many: the others are gone.
+    kept: bool,
 }
 
 impl<'t> Reader<'t> {
@@ -272,6 +280,7 @@ impl<'t> Reader<'t> {
             left: Left::default(),
             named: Vec::new(),
             room: Room::default(),
+            kept: false,
         }
     }
 
@@ -302,6 +311,22 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// "keep the bus; remove the others" is one sentence.
+    fn join_kept(&mut self, from: usize) {
+        const OTHERS: &str = "remove the others|delete the others|erase the others|remove the rest|delete the rest|erase the rest|remove all others|\
+            delete all others|remove everything else|delete everything else|clear the rest|take the others away|take the rest away";
+        let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
+        let keeps = begins(
+            &self.tokens[from..],
+            "keep the|leave the|keep my|keep only the|leave only the|keep both|keep just the",
+        );
+        if let (Some(stop), Some(_)) = (stop, keeps)
+            && begins(&self.tokens[stop + 1..], OTHERS).is_some()
+        {
+            self.tokens[stop].kind = TokenKind::Comma;
+        }
+    }
+
     /// The commands of the next sentence; `None` at the end.
     pub(super) fn next(
         &mut self,
@@ -314,6 +339,7 @@ impl<'t> Reader<'t> {
         }
         let from = self.at;
         self.join_enough(from);
+        self.join_kept(from);
         let stop = (from..self.tokens.len()).find(|i| self.tokens[*i].kind == TokenKind::Stop);
         // "Woman to my right. Same distance." is one sentence
         let stop = stop.map(|s| {
@@ -399,6 +425,17 @@ impl<'t> Reader<'t> {
                 out[i].verb = Verb::Note;
             }
         }
+        // "one man is plenty there; stand the others down": said twice
+        for i in 0..out.len() {
+            let kept = match i {
+                0 => self.kept,
+                _ => keeps_so_many(&out[i - 1]),
+            };
+            if kept && out[i].verb == Verb::Remove && out[i].back == Some(Back::Others) {
+                out[i].verb = Verb::Note;
+            }
+        }
+        self.kept = out.last().is_some_and(keeps_so_many);
         self.room = out
             .iter()
             .rev()

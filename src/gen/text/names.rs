@@ -16,7 +16,8 @@ const GENERIC: &str = "car|auto|automobile|motorcar|motor car|passenger car|vehi
     construction machine|machine|site vehicle|pedestrian|person|human|human being|individual|someone|somebody|figure|\
     passer by|passerby|walker|people|folk|folks|bystander|bicycle|bike|cycle|pushbike|push bike|cyclist|bicyclist|rider|\
     biker|motorcycle|motorbike|motorcyclist|traffic cone|cone|pylon|road cone|barrier|road barrier|fence|object|box|\
-    thing|one|other|crowd|group|family|crowd of people";
+    thing|one|other|crowd|group|family|crowd of people|crew|work crew|working crew|road crew|construction crew|building crew|\
+    repair crew|maintenance crew|road gang|work gang|working party|work party|work team|construction team";
 
 /// Names of one thing: whoever is called by one of a line is meant by the others.
 const SAME: &[&str] = &[

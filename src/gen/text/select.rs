@@ -9,7 +9,7 @@ use super::holds::{Target, ego, holds};
 use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::words::edits::Pick;
-use crate::scene::graph::{ObjectState, RelationKind};
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 use crate::scene::{BevLayer, BoxId, Class, SceneBox};
 
 /// A box that a question names.
@@ -332,6 +332,19 @@ pub fn choose(map: &LaneMap<'_>, boxes: &BTreeMap<BoxId, SceneBox>, m: &Mention,
             };
         }
         return Chosen::These(fit);
+    }
+    // "the vehicle in front of us" is the one in our lane
+    let before_us = matches!(m.spec.relations.as_slice(), [r] if r.anchor == Anchor::Ego
+        && r.distance_m.is_none() && matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind));
+    if before_us && m.definite && !m.plural && n == 1 {
+        let ours: Vec<BoxId> = fit
+            .iter()
+            .copied()
+            .filter(|id| super::holds::in_role(map, LaneRole::Ego, boxes[id].center_m.truncate()))
+            .collect();
+        if let [one] = ours.as_slice() {
+            return Chosen::These(vec![*one]);
+        }
     }
     Chosen::Several {
         what: if m.plural {

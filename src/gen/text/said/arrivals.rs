@@ -50,7 +50,9 @@ fn brought(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let np = tokens.get(i + 1 + particle..)?;
         let new = is(np.first(), &["a", "an", "another"]) || np.first().is_some_and(|t| number(t).is_some());
         let (_, b) = first_noun(np).filter(|x| new && x.0 < 4)?;
-        talk.has_none(&np[..b]).then_some(())?;
+        // ("two of the lads" are there, whatever they are called)
+        let of = is(np.get(1), &["of"]) && is(np.get(2), &["the", "those", "these", "our", "my"]);
+        (!of && talk.has_none(&np[..b])).then_some(())?;
         let end = i + 1 + particle + b;
         let after = way(end).unwrap_or(0);
         let mut rest = end + after;

@@ -226,7 +226,9 @@ fn begin(sentence: &[Token]) -> Option<usize> {
             }
             let after_mark = matches!(before[i - 1].kind, TokenKind::Comma | TokenKind::Mark);
             let why = leads(rest, &["because", "since", "as", "for", "cause", "cos"]).unwrap_or(0);
-            (after_mark || why > 0) && (feeling(&rest[why..]) || judgement(&rest[why..])) || purpose(rest)
+            (after_mark || why > 0) && (feeling(&rest[why..]) || judgement(&rest[why..]))
+                || purpose(rest)
+                || (after_mark || is(before.last(), &["and", "so"])) && shows_it(rest)
         })
         // (the mark or "and" before goes with it)
         .map(|i| {
@@ -235,6 +237,36 @@ fn begin(sentence: &[Token]) -> Option<usize> {
                 .rev()
                 .take_while(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)));
             i - marks.count()
+        })
+}
+
+/// "can you show it", "please add it": what was told is to be there anyhow.
+fn shows_it(rest: &[Token]) -> bool {
+    let ask = leads(
+        rest,
+        &[
+            "can you",
+            "could you",
+            "can you please",
+            "could you please",
+            "would you",
+            "please",
+            "you can",
+            "so please",
+            "so can you",
+            "do",
+        ],
+    )
+    .unwrap_or(0);
+    is(
+        rest.get(ask),
+        &["show", "display", "draw", "depict", "include", "picture"],
+    ) && is(rest.get(ask + 1), &["it", "that", "this", "them", "him", "her"])
+        && rest[ask + 2..].iter().all(|t| {
+            is(
+                Some(t),
+                &["please", "too", "there", "here", "for", "me", "us", "as", "well"],
+            )
         })
 }
 

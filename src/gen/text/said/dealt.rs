@@ -352,7 +352,11 @@ fn filled(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         )
     });
     let at = led(if lane { "in" } else { "on" }, &tokens[0], &[place]);
-    let there_are = talk.fits(&[&rest[1..b], &at].concat()) > 0 || more > 0;
+    // ("with four more cars" come on top)
+    let added = rest[..b]
+        .iter()
+        .any(|t| is(Some(t), &["more", "further", "additional", "extra"]));
+    let there_are = !added && (talk.fits(&[&rest[1..b], &at].concat()) > 0 || more > 0);
     led(
         if there_are { "keep exactly" } else { "add" },
         &tokens[0],

@@ -189,6 +189,20 @@ fn place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let place = is(tokens.get(end), &["place", "stead", "spot", "position"]);
         (place && talk.fits(&tokens[i + 1..end]) > 0).then_some((i, end))
     });
+    // "two parked cars take the trailer's place"
+    let takes = (1..tokens.len()).find_map(|i| {
+        is(tokens.get(i), &["take", "takes", "took", "fill", "fills"]).then_some(())?;
+        is(tokens.get(i + 1), &["the", "that"]).then_some(())?;
+        let (_, b) = first_noun(&tokens[i + 2..]).filter(|x| x.0 < 3)?;
+        let end = i + 2 + b;
+        let place = is(tokens.get(end), &["place", "spot", "position"]);
+        let new = is_fresh(tokens.first()) && first_noun(&tokens[..i]).is_some_and(|x| x.1 == i);
+        (place && new && talk.fits(&tokens[i + 1..end]) > 0).then_some((i, end))
+    });
+    if let Some((i, end)) = takes {
+        let of = led("stand in place of", &tokens[i], &[&tokens[i + 1..end]]);
+        return [&tokens[..i], &of, &tokens[end + 1..]].concat();
+    }
     // "the cyclist's place is taken by a bus"
     let taken = first_noun(&tokens)
         .filter(|x| x.0 < 3 && is(tokens.first(), &["the", "that"]))

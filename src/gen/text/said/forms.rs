@@ -1,6 +1,6 @@
 //! Clauses of a form of their own: numbers, halves, places before their subject, one thing for another.
 
-use super::super::edit_command::target_part;
+use super::super::edit_command::{target_part, verb_of};
 use super::super::edit_grammar::Command;
 use super::super::lexicon::{Sense, look_up};
 use super::super::tag::tag;
@@ -167,7 +167,7 @@ pub(super) fn fragment(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
 }
 
 /// "behind the truck comes a car": the thing after its place and verb.
-pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
+pub(super) fn inverted(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if !is_place(inner) || super::super::rephrase::is_verb(&inner[0]) {
         return None;
     }
@@ -192,6 +192,34 @@ pub(super) fn inverted(inner: &[Token]) -> Option<Vec<Piece>> {
         return None;
     }
     let end = from + noun.1;
+    // "on the left roadside there should be four cars": in all
+    let many = inner
+        .get(from)
+        .filter(|t| number(t).is_some() && !is(Some(t), &["a", "an", "one"]));
+    let total = many.is_some()
+        && is(inner.get(verb), &["should", "must", "shall", "ought"])
+        && find(
+            &inner[verb - 1..from],
+            &[
+                "there should be",
+                "there must be",
+                "there shall be",
+                "there ought to be",
+            ],
+        )
+        .is_some()
+        && !inner[from..end]
+            .iter()
+            .any(|t| is(Some(t), &["more", "other", "further", "additional", "extra"]))
+        && inner.len() == end;
+    let before = &inner[..verb.saturating_sub(1)];
+    if total && talk.fits(&[&inner[from + 1..end], before].concat()) > 0 {
+        return Some(vec![Piece::Plain(led(
+            "keep exactly",
+            &inner[0],
+            &[&inner[from..end], before],
+        ))]);
+    }
     // (a comma parts the place from what more is said)
     Some(vec![Piece::Plain(led(
         "add",
@@ -292,11 +320,9 @@ pub(super) fn half(inner: &[Token]) -> Option<Vec<Piece>> {
             "every second one of the",
         ],
     )?;
-    let removing = i == 1
-        && matches!(
-            text(&inner[0]),
-            "remove" | "delete" | "take" | "erase" | "drop" | "clear" | "lose" | "scrap" | "bin"
-        );
+    // ("knock off half of the cones")
+    let removing = i == 1 && matches!(text(&inner[0]), "take" | "drop" | "clear")
+        || (1..3).contains(&i) && verb_of(&inner[..=i]) == Some(Verb::Remove);
     let end = i + n + first_noun(&inner[i + n..])?.1;
     // (half of them stay where half of them go)
     let been = predicate::parts(&inner[end..], true)

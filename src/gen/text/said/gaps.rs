@@ -97,6 +97,24 @@ fn noun_before(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
     Some(noun)
 }
 
+/// "mark the trailer with a cone at its front and another": a cone, where the first that was named is there already.
+fn fresh_before(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
+    let (a, b) = first_noun(&tokens[..i])?;
+    let the = |t: &Token| {
+        is(
+            Some(t),
+            &["the", "that", "both", "all", "my", "our", "these", "those"],
+        )
+    };
+    tokens[..a].iter().rev().take(3).any(the).then_some(())?;
+    let from = (b..i).find(|k| {
+        (is(tokens.get(*k), &["a", "an"]) || number(&tokens[*k]).is_some())
+            && unit_at(&tokens[k + 1..i]).is_none()
+            && first_noun(&tokens[*k..i]).is_some_and(|n| n.0 < 4)
+    })?;
+    noun_before(&tokens[from..i], i - from)
+}
+
 /// "whoever is on the left pavement": all people there.
 fn people(mut tokens: Vec<Token>) -> Vec<Token> {
     if let Some((i, n)) = find(&tokens, WHOEVER)
@@ -278,7 +296,11 @@ fn more_of_it(mut tokens: Vec<Token>) -> Vec<Token> {
                         "there" | "right" | "just" | "that" | "who" | "parked" | "too"
                     )
             });
-        if let (false, true, Some(noun)) = (own, ends, noun_before(&tokens, i)) {
+        if let (false, true, Some(noun)) = (
+            own,
+            ends,
+            fresh_before(&tokens, i).or_else(|| noun_before(&tokens, i)),
+        ) {
             let more = led("another", &tokens[i], &[&noun]);
             let end = i + more.len();
             tokens.splice(i..i + n, more);

@@ -3,10 +3,10 @@
 
 use super::super::lexicon::{Sense, look_up, plural};
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::replaced;
+use super::super::wording::{begins, replaced, rewritten};
 use super::Talk;
 use super::lists::HELPERS;
-use super::spaces::{distance_to, emptied};
+use super::spaces::{distance_to, emptied, into_row, spaces_filled};
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed};
 
 const MAKE_DO: &str = "can do with just|could do with just|get by with|get along with|make do with|manage with|settle for|be content with|make do with just";
@@ -16,7 +16,7 @@ const MOVING: &str = "whatever moves|everything that moves|anything that moves|a
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = replaced(&tokens, MAKE_DO, "keep only");
+    let out = replaced(&content_with(tokens), MAKE_DO, "keep only");
     let out = replaced(&out, IN_TRUTH, "");
     let out = replaced(&out, NONE, "remove them");
     let out = replaced(&out, MOVING, "all moving objects");
@@ -24,9 +24,44 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = given(out, talk);
     let out = better_with(without(out, talk));
     let out = distance_to(out, talk);
-    let out = emptied(out);
+    let out = emptied(into_row(spaces_filled(out), talk));
     let out = every_second(by_half(out));
     as_many_as(out, talk)
+}
+
+/// "I'd be happy with just one oncoming car": so many are kept.
+fn content_with(tokens: Vec<Token>) -> Vec<Token> {
+    const CONTENT: &str = "happy with|content with|satisfied with|fine with|okay with|ok with|pleased with";
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], CONTENT)?;
+        let only = usize::from(is(tokens.get(i + n), &["just", "only"]));
+        // ("happy with one of them" is said of whom)
+        let many = tokens.get(i + n + only).is_some_and(|t| number(t).is_some())
+            && first_noun(&tokens[i + n..]).is_some_and(|x| x.0 < 5)
+            && !is(tokens.get(i + n + only + 1), &["of"]);
+        let adverb = usize::from(is(out.last(), &["quite", "perfectly", "perfect", "very", "also"]));
+        let be = out.len().checked_sub(adverb + 1)?;
+        let wishes = is(out.get(be), &["be", "im", "am", "were", "are"])
+            && out[..be].iter().all(|t| {
+                is(
+                    Some(t),
+                    &[
+                        "i", "we", "id", "wed", "would", "will", "could", "ill", "well", "and", "but", "so",
+                    ],
+                )
+            });
+        // ("happy with a tram instead of the bus" wants one)
+        let new = only == 0 && is(tokens.get(i + n), &["a", "an", "another"]);
+        (wishes && (many || new)).then_some(())?;
+        // (everything before only says who is)
+        let link = out[..be]
+            .iter()
+            .take_while(|t| is(Some(t), &["and", "but", "so"]))
+            .count();
+        out.truncate(link);
+        out.extend(led(if new { "add" } else { "keep only" }, &tokens[i], &[]));
+        Some(i + n + only)
+    })
 }
 
 /// What is only spoken of.

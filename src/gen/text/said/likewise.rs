@@ -17,6 +17,15 @@ const ENOUGH: &[&str] = &[
     "will be enough",
     "should be enough",
     "are plenty",
+    "is plenty",
+    "is sufficient",
+    "is quite enough",
+    "is more than enough",
+    "would be plenty",
+    "will be plenty",
+    "suffices",
+    "would do",
+    "will do",
     "are sufficient",
     "suffice",
     "will suffice",
@@ -436,7 +445,12 @@ fn enough_there(tokens: Vec<Token>) -> Vec<Token> {
         .unwrap_or(place.len());
     let counted = np.first().is_some_and(|t| number(t).is_some())
         && first_noun(np).is_some_and(|x| x.1 == np.len() && x.0 < 4);
-    if !counted || end == 0 || !is_place(&place[..end]) || has_noun(&place[..end]) {
+    // ("..., and put the others on the right" needs them)
+    let rest = &place[end..];
+    let moves = find(rest, &["the others", "the other", "the rest"])
+        .is_some_and(|x| (x.0 + x.1..rest.len()).any(|k| is_place(&rest[k..])))
+        && !rest.iter().any(|t| super::some_of::removes(Some(t)));
+    if moves || !counted || end == 0 || !is_place(&place[..end]) || has_noun(&place[..end]) {
         return tokens;
     }
     [

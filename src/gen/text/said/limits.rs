@@ -86,6 +86,97 @@ pub(super) fn now_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
 }
 
+/// "cut the queue to a single person": so many of them are kept.
+pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
+    const GROUP: &[&str] = &[
+        "queue", "line", "row", "crowd", "group", "column", "bunch", "file", "crew", "lot", "gang", "string",
+        "stack", "convoy",
+    ];
+    let found = (0..tokens.len()).find_map(|i| {
+        let n = leads(
+            &tokens[i..],
+            &[
+                "cut",
+                "cut down",
+                "cut back",
+                "reduce",
+                "thin",
+                "thin out",
+                "trim",
+                "shrink",
+                "whittle",
+                "whittle down",
+                "slim",
+                "slim down",
+                "pare",
+                "pare down",
+                "bring",
+                "bring down",
+                "shorten",
+                "limit",
+                "get",
+                "downsize",
+            ],
+        )?;
+        is(tokens.get(i + n), &["the", "that", "this", "our"]).then_some(())?;
+        is(tokens.get(i + n + 1), GROUP).then_some(())?;
+        let mut k = i + n + 2;
+        let mut of = None;
+        if is(tokens.get(k), &["of"]) {
+            let (a, b) = first_noun(&tokens[k + 1..]).filter(|x| x.0 < 3)?;
+            of = Some(k + 1 + a..k + 1 + b);
+            k += 1 + b;
+        }
+        k += leads(&tokens[k..], &["down", "out", "back"]).unwrap_or(0);
+        is(tokens.get(k), &["to"]).then_some(())?;
+        k += 1 + usize::from(is(tokens.get(k + 1), &["just", "only", "a", "exactly"]));
+        // ("to a single person")
+        let single = is(tokens.get(k), &["single"]);
+        (single || tokens.get(k).is_some_and(|t| number(t).is_some())).then_some(())?;
+        let noun = match first_noun(tokens.get(k + 1..)?).filter(|x| x.0 < 3) {
+            Some((_, b)) => k + 1..k + 1 + b,
+            None => of?,
+        };
+        let end = noun.end.max(k + 1);
+        Some((i, k, noun, end))
+    });
+    // "the crew consists of five workers"
+    let found = found.or_else(|| {
+        is(tokens.first(), &["the", "that", "this", "our"]).then_some(())?;
+        is(tokens.get(1), GROUP).then_some(())?;
+        let n = leads(
+            &tokens[2..],
+            &[
+                "consists of",
+                "is made up of",
+                "numbers",
+                "should consist of",
+                "should number",
+                "should have",
+                "now has",
+            ],
+        )?;
+        let k = 2 + n + usize::from(is(tokens.get(2 + n), &["just", "only", "exactly"]));
+        tokens.get(k).filter(|t| number(t).is_some())?;
+        let (_, b) = first_noun(tokens.get(k + 1..)?).filter(|x| x.0 < 3)?;
+        (!is(tokens.get(k + 1), &["more"])).then_some((0, k, k + 1..k + 1 + b, k + 1 + b))
+    });
+    let Some((i, k, noun, end)) = found else {
+        return tokens;
+    };
+    let many = if is(tokens.get(k), &["single"]) {
+        word("one", &tokens[k])
+    } else {
+        tokens[k].clone()
+    };
+    [
+        &tokens[..i],
+        &led("keep exactly", &tokens[i], &[&[many], &tokens[noun]]),
+        &tokens[end..],
+    ]
+    .concat()
+}
+
 /// "half the cones": half as many.
 pub(super) fn half_of(tokens: Vec<Token>) -> Vec<Token> {
     let Some(n) = leads(

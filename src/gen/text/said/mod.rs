@@ -8,6 +8,7 @@ mod apart;
 mod arrivals;
 mod asides;
 mod asked;
+mod bare;
 mod briefs;
 mod causing;
 mod colours;
@@ -38,6 +39,7 @@ mod owned;
 mod parting;
 mod passing;
 mod passive;
+mod placing;
 mod plainly;
 mod pointers;
 mod predicate;
@@ -161,6 +163,16 @@ impl Talk<'_> {
         m.is_some_and(|m| !self.boxes.values().any(|b| super::names::may_be(b, m)))
     }
 
+    /// True if these words mean so many boxes as they name: "the lorry", where a pickup is a truck, too.
+    fn tells(&self, np: &[Token]) -> bool {
+        let (_, mentions) = parse(self.text, &tag(np));
+        let Some(m) = mentions.iter().find(|m| !m.is_anchor && !m.gone) else {
+            return false;
+        };
+        let n = super::names::plainly(self.boxes_of(np), m).len();
+        n == 1 || n > 1 && m.plural
+    }
+
     /// The box that these words mean, if no other fits.
     fn only(&self, np: &[Token]) -> Option<&SceneBox> {
         let (_, mentions) = parse(self.text, &tag(np));
@@ -224,11 +236,12 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = placing::plain(bare::plain(out, talk), talk);
     let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
     let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
-    let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
+    let out = of_several::front_and_rear(spoken::engine(spoken::little_ones(out, talk), talk), talk);
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(out, talk), talk);
@@ -493,7 +506,7 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         };
     }
     if let Some(found) = fragment(inner, talk)
-        .or_else(|| inverted(inner))
+        .or_else(|| inverted(inner, talk))
         .or_else(|| only_so_many(inner, talk))
     {
         return Some(found);
@@ -578,7 +591,9 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
         return acts::acts(&s, &parts, true, inner, talk);
     }
     // "fire engine in" of one that is there: more of it is not meant
-    if is(pred.first(), &["in"]) {
+    // ("I want it in our lane" says where)
+    let where_to = matches!(s.kind, Kind::Back(_)) && pred.len() > 1;
+    if is(pred.first(), &["in"]) && !where_to {
         return None;
     }
     // "the fourth is still crossing": as before

@@ -12,7 +12,7 @@ use super::words::{first_noun, is, is_finite, is_place, is_unit, leads, led, nou
 /// A sentence that says plainly who is new.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = beside_one_of(&more_of_them(&tokens));
-    let out = has_beside_it(out, talk);
+    let out = same_way(has_beside_it(out, talk), talk);
     sent(&out, talk)
 }
 
@@ -24,6 +24,73 @@ fn opens(tokens: &[Token], i: usize) -> bool {
 
 fn is_fresh(t: Option<&Token>) -> bool {
     is(t, &["a", "an", "another", "some"]) || t.is_some_and(|t| number(t).is_some() && text(t) != "both")
+}
+
+/// "behind the bus a car going the same way": the way of the bus, which may come towards us.
+fn same_way(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const WAY: &[&str] = &[
+        "going the same way",
+        "going in the same direction",
+        "driving the same way",
+        "driving in the same direction",
+        "heading the same way",
+        "heading in the same direction",
+        "travelling the same way",
+        "travelling in the same direction",
+        "traveling in the same direction",
+        "moving in the same direction",
+        "moving the same way",
+        "riding the same way",
+        "riding in the same direction",
+        "facing the same way",
+        "that goes the same way",
+        "that drives the same way",
+        "which goes the same way",
+        "that is going the same way",
+        "coming the same way",
+        "in the same direction",
+    ];
+    let found = (1..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], WAY)?;
+        let it = leads(
+            &tokens[i + n..],
+            &["as it", "as him", "as her", "as they do", "as it does", "too"],
+        )
+        .unwrap_or(0);
+        let end = i + n + it;
+        (!is(tokens.get(end), &["as", "like", "that", "we", "i"])).then_some((i, end))
+    });
+    let Some((i, end)) = found else {
+        return tokens;
+    };
+    // whom it goes with
+    let beside = (0..tokens.len()).find_map(|k| {
+        let n = leads(
+            &tokens[k..],
+            &["behind", "after", "following", "in front of", "ahead of"],
+        )?;
+        is(tokens.get(k + n), &["the", "that"]).then_some(())?;
+        let (_, b) = first_noun(&tokens[k + n..]).filter(|x| x.0 < 4)?;
+        Some(k + n..k + n + b)
+    });
+    let Some(np) = beside else {
+        return tokens;
+    };
+    let new = tokens
+        .iter()
+        .enumerate()
+        .any(|(k, t)| !np.contains(&k) && is(Some(t), &["a", "an", "another", "one"]));
+    let boxes = talk.boxes_of(&tokens[np]);
+    let comes = boxes.len() == 1 && boxes[0].yaw_rad.cos() < -0.7;
+    if !(new && comes) {
+        return tokens;
+    }
+    [
+        &tokens[..i],
+        &led("coming towards us in the oncoming lane", &tokens[i], &[]),
+        &tokens[end..],
+    ]
+    .concat()
 }
 
 /// "in front of one of the parked cars": whichever it is, the nearest will do.

@@ -103,12 +103,13 @@ pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "the front truck", "rear lorry": of several, the one ahead of us or behind us, else the first or last of them.
 pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
-        let front = is(tokens.get(i), &["front", "leading"]);
+        let lead = is(tokens.get(i), &["lead", "preceding"]);
+        let front = lead || is(tokens.get(i), &["front", "leading"]);
         let rear = is(tokens.get(i), &["rear", "back", "hind"]);
         let opens = out.last().is_none_or(|t| {
             t.kind != TokenKind::Word
-                || is(Some(t), &["the", "that", "and", "but", "my"])
-                || super::super::rephrase::is_verb(t) && front
+                || is(Some(t), &["the", "that", "and", "but", "my", "our"])
+                || super::super::rephrase::is_verb(t) && front && !lead
         });
         if !opens || !(front || rear) {
             return None;
@@ -128,6 +129,11 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
             super::look_up(text(noun.last()?)),
             Some(super::Sense::Noun(_, true))
         );
+        // ("the lead truck" is the truck, if there is but one)
+        if lead && !many && is(out.last(), &["the", "that", "my", "our"]) && talk.fits(&noun) == 1 {
+            out.extend(noun);
+            return Some(end);
+        }
         if many || talk.fits(&noun) < 2 {
             return None;
         }
@@ -137,12 +143,19 @@ pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
             out.clear();
             out.extend(led("move", at, &[]));
         }
+        if lead && is(out.last(), &["my", "our"]) {
+            out.pop();
+        }
         if !is(out.last(), &["the", "that", "my"]) {
             out.extend(led("the", at, &[]));
         }
         let side = led(if front { "ahead of me" } else { "behind me" }, at, &[]);
         let there = [&noun[..], &side].concat();
-        if talk.fits(&there) == 1 {
+        // ("the lead vehicle" drives ahead of us in our lane)
+        let in_lane = [&there[..], &led("in my lane", at, &[])].concat();
+        if lead && talk.fits(&in_lane) == 1 {
+            out.extend(in_lane);
+        } else if talk.fits(&there) == 1 {
             out.extend(there);
         } else {
             out.extend(led(if front { "frontmost" } else { "rearmost" }, at, &[&noun]));

@@ -197,7 +197,7 @@ pub(super) fn only_sky(tokens: &[Token]) -> bool {
                 tokens.get(i + 1),
                 &[
                     "be", "is", "should", "becomes", "gets", "has", "was", "turns", "starts", "begins",
-                    "must",
+                    "must", "all",
                 ],
             )
             && !is(tokens.get(i.wrapping_sub(1)), &["make", "let"])

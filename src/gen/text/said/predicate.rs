@@ -123,7 +123,7 @@ impl Part {
             && self.main.len() > 1
             && n == 1
             && text(&self.main[0]) != "left";
-        let side = text(&self.main[0]) == "left" && !self.perfect;
+        let side = text(&self.main[0]) == "left" && n == 1 && !self.perfect;
         ends && !(bare && !rest.is_empty() && rest[0].kind != TokenKind::Comma) && !side
     }
 }
@@ -174,6 +174,12 @@ fn boarded(main: &[Token]) -> bool {
             "taken seats in",
         ],
     );
+    // ("has boarded it")
+    if n.is_some_and(|n| is(main.get(n), &["it", "them"]) && main.len() == n + 1)
+        && !is(main.first(), &["inside"])
+    {
+        return true;
+    }
     let Some(np) = n
         .map(|n| &main[n..])
         .filter(|np| is(np.first(), &["the", "a", "an", "our", "my", "that", "one"]))

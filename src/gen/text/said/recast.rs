@@ -5,7 +5,7 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::replaced;
 use super::Talk;
 use super::causing::{caused, caused_later, let_be, wished_beside};
-use super::limits::{for_each, half_of, no_more_than, not_those, now_there, sent, so_many_not};
+use super::limits::{for_each, group_cut, half_of, no_more_than, not_those, now_there, sent, so_many_not};
 use super::steps::{another_so_far, far_times, pushed_away, to_so_far};
 use super::strips::{cleared_of, everyone_there, off_site, off_with, other_strip, own_side, place_first};
 use super::topics::{gapped, of_group, topic};
@@ -56,7 +56,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     );
     let out = gets(left_over(without_care(out)));
     let out = now_there(out, talk);
-    let out = pushed_away(half_of(out));
+    let out = pushed_away(half_of(group_cut(out)));
     let out = another_so_far(out);
     let out = to_so_far(out);
     let out = caused(out);

@@ -2,12 +2,75 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::Token;
+use super::super::wording::rewritten;
 use super::words::{find, first_noun, is, is_place, leads, led, text};
 use crate::scene::Class;
 
 /// A sentence in plain words.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
-    mounts(climbs_out(tokens))
+    mounts(climbs_out(mounted(put_on(tokens))))
+}
+
+fn two_wheels(t: &Token) -> bool {
+    matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() == 1 && matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
+}
+
+/// "put one of the pedestrians on a bicycle": he becomes one.
+fn put_on(tokens: Vec<Token>) -> Vec<Token> {
+    let person =
+        |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] == Class::Pedestrian);
+    let found = is(tokens.first(), &["put", "set", "seat", "get", "place", "sit"])
+        .then(|| first_noun(&tokens[1..]))
+        .flatten()
+        .filter(|n| n.0 < 5 && person(&tokens[n.1]));
+    let known = tokens[..tokens.len().min(6)]
+        .iter()
+        .any(|t| is(Some(t), &["the", "both", "that", "my", "our", "those"]));
+    let Some((_, b)) = found.filter(|_| known) else {
+        return tokens;
+    };
+    let on = leads(&tokens[1 + b..], &["on a", "on an", "onto a", "onto an"]).map(|n| 1 + b + n);
+    let Some((from, end)) = on.and_then(|k| Some((k, k + first_noun(&tokens[k..]).filter(|x| x.0 < 3)?.1)))
+    else {
+        return tokens;
+    };
+    if !two_wheels(&tokens[end - 1]) {
+        return tokens;
+    }
+    [
+        &led("replace", &tokens[0], &[&tokens[1..=b]])[..],
+        &led("with a", &tokens[0], &[&tokens[from..]]),
+    ]
+    .concat()
+}
+
+/// "a courier on a motorbike": the motorbike, which he rides.
+fn mounted(tokens: Vec<Token>) -> Vec<Token> {
+    let person = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, false)) if n.classes[0] == Class::Pedestrian);
+    rewritten(&tokens, |i, out| {
+        let n = leads(
+            &tokens[i..],
+            &[
+                "on a",
+                "on an",
+                "on his",
+                "on her",
+                "riding a",
+                "riding his",
+                "riding her",
+            ],
+        )?;
+        let (_, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3)?;
+        // ("put the man on a bicycle" makes him ride)
+        let fresh =
+            (1..4).any(|k| k < out.len() && is(out.get(out.len() - 1 - k), &["a", "an", "another", "one"]));
+        let rides = fresh && out.last().is_some_and(person) && two_wheels(&tokens[i + n + b - 1]);
+        let of_his = is(tokens.get(i + n + b), &["s"]);
+        (rides && !of_his).then_some(())?;
+        out.pop();
+        out.extend_from_slice(&tokens[i + n..i + n + b]);
+        Some(i + n + b)
+    })
 }
 
 const OUT: &[&str] = &[
@@ -134,7 +197,6 @@ fn mounts(tokens: Vec<Token>) -> Vec<Token> {
         "is actually on",
         "has to ride",
     ];
-    let two_wheels = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() == 1 && matches!(n.classes[0], Class::Bicycle | Class::Motorcycle));
     let rider = |t: &Token| two_wheels(t) || is(Some(t), &["rider"]);
     let Some((i, n)) = find(&tokens, RIDES) else {
         return tokens;

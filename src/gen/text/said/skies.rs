@@ -40,6 +40,51 @@ const SKIES: &[&str] = &[
     "murk",
 ];
 
+/// What weather does that ends.
+const BLOWS_OVER: &[&str] = &[
+    "dies down",
+    "dies away",
+    "died down",
+    "died away",
+    "die down",
+    "die away",
+    "blows over",
+    "blown over",
+    "blew over",
+    "blow over",
+    "blows itself out",
+    "blown itself out",
+    "lets up",
+    "let up",
+    "passes over",
+    "passed over",
+    "passes by",
+    "passed by",
+    "moves on",
+    "moved on",
+    "moves off",
+    "moved off",
+    "clears up",
+    "cleared up",
+    "eases off",
+    "eased off",
+    "ebbs away",
+    "ebbed away",
+    "peters out",
+    "petered out",
+    "fades away",
+    "faded away",
+    "calms down",
+    "calmed down",
+    "settles down",
+    "burns off",
+    "burnt off",
+    "burned off",
+    "dries up",
+    "draws off",
+    "has had its day",
+];
+
 const CLOUDLESS: &str = "not a cloud in the sky|not a single cloud in the sky|not one cloud in the sky|without a cloud in the sky|without a single cloud in the sky|no cloud in the sky|no clouds in the sky|not a cloud|without clouds|without a cloud|no clouds|cloudless sky|a cloudless sky";
 const SUN: &str = "have the sun out|the sun out|the sun comes out|the sun has come out|let the sun come out|let the sun shine|bring out the sun|bring the sun out|the sun should shine|the sun shines again|get the sun out";
 const SUNSET: &str = "let the sun set|the sun sets|the sun is setting|the sun goes down|the sun is going down|the sun should set|let the sun go down";
@@ -228,16 +273,46 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
                 "goes",
                 "stopped",
                 "lifted",
+                "abates",
+                "abated",
+                "abate",
+                "subsides",
+                "subsided",
+                "subside",
+                "dissipates",
+                "dissipated",
+                "ceased",
+                "passed",
+                "vanished",
             ],
         ) || helpers > 0 && is(out.get(i + 1 + helpers), &["over", "gone"]);
+        let over = leads(&out[i + 1 + helpers..], BLOWS_OVER).unwrap_or(0);
+        let verb = verb || over > 0;
         let from = i - usize::from(i > 0 && is(out.get(i - 1), &["the", "this", "that"]));
         let lead = is(out.get(from.wrapping_sub(1)), &["let", "make", "have"]);
-        verb.then_some((from - usize::from(lead && from > 0), i + 2 + helpers))
+        verb.then_some((
+            from - usize::from(lead && from > 0),
+            i + 1 + helpers + over.max(1),
+        ))
     });
     if let Some((from, end)) = ended {
         let away = usize::from(is(out.get(end), &["away"]));
         let clear = led("clear weather", &out[from], &[]);
-        out.splice(from..end + away, clear);
+        // ("and leaves a clear sky" says it again)
+        let again = leads(
+            &out[end + away..],
+            &[
+                "and leaves a clear sky",
+                "and leaves clear skies",
+                "and leaves behind a clear sky",
+                "and leaves a blue sky",
+                ", leaving a clear sky",
+                ", leaving clear skies",
+                "leaving a clear sky",
+            ],
+        )
+        .unwrap_or(0);
+        out.splice(from..end + away + again, clear);
     }
     // "instead of the fog let there be snow"
     if let Some(n) = leads(&out, &["instead of", "rather than", "in place of"]) {

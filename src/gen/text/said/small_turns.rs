@@ -10,6 +10,8 @@ const STAYS_SO: &str = "the rain should go on|the rain goes on|the rain should c
     the fog should go on|the fog stays|the fog should stay|the fog remains|the storm should go on|the storm stays|the sandstorm stays|the sandstorm should go on|\
     it should keep raining|it should keep snowing|it keeps raining|it keeps snowing";
 const WHATEVER: &str = "delete what is|remove what is|erase what is|clear what is|take away what is|delete what stands|remove what stands|delete what drives|remove what drives";
+const OFF_THEY_GO: &str = "off they go|away they go|out they go|off it goes|away it goes|out it goes|off he goes|off she goes|away with it then|\
+    off they must go|out they must go";
 const USES: &str =
     "should use|must use|has to use|have to use|ought to use|uses|should take|must take|is using|are using";
 
@@ -17,6 +19,8 @@ const USES: &str =
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
     let out = replaced(&tokens, STAYS_SO, "");
     let out = replaced(&out, WHATEVER, "delete whatever is");
+    let out = replaced(&out, "double park|double parks", "park");
+    let out = replaced(&out, OFF_THEY_GO, "remove them");
     let out = cut_from(out);
     let out = one_stays(fewer(besides(out)));
     let out = keeps_beside(too_many(stationed(out)));

@@ -2,6 +2,7 @@
 
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::{replaced, rewritten};
 use super::Talk;
 use super::gifts::begins_at;
 use super::words::{find, first_noun, has_noun, is, is_unit, leads, led, longest, number, text, trimmed};
@@ -82,8 +83,207 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..start], &out, &tokens[metres + 2..]].concat()
 }
 
+/// "so empty the pavement": who is on it goes.
+fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
+    for i in 0..tokens.len() {
+        let verb = is(tokens.get(i), &["empty", "depopulate", "evacuate"]) && begins_at(&tokens, i);
+        let frees = verb || is(tokens.get(i), &["clear", "free", "vacate"]) && begins_at(&tokens, i);
+        if let Some(new) = frees.then(|| car_park_emptied(&tokens, i)).flatten() {
+            return new;
+        }
+        let the = is(tokens.get(i + 1), &["the", "our", "my", "both"]);
+        let place = tokens.get(i + 2..).and_then(longest);
+        if let (true, true, Some((Sense::Place(..), n))) = (verb, the, place)
+            && tokens
+                .get(i + 2 + n)
+                .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "of"]))
+        {
+            tokens[i].text = "clear".into();
+        }
+    }
+    tokens
+}
+
+/// "empty two of the parking spaces", "clear the car park": so many of the parked ones go, or all.
+fn car_park_emptied(tokens: &[Token], i: usize) -> Option<Vec<Token>> {
+    const PARKS: &[&str] = &[
+        "the car park",
+        "the parking lot",
+        "the whole car park",
+        "the entire car park",
+        "the parking area",
+        "the whole parking lot",
+        "the entire parking lot",
+        "all the parking spaces",
+        "all parking spaces",
+        "all the spaces",
+        "all the bays",
+    ];
+    let up = i + 1 + usize::from(is(tokens.get(i + 1), &["up", "out"]));
+    if let Some(n) = leads(&tokens[up..], PARKS) {
+        let ends = tokens
+            .get(up + n)
+            .is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and", "completely"]));
+        let spares = tokens[up + n..]
+            .iter()
+            .any(|t| is(Some(t), &["except", "but", "apart", "save", "of"]));
+        let all = led("remove all the parked vehicles", &tokens[i], &[&tokens[up + n..]]);
+        return (ends && !spares).then(|| [&tokens[..i], &all].concat());
+    }
+    let many = tokens.get(up).filter(|t| number(t).is_some())?;
+    let of = leads(&tokens[up + 1..], &["of the"]).unwrap_or(0);
+    let mut k = up + 1 + of;
+    while is(tokens.get(k), &["parking", "car", "occupied", "taken", "filled"]) {
+        k += 1;
+    }
+    is(
+        tokens.get(k),
+        &["space", "spaces", "bay", "bays", "spot", "spots", "slot", "slots"],
+    )
+    .then_some(())?;
+    let any = led("remove any", &tokens[i], &[std::slice::from_ref(many)]);
+    let parked = led("of the parked vehicles", &tokens[i], &[&tokens[k + 1..]]);
+    Some([&tokens[..i], &any, &parked].concat())
+}
+
+/// "fill two more spaces with cars": two more are parked.
+pub(super) fn spaces_filled(tokens: Vec<Token>) -> Vec<Token> {
+    const FOUND: &str = "has found a space|has found a parking space|has found a spot|has found a parking spot|has found a bay|\
+        found a space|found a parking space|has taken a space|takes a space|takes a parking space|has taken a parking space";
+    let tokens = replaced(&tokens, FOUND, "is parked in the car park");
+    let found = (0..tokens.len()).find_map(|i| {
+        (is(tokens.get(i), &["fill", "occupy", "use"]) && begins_at(&tokens, i)).then_some(())?;
+        let up = i + 1 + usize::from(is(tokens.get(i + 1), &["up"]));
+        number(tokens.get(up)?)?;
+        let of = leads(&tokens[up + 1..], &["of the"]).unwrap_or(0);
+        let mut k = up + 1 + of;
+        while is(
+            tokens.get(k),
+            &[
+                "more",
+                "other",
+                "further",
+                "additional",
+                "free",
+                "empty",
+                "vacant",
+                "parking",
+                "car",
+                "remaining",
+            ],
+        ) {
+            k += 1;
+        }
+        is(
+            tokens.get(k),
+            &[
+                "space", "spaces", "bay", "bays", "spot", "spots", "slot", "slots", "place", "places",
+            ],
+        )
+        .then_some(())?;
+        is(tokens.get(k + 1), &["with", "by"]).then_some(())?;
+        let article = usize::from(is(tokens.get(k + 2), &["a", "an", "one"]));
+        let from = k + 2 + article;
+        let (_, b) = first_noun(tokens.get(from..)?).filter(|n| n.0 < 3)?;
+        let each = usize::from(is(tokens.get(from + b), &["each"]));
+        Some((i, up, from, from + b, from + b + each))
+    });
+    match found {
+        Some((i, many, from, to, end)) => [
+            &tokens[..i],
+            &led("add", &tokens[i], &[&tokens[many..=many]]),
+            &led("more parked", &tokens[i], &[&tokens[from..to]]),
+            &led("in the car park", &tokens[i], &[]),
+            &tokens[end..],
+        ]
+        .concat(),
+        None => tokens,
+    }
+}
+
+/// "the left-hand row loses one car": of those that are parked there.
+fn row_loses(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const LOSES: &[&str] = &[
+        "loses",
+        "lost",
+        "has lost",
+        "should lose",
+        "is to lose",
+        "must lose",
+        "gives up",
+        "has to lose",
+    ];
+    let found = is(tokens.first(), &["the"])
+        .then(|| (2..tokens.len().min(6)).find_map(|k| leads(&tokens[k..], LOSES).map(|n| (k, k + n))))
+        .flatten();
+    let Some((k, many)) = found.filter(|x| tokens.get(x.1).is_some_and(|t| number(t).is_some())) else {
+        return tokens;
+    };
+    let lead = &tokens[..k];
+    let row = is(lead.last(), &["row", "line"]) && is(lead.get(1), &["left", "right"]);
+    let place = match longest(&lead[1..]) {
+        _ if row => led(
+            "on the",
+            &tokens[1],
+            &[&tokens[1..2], &led("roadside", &tokens[1], &[])],
+        ),
+        Some((Sense::Place(..), n)) if n + 1 == lead.len() => led(
+            if is(lead.last(), &["lane"]) { "in" } else { "on" },
+            &tokens[0],
+            &[lead],
+        ),
+        _ => return tokens,
+    };
+    let Some((_, b)) = first_noun(&tokens[many + 1..]).filter(|n| n.0 < 3) else {
+        return tokens;
+    };
+    let np = [&tokens[many + 1..many + 1 + b], &place[..]].concat();
+    if talk.fits(&np) == 0 {
+        return tokens;
+    }
+    led(
+        "remove any",
+        &tokens[0],
+        &[&tokens[many..=many], &np, &tokens[many + 1 + b..]],
+    )
+}
+
+/// "slip a fourth car into the left-hand row": parked at that edge, where others are.
+pub(super) fn into_row(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let tokens = row_loses(tokens, talk);
+    rewritten(&tokens, |i, out| {
+        let n = leads(
+            &tokens[i..],
+            &[
+                "into the",
+                "in the",
+                "to the",
+                "onto the",
+                "inside the",
+                "within the",
+            ],
+        )?;
+        let side = tokens.get(i + n).filter(|t| is(Some(t), &["left", "right"]))?;
+        let hand = usize::from(is(tokens.get(i + n + 1), &["hand"]));
+        let row = i + n + 1 + hand;
+        is(tokens.get(row), &["row", "line"]).then_some(())?;
+        let of = leads(&tokens[row + 1..], &["of"]).unwrap_or(0);
+        let noun = match of {
+            0 => 0,
+            _ => of + first_noun(&tokens[row + 2..]).filter(|x| x.0 < 3)?.1,
+        };
+        let edge = led("roadside", side, &[]);
+        let there = [&led("on the", side, &[std::slice::from_ref(side)])[..], &edge].concat();
+        let parked = led("all parked vehicles", side, &[&there]);
+        (talk.fits(&parked) > 0).then_some(())?;
+        out.extend(there);
+        Some(row + 1 + noun)
+    })
+}
+
 /// "the crossing is empty now", "our lane must be free of cones": who is there goes.
 pub(super) fn emptied(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = empties(tokens);
     let body = trimmed(&tokens);
     let the = usize::from(is(body.first(), &["the", "our", "my"]));
     let Some((Sense::Place(..), n)) = body.get(the..).and_then(longest) else {

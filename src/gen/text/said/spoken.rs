@@ -1,7 +1,8 @@
 //! Words as the clause reader wants them: "the one behind me" is something, the bus driver is the bus.
 
 use super::super::lexicon::{Sense, look_up};
-use super::super::tokens::Token;
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::Talk;
 use super::lists::HELPERS;
 use super::words::{self, find, is, is_place, led, text};
@@ -59,7 +60,7 @@ pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
 
 /// "from the right lane to the left one": the left lane.
 pub(super) fn sides_named(tokens: Vec<Token>) -> Vec<Token> {
-    let mut out = tokens;
+    let mut out = side_added(tokens);
     for i in 1..out.len() {
         // "the car in the right one": lane
         let side = is(
@@ -79,6 +80,72 @@ pub(super) fn sides_named(tokens: Vec<Token>) -> Vec<Token> {
     out
 }
 
+/// "to the far pavement, the one on our left": to the left pavement.
+fn side_added(mut tokens: Vec<Token>) -> Vec<Token> {
+    const STRIPS: &[&str] = &[
+        "lane", "sidewalk", "pavement", "side", "kerb", "curb", "roadside", "shoulder", "footpath", "edge",
+        "verge",
+    ];
+    let found = (2..tokens.len()).find_map(|i| {
+        (tokens[i].kind == TokenKind::Comma && is(tokens.get(i - 1), STRIPS)).then_some(())?;
+        let n = words::leads(
+            &tokens[i + 1..],
+            &[
+                "the one on our",
+                "the one on my",
+                "the one on the",
+                "the one to our",
+                "the one to my",
+                "the one to the",
+                "that is the one on our",
+                "that is the one on my",
+                "that is the one on the",
+                "that is on our",
+                "that is on my",
+                "that is on the",
+                "that is the",
+                "namely the one on our",
+                "namely the one on my",
+                "namely the one on the",
+                "namely the",
+                "meaning the one on our",
+                "meaning the",
+                "which is the one on our",
+                "which is on our",
+                "which is on the",
+                "which is the",
+            ],
+        )?;
+        let side = i + 1 + n;
+        is(tokens.get(side), &["left", "right"]).then_some(())?;
+        let more = words::leads(
+            &tokens[side + 1..],
+            &["hand side", "side", "hand one", "one", "hand"],
+        )
+        .unwrap_or(0);
+        let end = side + 1 + more;
+        tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "but"]))
+            .then_some(())?;
+        let the = (i.saturating_sub(4)..i - 1)
+            .rev()
+            .find(|k| is(tokens.get(*k), &["the", "that"]))?;
+        Some((the, i, side, end))
+    });
+    if let Some((the, comma, side, end)) = found {
+        // ("the other lane, the one on our left, should be empty")
+        let encloses = tokens.get(end).is_some_and(|t| t.kind == TokenKind::Comma)
+            && tokens
+                .get(end + 1)
+                .is_some_and(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), true));
+        let end = end + usize::from(encloses);
+        let (left, strip) = (tokens[side].clone(), tokens[comma - 1].clone());
+        tokens.splice(the + 1..end, [left, strip]);
+    }
+    tokens
+}
+
 /// "the two little ones", where nothing else is named: the children.
 pub(super) fn little_ones(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (1..tokens.len()).find(|i| {
@@ -95,6 +162,27 @@ pub(super) fn little_ones(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token>
     }
     tokens.splice(i..i + 2, child);
     tokens
+}
+
+/// "beside the engine", where a fire engine is: that one.
+pub(super) fn engine(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let called = |b: &crate::scene::SceneBox| b.label.name.as_str().to_lowercase().starts_with("fire");
+    if !tokens.iter().any(|t| is(Some(t), &["engine", "appliance"])) || !talk.boxes.values().any(called) {
+        return tokens;
+    }
+    rewritten(&tokens, |i, out| {
+        let named =
+            is(tokens.get(i), &["engine", "appliance"]) && is(out.last(), &["the", "that", "our", "my"]);
+        // ("with the engine running")
+        let part = out.len() > 1
+            && is(
+                out.get(out.len() - 2),
+                &["with", "turn", "switch", "start", "off", "on"],
+            );
+        (named && !part).then_some(())?;
+        out.extend(led("fire engine", &tokens[i], &[]));
+        Some(i + 1)
+    })
 }
 
 /// The words without "on foot" and "who is on foot".

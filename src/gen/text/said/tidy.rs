@@ -227,12 +227,18 @@ fn set_out(tokens: Vec<Token>) -> Vec<Token> {
                 out.push(super::words::word("add", t));
             }
             "set" | "lay" | "stand" | "position" if opens && thing => out.push(super::words::word("add", t)),
-            "park" if opens && thing && tokens.get(i + 1).is_some_and(|n| number(n).is_some()) => {
+            "park"
+                if opens
+                    && thing
+                    && tokens
+                        .get(i + 1)
+                        .is_some_and(|n| number(n).is_some() || is(Some(n), &["a", "an", "another"])) =>
+            {
                 out.extend(led("add", t, &[]));
                 out.push(tokens[i + 1].clone());
                 out.push(super::words::word("parked", t));
             }
-            _ if i > 1
+            _ if i > 0
                 && text(&tokens[i - 1]) == "park"
                 && out.last().is_some_and(|o| text(o) == "parked") => {}
             _ => out.push(t.clone()),

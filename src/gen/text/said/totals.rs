@@ -361,7 +361,18 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let same = first_noun(before).is_none() || same_kind(before, &np);
     let kept: &[Token] = if same { &[] } else { &tokens[..from] };
     let mut out = kept.to_vec();
-    out.extend(led("keep exactly", &tokens[from], &[many, &np, tail]));
+    // "on the crossing should be five children in total"
+    let lead = trimmed(&clause[..k]);
+    let verb = lead
+        .iter()
+        .position(|t| HELPERS.contains(&text(t)) || is(Some(t), &["there", "i", "we"]))
+        .unwrap_or(0);
+    let place = if own.is_some() && is_place(lead) && !is(lead.first(), &["to", "up", "down"]) {
+        &lead[..verb]
+    } else {
+        &[]
+    };
+    out.extend(led("keep exactly", &tokens[from], &[many, &np, place, tail]));
     out
 }
 

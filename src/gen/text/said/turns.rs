@@ -460,14 +460,14 @@ fn dropped(tokens: Vec<Token>) -> Vec<Token> {
     out
 }
 
-/// "leave the bus out", "cross the two cones out": taken away.
+/// "leave the bus out", "cross the two cones out", "stand the others down": taken away.
 fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
     for i in 0..tokens.len() {
         let verb = is(
             tokens.get(i),
             &[
                 "leave", "cut", "cross", "rub", "rule", "strike", "edit", "crop", "weed", "filter", "pick",
-                "throw", "kick", "chuck", "toss", "boot", "sort",
+                "throw", "kick", "chuck", "toss", "boot", "sort", "stand",
             ],
         );
         if !verb || !opens(&tokens, i) {
@@ -475,13 +475,20 @@ fn taken_out(tokens: Vec<Token>) -> Vec<Token> {
         }
         let end = if is(tokens.get(i + 1), &["it", "him", "her", "them"]) {
             i + 2
+        } else if let Some(n) = leads(
+            &tokens[i + 1..],
+            &["the others", "the rest", "the other two", "the other one"],
+        ) {
+            i + 1 + n
         } else {
             match first_noun(&tokens[i + 1..]).filter(|x| x.0 < 5) {
                 Some((_, b)) => i + 1 + b,
                 None => continue,
             }
         };
-        let out = is(tokens.get(end), &["out"])
+        // ("stand the others down")
+        let down = is(tokens.get(i), &["stand"]);
+        let out = is(tokens.get(end), if down { &["down"] } else { &["out"] })
             && tokens.get(end + 1).is_none_or(|t| {
                 t.kind != TokenKind::Word
                     || is(

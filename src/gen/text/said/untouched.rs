@@ -64,6 +64,8 @@ const STAYS: &[&str] = &[
     "put",
     "in its place",
     "as it stands",
+    "equal",
+    "unaltered",
 ];
 const BE: &[&str] = &[
     "is",
