@@ -63,7 +63,8 @@ impl Editor<'_> {
             mention.spec.state = None;
             ids = fitting(&self.map, &self.boxes, &mention, &[]);
         }
-        ids.iter().map(|id| self.boxes[id]).collect()
+        let fits = ids.iter().map(|id| self.boxes[id]).collect();
+        super::names::plainly(fits, &mention)
     }
 
     /// Of several boxes those that the text spoke of last, if any; else those of the size that the noun has.

@@ -254,7 +254,7 @@ fn numbers(tokens: &[Token]) -> Vec<Token> {
 
 /// What takes things away, before what is taken away.
 const REMOVE: &str = "delete|erase|eliminate|get rid of|do away with|dispose of|dispense with|take away|take out|clear away|discard|scrap|ditch|banish|cancel|withdraw|\
-    strip out|pull out|wipe out|throw out|kick out|chuck out|chuck|toss out|cut out|cut|lose|kill|bin|nix|purge|axe|dump|eradicate|exclude|drop out|edit out|rub out|\
+    strip out|pull out|wipe out|throw out|kick out|chuck out|toss out|cut out|cut|lose|kill|bin|nix|purge|axe|dump|eradicate|exclude|drop out|edit out|rub out|\
     rule out|weed out|pluck out|yank out|rip out|oust|expel|evict|obliterate|annihilate|zap|trash|junk|unload|tow away|haul away|cart away|whisk away|wipe away|sweep away";
 /// What brings a new thing.
 const ADD: &str = "insert|introduce|spawn|throw in|stick in|drop in|put in|bring in|toss in|chuck in|slot in|include|generate|supply|conjure up|create|plonk|plop|pop in|inject|plonk down";

@@ -435,6 +435,10 @@ fn instead_first(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if tail.is_empty() {
         return led("replace", &tokens[0], &[&the, old, &led("with", &tokens[0], &[&new[..e]])]);
     }
+    // (how several stand is read with them)
+    if is(tail.first(), &["one", "each", "all", "both"]) || tail[0].kind != TokenKind::Word {
+        return tokens;
+    }
     let there = leads(tail, &["there", "in its place", "in their place", "instead"]).is_some_and(|m| m == tail.len());
     let tail = if there { led("in its place", &tokens[0], &[]) } else { tail.to_vec() };
     [&led("remove", &tokens[0], &[&the, old])[..], &led("and add", &tokens[0], &[&new[..e]]), &tail].concat()
