@@ -55,9 +55,11 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         .unwrap_or("straight");
     let parked = graph.objects().any(|(_, o)| o.state == Some(ObjectState::Parked))
         || graph.edges.iter().any(|e| e.relation == RelationKind::ParkedOn);
+    let room_m = room_ahead_m(d);
     let mut best: Option<(usize, Chosen)> = None;
     for k in 0..TRIES {
-        let Some(layout) = template::layout(name, hash(seed ^ (k << 40)).wrapping_add(seed)) else {
+        let seed = hash(seed ^ (k << 40)).wrapping_add(seed);
+        let Some(layout) = template::layout_with_room(name, seed, room_m) else {
             continue;
         };
         let layout = if d.road.no_crossing {
@@ -90,6 +92,17 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         },
         |b| b.1,
     )
+}
+
+/// How much of our street lies before a roundabout, m: what shall stand ahead of us in our lane has room there.
+fn room_ahead_m(d: &Description) -> f64 {
+    const LEAST_M: f64 = 14.0;
+    const MOST_M: f64 = 24.0;
+    let ahead = d.foreground.iter().flat_map(|o| &o.relations).filter(|r| {
+        r.relation == RelationKind::InFrontOf && r.anchor == super::description::Anchor::Ego
+    });
+    let farthest_m = ahead.filter_map(|r| r.distance_m).fold(0.0, f64::max);
+    (farthest_m + 4.0).clamp(LEAST_M, MOST_M)
 }
 
 /// The same road with no stripes painted on it.

@@ -76,6 +76,11 @@ fn arc(center: DVec2, radius: f64, from: f64, to: f64) -> Vec<DVec2> {
 /// The layout `name` of [`TEMPLATES`] varied by `seed`: widths, lanes, angles, crossings.
 /// The ego stands in a right-hand lane at the origin. `None` for an unknown name.
 pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
+    layout_with_room(name, seed, 0.0)
+}
+
+/// The same with at least `room_m` of the ego's street before a roundabout begins.
+pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout> {
     let mut draw = Draw::new(seed, name);
     let mut plan = Plan::default();
     let lane_m = draw.range(3.1, 3.8);
@@ -162,8 +167,11 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
         }
         "roundabout" => {
             let radius = draw.range(9.0, 14.0);
-            let center = DVec2::new(draw.range(18.0, 26.0), y);
+            let mut center = DVec2::new(draw.range(18.0, 26.0), y);
             let ring_width = draw.range(5.5, 7.5);
+            if room_m > 0.0 {
+                center.x = center.x.max(room_m + radius + ring_width / 2.0);
+            }
             let arms =
                 [0.0, 1.0, 2.0, 3.0].map(|k: f64| k * std::f64::consts::FRAC_PI_2 + std::f64::consts::PI);
             for (k, angle) in arms.into_iter().enumerate() {

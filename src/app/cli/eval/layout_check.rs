@@ -106,8 +106,16 @@ impl Judge<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Places where lanes of different directions meet.
+    /// Metres from where lanes of different directions meet. At a roundabout ours ends a few metres before the ring.
     fn to_junction(&self, p: DVec2) -> f64 {
+        [4.0, 8.0]
+            .into_iter()
+            .map(|gap_m| self.to_meeting(p, gap_m))
+            .find(|d| d.is_finite())
+            .unwrap_or(f64::INFINITY)
+    }
+
+    fn to_meeting(&self, p: DVec2, gap_m: f64) -> f64 {
         let Some(own) = self.ego_lane() else {
             return f64::INFINITY;
         };
@@ -122,7 +130,7 @@ impl Judge<'_> {
                 let d = (w[1] - w[0]).normalize_or_zero();
                 for v in own.windows(2) {
                     let e = (v[1] - v[0]).normalize_or_zero();
-                    if d.dot(e).abs() < 0.8 && w[0].distance(v[0]) < 4.0 {
+                    if d.dot(e).abs() < 0.8 && w[0].distance(v[0]) < gap_m {
                         best = best.min(w[0].distance(p));
                     }
                 }
