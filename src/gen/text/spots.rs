@@ -268,9 +268,14 @@ impl Gather<'_, '_> {
                 }
             }
             None if parked => {
+                // (where there are parking spaces they are used first)
+                let lot = self.map.layout.count(BevLayer::CarparkArea) > 200;
+                let (edge, spaces) = if lot { (0.8, 0.0) } else { (0.0, 0.4) };
+                self.base.cost += edge;
                 self.edge(LaneRole::Roadside);
-                self.base.cost += 0.4;
+                self.base.cost += spaces - edge;
                 self.carpark();
+                self.base.cost += 0.4 - spaces;
                 if stated
                     .iter()
                     .any(|(e, _)| !matches!(e.relation, RelationKind::ParkedOn | RelationKind::On))
