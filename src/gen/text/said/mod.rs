@@ -22,6 +22,8 @@ mod frame;
 mod gapped;
 mod gaps;
 mod gifts;
+mod happier;
+mod headway;
 mod idioms;
 mod kept;
 mod left;
@@ -29,6 +31,7 @@ mod likewise;
 mod limits;
 pub(super) mod lists;
 mod newcomers;
+mod nominal;
 mod notes;
 mod of_several;
 mod offhand;
@@ -97,8 +100,10 @@ use forms::{
     takes_place,
 };
 use frame::unwrapped;
+pub use headway::joined as one_distance;
 pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
+pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 pub use pointers::plain as pointed_back;
@@ -222,6 +227,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = headway::plain(happier::plain(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);

@@ -1,0 +1,133 @@
+//! What is wished by way of how one would like it: "I'd be happier with the bus 8 m nearer", "I could live without the car on
+//! the left", "it would look better with the taxi gone"; and ", with the car behind us replaced by a bus".
+
+use super::super::tokens::{Token, TokenKind};
+use super::Talk;
+use super::words::{find, first_noun, has_noun, is, is_place, led, number, text};
+
+/// How one likes it.
+const LIKING: &[&str] = &[
+    "happier", "happy", "better", "safer", "safe", "nicer", "nice", "glad", "comfortable", "easier", "clearer",
+    "prettier", "calmer", "relaxed", "ease", "content", "best", "good", "great", "perfect", "ideal", "more", "prefer",
+    "like", "love", "live", "manage", "cope", "get", "rather", "pleased", "cleaner", "simpler", "realistic", "fine",
+    "believable", "convincing", "useful", "interesting", "do", "suit", "please", "preferable", "satisfied",
+];
+/// Whose liking it is, and what stands around it.
+const AROUND: &[&str] = &[
+    "i", "we", "id", "wed", "it", "itd", "that", "this", "the", "would", "will", "could", "can", "might", "be", "feel",
+    "am", "are", "is", "look", "looks", "work", "works", "seem", "seems", "much", "far", "a", "lot", "bit", "even",
+    "at", "off", "to", "me", "us", "have", "see", "scene", "picture", "shot", "view", "test", "whole", "thing",
+    "situation", "street", "road", "really", "definitely", "quite", "all", "also", "by", "just", "image", "everything",
+    "so", "lets", "let", "makes", "make", "should", "little", "way", "very", "being", "for", "my", "our", "same",
+    "again", "show", "want", "need", "give", "now", "exactly", "but", "please", "only", "once",
+];
+/// What has become of something, after "with".
+const BECAME: &[&str] = &[
+    "replaced", "removed", "gone", "turned", "deleted", "swapped", "exchanged", "moved", "shifted", "painted",
+    "converted", "changed", "taken", "substituted", "relocated", "transformed", "erased", "missing", "repainted",
+    "rotated", "traded",
+];
+
+fn known(t: Option<&Token>) -> bool {
+    is(t, &["the", "that", "this", "these", "those", "my", "both", "all", "our"])
+}
+
+/// A sentence (without its stop) that says it plainly.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    absolute(liked(tokens, talk), talk)
+}
+
+/// "I'd be happier with the bus 8 m nearer", "... without the car on the left".
+fn liked(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, _)) = find(&tokens, &["with", "without"]).filter(|x| (2..14).contains(&x.0)) else {
+        return tokens;
+    };
+    let lead = &tokens[..i];
+    let likes = lead.iter().any(|t| LIKING.contains(&text(t)));
+    let plain = lead
+        .iter()
+        .all(|t| AROUND.contains(&text(t)) || LIKING.contains(&text(t)) || t.kind == TokenKind::Comma);
+    let begins = is(
+        tokens.first(),
+        &["i", "we", "id", "wed", "it", "itd", "that", "this", "the", "everything", "all"],
+    );
+    let rest = super::words::trimmed(&tokens[i + 1..]);
+    if !likes || !plain || !begins || rest.is_empty() {
+        return tokens;
+    }
+    let at = &tokens[i];
+    // (what follows a comma is another clause)
+    let end = rest.iter().position(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_))).unwrap_or(rest.len());
+    let Some((_, b)) = first_noun(&rest[..end]).filter(|x| x.0 < 5) else {
+        return tokens;
+    };
+    if text(at) == "without" {
+        return if known(rest.first()) && talk.fits(&rest[..end]) > 0 {
+            led("remove", at, &[rest])
+        } else {
+            tokens
+        };
+    }
+    if !known(rest.first()) {
+        // "with one barrier fewer"
+        let so_many = rest.first().is_some_and(|t| number(t).is_some()) && is(rest.get(b), &["fewer", "less", "more"]);
+        return if so_many { rest.to_vec() } else { tokens };
+    }
+    match complement(&rest[..end], b, talk) {
+        Some(k) => [&rest[..k], &led("should be", at, &[&rest[k..]])].concat(),
+        None => tokens,
+    }
+}
+
+/// Where what is said of a noun phrase begins: after its noun, or after the place that tells which one is meant.
+fn complement(np: &[Token], b: usize, talk: &Talk<'_>) -> Option<usize> {
+    let became = (b..np.len()).find(|k| BECAME.contains(&text(&np[*k])));
+    let k = match became {
+        Some(k) => k,
+        None => {
+            let only = usize::from(is(np.get(b), &["only", "just", "a", "some", "about", "at"]));
+            let far = is_place(np.get(b + only..)?)
+                || is(np.get(b), &["on", "in", "behind", "ahead", "parked", "painted", "facing"]);
+            far.then_some(b)?
+        }
+    };
+    (talk.fits(&np[..k]) > 0).then_some(k)
+}
+
+/// ", with the car behind us replaced by a bus": it should be.
+fn absolute(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (0..tokens.len()).find_map(|i| {
+        is(tokens.get(i), &["with"]).then_some(())?;
+        let lead = &tokens[..i];
+        let apart = lead.last().is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and", "but", "only"]));
+        // "could we have it with the car replaced": nothing but the wish stands before
+        let wish = lead
+            .iter()
+            .all(|t| AROUND.contains(&text(t)) || LIKING.contains(&text(t)) || t.kind == TokenKind::Comma);
+        (apart || wish).then_some(())?;
+        known(tokens.get(i + 1)).then_some(())?;
+        let rest = &tokens[i + 1..];
+        let (_, b) = first_noun(rest).filter(|x| x.0 < 4)?;
+        let k = (b..rest.len().min(b + 7)).find(|k| BECAME.contains(&text(&rest[*k])))?;
+        let whole = rest[b..k].iter().all(|t| t.kind == TokenKind::Word);
+        (whole && (k == b || is_place(&rest[b..])) && talk.fits(&rest[..k]) > 0).then_some((i, i + 1 + k, wish))
+    });
+    let Some((i, k, wish)) = found else {
+        return tokens;
+    };
+    let mut out = if wish || !has_words(&tokens[..i]) { Vec::new() } else { tokens[..i].to_vec() };
+    // (two clauses, whatever links them)
+    if out.last().is_some_and(|t| t.kind == TokenKind::Word && !is(Some(t), &["and"])) {
+        out.extend(led("and", &tokens[i], &[]));
+    }
+    if out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+        out.extend(led("and", &tokens[i], &[]));
+    }
+    out.extend_from_slice(&tokens[i + 1..k]);
+    out.extend(led("should be", &tokens[i], &[&tokens[k..]]));
+    out
+}
+
+fn has_words(tokens: &[Token]) -> bool {
+    has_noun(tokens) || tokens.iter().any(|t| t.kind == TokenKind::Word)
+}
