@@ -3,7 +3,7 @@
 
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
-use super::words::{find, first_noun, has_noun, is, is_place, led, number, text};
+use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text};
 
 /// How one likes it.
 const LIKING: &[&str] = &[
@@ -34,7 +34,74 @@ fn known(t: Option<&Token>) -> bool {
 
 /// A sentence (without its stop) that says it plainly.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    absolute(liked(tokens, talk), talk)
+    absolute(liked(got(pulled_over(tokens, talk), talk), talk), talk)
+}
+
+/// "get the car over to the left edge", "have the bus 8 m closer", "get a scooter in between us and the bus".
+fn got(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if !is(tokens.first(), &["get", "have"]) {
+        return tokens;
+    }
+    let get = is(tokens.first(), &["get"]);
+    let me = usize::from(is(tokens.get(1), &["me", "us"]));
+    let Some((a, b)) = first_noun(&tokens[1 + me..]).filter(|x| x.0 < 4).map(|x| (x.0 + 1 + me, x.1 + 1 + me)) else {
+        return tokens;
+    };
+    let rest = &tokens[b..];
+    // (what is to be done to it is another turn of speech)
+    let does = rest.iter().any(|t| {
+        BECAME.contains(&text(t)) || text(t).ends_with("ing") || is(Some(t), &["be", "rid", "out", "off", "away"])
+    });
+    let to = usize::from(is(rest.first(), &["over", "across", "back", "up", "down"]));
+    let goal = is(rest.get(to), &["to", "onto", "into"])
+        && (is(rest.get(to + 1), &["the", "our", "my", "its", "left", "right"])
+            || rest.get(to + 1).is_some_and(|t| number(t).is_some()));
+    let far = rest.first().is_some_and(|t| number(t).is_some())
+        && super::words::unit_at(&rest[1..]).is_some()
+        && rest.iter().any(|t| is(Some(t), &["closer", "nearer", "further", "farther", "ahead", "behind", "back"]));
+    let fresh = a > 1 + me && (is(tokens.get(1 + me), &["a", "an", "another", "some"]) || number(&tokens[1 + me]).is_some());
+    if does {
+        return tokens;
+    }
+    if known(tokens.get(1 + me)) && (get && goal || far) && talk.fits(&tokens[1 + me..b]) > 0 {
+        let from = b + if goal { to } else { 0 };
+        let at = tokens[0].clone();
+        return led("move", &at, &[&tokens[1 + me..b], &tokens[from..]]);
+    }
+    if get && fresh && is_place(rest) && !goal {
+        tokens[0].text = "add".into();
+        tokens.drain(1..1 + me);
+    }
+    tokens
+}
+
+/// "let the bus pull over": it parks at its edge of the road.
+fn pulled_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let n = leads(
+            &tokens[i..],
+            &[
+                "pull over", "pulls over", "pulled over", "pulling over", "pull in", "pulls in", "pulled in",
+                "pull over to the side", "pulls over to the side", "pulled over to the side",
+                "pull over to the side of the road", "pulls over to the side of the road",
+                "pulled over to the side of the road",
+            ],
+        )?;
+        let ends = tokens.get(i + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]));
+        let (a, b) = first_noun(&tokens[..i])?;
+        (ends && a < 5).then_some((i, n, a, b))
+    });
+    let Some((i, n, a, b)) = found else {
+        return tokens;
+    };
+    let the = a - usize::from(a > 0);
+    let Some(one) = talk.only(&tokens[the..b]) else {
+        return tokens;
+    };
+    let side = if one.heading().x < -0.5 { "left" } else { "right" };
+    let park = led("be parked on the", &tokens[i], &[&led(side, &tokens[i], &[]), &led("roadside", &tokens[i], &[])]);
+    let should = led("should", &tokens[i], &[]);
+    [&tokens[the..b], &should, &park, &tokens[i + n..]].concat()
 }
 
 /// "I'd be happier with the bus 8 m nearer", "... without the car on the left".
@@ -58,11 +125,12 @@ fn liked(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let at = &tokens[i];
     // (what follows a comma is another clause)
     let end = rest.iter().position(|t| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_))).unwrap_or(rest.len());
-    let Some((_, b)) = first_noun(&rest[..end]).filter(|x| x.0 < 5) else {
+    let Some((a, b)) = first_noun(&rest[..end]).filter(|x| x.0 < 5) else {
         return tokens;
     };
     if text(at) == "without" {
-        return if known(rest.first()) && talk.fits(&rest[..end]) > 0 {
+        // ("the nearer one" is looked for later)
+        return if known(rest.first()) && (talk.fits(&rest[..end]) > 0 || talk.fits(&rest[a..b]) > 0) {
             led("remove", at, &[rest])
         } else {
             tokens

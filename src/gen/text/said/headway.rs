@@ -2,7 +2,7 @@
 //! much; 20 would be right", "a distance of 20 m to the bus is what I need", "not 25 m ahead but 17".
 
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::begins;
+use super::super::wording::{begins, rewritten};
 use super::Talk;
 use super::words::{first_noun, has_noun, is, leads, led, number, text, unit_at};
 
@@ -71,7 +71,7 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// A sentence (without its stop) that says plainly how far something should be.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = not_but(tokens);
+    let out = forward(towards(not_but(tokens)), talk);
     if let Some(new) = too_far(&out, talk)
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
@@ -79,6 +79,63 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return new;
     }
     out
+}
+
+/// "8 m back towards us", "back in our direction by 8 m": 8 m closer.
+fn towards(tokens: Vec<Token>) -> Vec<Token> {
+    const US: &str = "towards us|toward us|towards me|toward me|towards the ego vehicle|toward the ego vehicle|\
+        towards our car|towards my car|in our direction|in my direction|in the direction of us|to us|to me|our way|\
+        in the direction of the ego vehicle|towards ego|toward ego|in the ego direction|in the direction of our car";
+    rewritten(&tokens, |i, out| {
+        let by = usize::from(is(tokens.get(i), &["by"]));
+        // (metres first, or the way first)
+        let far = |k: usize| measure(&tokens[k..]).filter(|m| m.0 == 0).map(|m| k + m.1);
+        let way = |k: usize| {
+            let back = usize::from(is(tokens.get(k), &["back", "closer", "nearer", "over", "further", "up"]));
+            begins(tokens.get(k + back..)?, US).map(|n| k + back + n)
+        };
+        let closes = |k: usize| {
+            tokens.get(k).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]))
+        };
+        let (metres, end) = match far(i + by) {
+            Some(k) => (&tokens[i + by..k], way(k)?),
+            None => {
+                let k = way(i)?;
+                let by = k + usize::from(is(tokens.get(k), &["by", "for"]));
+                let k = far(by)?;
+                (&tokens[by..k], k)
+            }
+        };
+        // ("so that it faces 8 m towards us" is nothing that anybody says)
+        closes(end).then_some(())?;
+        out.extend_from_slice(metres);
+        out.extend(led("closer", &tokens[i], &[]));
+        Some(end)
+    })
+}
+
+/// "pull forward by ten metres", "moves up 5 m": so far the way it faces.
+fn forward(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const GOES: &str = "pull|pulls|pulled|move|moves|moved|drive|drives|drove|driven|roll|rolls|rolled|go|goes|went|gone|come|comes|came|walk|walks|walked|ride|rides|rode|ridden|advance|advances|advanced|edge|creep|inch|step|steps|stepped|run|runs";
+    const ON: &str = "forward by|forward for|forward|forwards by|forwards|ahead by|ahead for|ahead|up by|up|on by|on for|on|onward|onwards by|onwards|along for|along by|further on by|further on";
+    rewritten(&tokens, |i, out| {
+        begins(&tokens[i..], GOES)?;
+        let n = 1 + begins(&tokens[i + 1..], ON)?;
+        let n = n + usize::from(is(tokens.get(i + n), &["another", "about"]));
+        let (a, b) = measure(&tokens[i + n..]).filter(|m| m.0 == 0)?;
+        let end = i + n + b;
+        let closes = tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]));
+        let (x, y) = first_noun(out)?;
+        closes.then_some(())?;
+        let the = x - usize::from(x > 0);
+        let against = talk.only(&out[the..y]).is_some_and(|b| b.heading().x < -0.5);
+        out.push(tokens[i].clone());
+        out.extend_from_slice(&tokens[i + n + a..end]);
+        out.extend(led(if against { "further back" } else { "further ahead" }, &tokens[i], &[]));
+        Some(end)
+    })
 }
 
 /// "X should keep a distance of so many metres", of one thing of the scene.
@@ -178,7 +235,8 @@ fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         is_mark(t) || matches!(text(t), "is" | "would" | "should" | "must" | "will" | "seems" | "are" | "please" | "was" | "rather" | "instead" | "not" | "needs")
     });
     let (np, late) = np.split_at(stop.unwrap_or(np.len()));
-    if has_noun(late) || late.iter().any(|t| number(t).is_some()) {
+    let told = is(late.first(), &["is"]) && is(late.get(1), &["what"]);
+    if has_noun(late) && !told || late.iter().any(|t| number(t).is_some()) {
         return None;
     }
     keeps(np, &tokens[a], &tokens[a + 1..b], talk)

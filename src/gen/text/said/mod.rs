@@ -30,6 +30,7 @@ mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
+mod mistaken;
 mod newcomers;
 mod nominal;
 mod notes;
@@ -103,6 +104,7 @@ use frame::unwrapped;
 pub use headway::joined as one_distance;
 pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
+pub use mistaken::joined as one_mistake;
 pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
@@ -228,6 +230,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
+    let out = mistaken::plain(of_several::from_there(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);

@@ -41,6 +41,15 @@ fn fewer(tokens: Vec<Token>) -> Vec<Token> {
         &tokens,
         "there should be|there must be|there shall be|i want|we need|i need|make it|let there be",
     );
+    // "one cone fewer will do"
+    const DOES: &str = "will do|would do|is enough|are enough|is fine|would be fine|is plenty|would be enough|suffices|would suffice|\
+        would be better|would be good|would be nice|would be right|is better|will be enough|should do|should be enough";
+    let late = (2..tokens.len().min(6)).find(|i| {
+        is(tokens.get(i - 1), &["fewer", "less"]) && begins(&tokens[*i..], DOES).is_some_and(|n| i + n == tokens.len())
+    });
+    if let Some(late) = late.filter(|_| n.is_none() && number(&tokens[0]).is_some()) {
+        return tokens[..late].to_vec();
+    }
     match n {
         Some(n)
             if is(tokens.last(), &["fewer", "less"])
