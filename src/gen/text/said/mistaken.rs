@@ -283,6 +283,13 @@ fn own_swapped(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         &after[..i]
     };
     let new = trimmed(new);
+    // (a driver is in what he gives away)
+    let np = match first_noun(after).filter(|x| swaps && x.0 == 1) {
+        Some(own) if is(rest.get(b - 1), &["driver", "motorist", "man", "woman", "person"]) => {
+            [&rest[..1], &after[1..own.1], &np[b.min(np.len())..]].concat()
+        }
+        _ => np,
+    };
     let (_, d) = kind(new).filter(|x| x.1 == new.len())?;
     (helpers && is(new.first(), &["a", "an"]) && talk.fits(&np) > 0)
         .then(|| led("replace", &tokens[0], &[&np, &led("with", &tokens[0], &[&new[..d]])]))

@@ -25,6 +25,7 @@ mod gifts;
 mod happier;
 mod headway;
 mod idioms;
+mod joined_by;
 mod kept;
 mod left;
 mod likewise;
@@ -71,6 +72,7 @@ mod testimony;
 #[cfg(test)]
 mod tests;
 mod tidy;
+mod told_again;
 mod topics;
 mod totals;
 mod turns;
@@ -102,6 +104,7 @@ use forms::{
 };
 use frame::unwrapped;
 pub use headway::joined as one_distance;
+pub use joined_by::joined as one_group;
 pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 pub use mistaken::joined as one_mistake;
@@ -231,6 +234,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = mistaken::plain(of_several::from_there(out, talk), talk);
+    let out = joined_by::plain(told_again::plain(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);

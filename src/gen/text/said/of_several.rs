@@ -211,7 +211,7 @@ pub(super) fn from_there(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
             _ => continue,
         };
         // (who goes from there to elsewhere is told apart by where he goes)
-        let goes = tokens[i + 2 + n..].iter().take(3).any(|t| is(Some(t), &["to", "onto", "into"]));
+        let goes = is(tokens.get(i + 2 + n), &["to", "onto", "into", "over", "across"]);
         let Some((a, b)) = first_noun(&tokens[..i]).filter(|x| x.1 == i) else {
             continue;
         };
