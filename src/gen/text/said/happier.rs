@@ -34,6 +34,12 @@ fn known(t: Option<&Token>) -> bool {
 
 /// A sentence (without its stop) that says it plainly.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let mut tokens = tokens;
+    // "couldn't the truck be a digger?"
+    if is(tokens.first(), &["couldnt", "cant", "shouldnt", "wouldnt", "mightnt"]) && known(tokens.get(1)) {
+        tokens[0].text = "could".into();
+    }
+    let tokens = nothing_there(same_in(tokens));
     absolute(liked(got(pulled_over(tokens, talk), talk), talk), talk)
 }
 
@@ -59,7 +65,7 @@ fn got(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let far = rest.first().is_some_and(|t| number(t).is_some())
         && super::words::unit_at(&rest[1..]).is_some()
         && rest.iter().any(|t| is(Some(t), &["closer", "nearer", "further", "farther", "ahead", "behind", "back"]));
-    let fresh = a > 1 + me && (is(tokens.get(1 + me), &["a", "an", "another", "some"]) || number(&tokens[1 + me]).is_some());
+    let fresh = a > 1 + me && !is(tokens.get(2 + me), &["of"]) && !is(rest.first(), &["to"]) && (is(tokens.get(1 + me), &["a", "an", "another", "some"]) || number(&tokens[1 + me]).is_some());
     if does {
         return tokens;
     }
@@ -71,6 +77,63 @@ fn got(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if get && fresh && is_place(rest) && !goal {
         tokens[0].text = "add".into();
         tokens.drain(1..1 + me);
+    }
+    tokens
+}
+
+/// "I'd like the same thing in the rain": make it rain.
+fn same_in(tokens: Vec<Token>) -> Vec<Token> {
+    const SAME: &[&str] = &[
+        "the same thing", "the same scene", "the same situation", "the same picture", "the same again", "the same", "it all",
+        "all this", "all of this", "this scene", "the whole thing", "the whole scene", "this situation", "all that",
+        "everything", "the scene", "the same street", "exactly the same", "the same setting", "the same traffic",
+    ];
+    let found = (0..tokens.len().min(8)).find_map(|i| leads(&tokens[i..], SAME).map(|n| (i, n)));
+    let Some((i, n)) = found.filter(|_| !has_noun(&tokens)) else {
+        return tokens;
+    };
+    let lead = &tokens[..i];
+    let wish = lead.iter().all(|t| AROUND.contains(&text(t)) || LIKING.contains(&text(t)) || is(Some(t), &["draw", "do", "try", "repeat"]));
+    let again = usize::from(is(tokens.get(i + n), &["again", "once"])) + usize::from(is(tokens.get(i + n), &["once"]) && is(tokens.get(i + n + 1), &["more"]));
+    let k = i + n + again;
+    let sky = tokens.get(k..).unwrap_or(&[]).iter().any(|t| {
+        matches!(super::look_up(text(t)), Some(super::Sense::Weather(_) | super::Sense::Time(_)))
+    });
+    let plain = is(tokens.get(k), &["in", "at", "by", "during", "with", "under", "on"])
+        && !tokens[k..].iter().any(|t| t.kind != TokenKind::Word || is(Some(t), &["not", "no", "but", "instead"]));
+    if wish && sky && plain && !lead.is_empty() {
+        return led("make it", &tokens[0], &[&tokens[k + 1..]]);
+    }
+    tokens
+}
+
+/// "behind us there is nothing any more", "nobody should be following us": what is there goes.
+fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
+    const US: &[&str] = &["behind us", "behind me", "ahead of us", "ahead of me", "in front of us", "in front of me"];
+    const NOTHING: &[&str] = &["nothing", "nobody", "no one", "no vehicle", "no traffic", "no other traffic", "nothing else"];
+    const BE: &[&str] = &[
+        "there is", "there should be", "there must be", "there shall be", "should be", "is", "must be", "there will be", "there may be",
+        "may be", "drives", "stands", "there ought to be",
+    ];
+    const LATE: &[&str] = &["any more", "anymore", "any longer", "now", "at all", "please", "left"];
+    let closes = |rest: &[Token]| rest.is_empty() || leads(rest, LATE) == Some(rest.len());
+    let remove = |place: &[Token], at: &Token| led("remove everything", at, &[place]);
+    if let Some(n) = leads(&tokens, US)
+        && let Some(m) = leads(&tokens[n..], BE)
+        && let Some(k) = leads(&tokens[n + m..], NOTHING)
+        && closes(&tokens[n + m + k..])
+    {
+        return remove(&tokens[..n], &tokens[0]);
+    }
+    if let Some(k) = leads(&tokens, NOTHING)
+        && let Some(m) = leads(&tokens[k..], BE).or_else(|| leads(&tokens[k..], &["follows us", "follows me"]).map(|_| 0))
+    {
+        let rest = &tokens[k + m..];
+        if let Some(n) = leads(rest, &["following us", "following me", "follows us", "follows me", "tailing us", "on our tail", "on our heels"])
+            && closes(&rest[n..])
+        {
+            return led("remove everything behind us", &tokens[0], &[]);
+        }
     }
     tokens
 }
@@ -87,7 +150,7 @@ fn pulled_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                 "pulled over to the side of the road",
             ],
         )?;
-        let ends = tokens.get(i + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]));
+        let ends = tokens.get(i + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["please", "now"]));
         let (a, b) = first_noun(&tokens[..i])?;
         (ends && a < 5).then_some((i, n, a, b))
     });
@@ -176,7 +239,11 @@ fn absolute(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         known(tokens.get(i + 1)).then_some(())?;
         let rest = &tokens[i + 1..];
         let (_, b) = first_noun(rest).filter(|x| x.0 < 4)?;
-        let k = (b..rest.len().min(b + 7)).find(|k| BECAME.contains(&text(&rest[*k])))?;
+        // (who is gone is read elsewhere)
+        let k = (b..rest.len().min(b + 7)).find(|k| {
+            BECAME.contains(&text(&rest[*k]))
+                && (wish || !is(rest.get(*k), &["gone", "missing", "removed", "deleted", "erased"]))
+        })?;
         let whole = rest[b..k].iter().all(|t| t.kind == TokenKind::Word);
         (whole && (k == b || is_place(&rest[b..])) && talk.fits(&rest[..k]) > 0).then_some((i, i + 1 + k, wish))
     });

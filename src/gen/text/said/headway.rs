@@ -22,6 +22,15 @@ const ANSWER: &[&str] = &[
 const GAP: &str = "distance|gap|headway|clearance|spacing|separation|margin|interval|safety distance|following distance|safe distance|minimum distance";
 const FROM: &str = "to|from|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
 
+/// Of a thing they say how far it is; of a number, whether it is right.
+const NEAR_FAR: &[&str] = &["far", "close", "near", "closely", "tight", "tightly", "distant", "nearby"];
+const FAIRLY: &[&str] = &["too", "a bit", "a little", "a little bit", "rather", "quite", "pretty", "somewhat", "very", "a tad", "way"];
+
+/// "too close", "a bit short": how many tokens stand before the adjective.
+fn too_at(tokens: &[Token]) -> Option<usize> {
+    leads(tokens, FAIRLY).filter(|n| is(tokens.get(*n), TOO))
+}
+
 /// The first number with a unit of length from here: where it stands, and one past its unit.
 fn measure(tokens: &[Token]) -> Option<(usize, usize)> {
     (0..tokens.len()).find_map(|i| {
@@ -58,7 +67,10 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
         let end = (i + 1..tokens.len())
             .find(|k| tokens[*k].kind == TokenKind::Stop)
             .unwrap_or(tokens.len());
-        let complains = (from..i).any(|k| text(&tokens[k]) == "too" && is(tokens.get(k + 1), TOO));
+        let far = measure(&tokens[from..i]).is_some();
+        let complains = (from..i).any(|k| {
+            too_at(&tokens[k..]).is_some_and(|n| far || NEAR_FAR.contains(&text(&tokens[k + n])))
+        });
         if complains && !tokens[from..i].iter().any(|t| t.kind == TokenKind::Comma) && answer(&tokens[i + 1..end]).is_some()
         {
             tokens[i].kind = TokenKind::Comma;
@@ -71,7 +83,7 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// A sentence (without its stop) that says plainly how far something should be.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = forward(towards(not_but(tokens)), talk);
+    let out = of_us(forward(towards(not_but(tokens)), talk));
     if let Some(new) = too_far(&out, talk)
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
@@ -138,6 +150,33 @@ fn forward(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     })
 }
 
+/// "put it 30 m ahead", "truck: 30 m ahead", "I'd expect the truck 30 m ahead": ahead of us, and no step.
+fn of_us(tokens: Vec<Token>) -> Vec<Token> {
+    const PUTS: &[&str] = &["put", "place", "set", "want", "expect", "expected", "need", "like", "have", "position", ":", "prefer"];
+    let steps = is(tokens.first(), &["move", "shift", "push", "pull", "bring", "drive", "send", "take", "get", "make"])
+        || tokens.iter().any(|t| is(Some(t), &["further", "farther", "more", "another", "moves", "by"]));
+    let puts = tokens.iter().position(|t| PUTS.contains(&text(t)));
+    let Some(puts) = puts.filter(|_| !steps) else {
+        return tokens;
+    };
+    rewritten(&tokens, |i, out| {
+        let (a, b) = measure(&tokens[i..]).filter(|m| m.0 == 0 && i > puts)?;
+        let way = match text(tokens.get(i + b)?) {
+            "ahead" => "ahead of us",
+            "behind" => "behind us",
+            _ => return None,
+        };
+        let closes = tokens
+            .get(i + b + 1)
+            .is_none_or(|t| is_mark(t) || is(Some(t), &["and", "please", "now", "instead"]));
+        closes.then(|| {
+            out.extend_from_slice(&tokens[i + a..i + b]);
+            out.extend(led(way, &tokens[i], &[]));
+            i + b + 1
+        })
+    })
+}
+
 /// "X should keep a distance of so many metres", of one thing of the scene.
 fn keeps(np: &[Token], metres: &Token, unit: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let np = super::words::trimmed(np);
@@ -159,10 +198,11 @@ fn keeps(np: &[Token], metres: &Token, unit: &[Token], talk: &Talk<'_>) -> Optio
 
 /// "the truck is too close, 22 m would do", "25 m to the bus is too much, make it 20".
 fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let too = (1..tokens.len()).find(|i| text(&tokens[*i]) == "too" && is(tokens.get(i + 1), TOO))?;
-    let adj = text(&tokens[too + 1]);
+    let (too, n) = (1..tokens.len()).find_map(|i| too_at(&tokens[i..]).map(|n| (i, n)))?;
+    let adj = text(&tokens[too + n]);
+    let late = too + n + 1;
     // what the answer is set off by
-    let mark = (too + 2..tokens.len()).find(|k| {
+    let mark = (late..tokens.len()).find(|k| {
         is_mark(&tokens[*k]) || is(tokens.get(*k), &["and", "so"]) && number(tokens.get(k + 1).unwrap_or(&tokens[*k])).is_some()
     })?;
     let after = &tokens[mark + 1..];
@@ -181,7 +221,7 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             return keeps(&head[end + n_from..], &after[n], unit, talk);
         }
         // "12 m is too close for the truck"
-        let of = &tokens[too + 2..mark];
+        let of = &tokens[late..mark];
         let rest = begins(of, FROM)?;
         return keeps(&of[rest..], &after[n], unit, talk);
     }
@@ -193,7 +233,7 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         return keeps(&head[from..], &after[n], unit, talk);
     }
     // (too many of them, too long: no distance)
-    if !matches!(adj, "far" | "close" | "near" | "closely" | "tight" | "tightly" | "distant" | "nearby") {
+    if !NEAR_FAR.contains(&adj) {
         return None;
     }
     // (a number without a unit after a colon may be anything)
@@ -244,7 +284,15 @@ fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 
 /// "only 17 m to the bus, not 25", "eight metres less to the bus".
 fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let lead = leads(tokens, &["only", "just", "no more than", "make it", "please", "at least", "exactly", "no less than"]).unwrap_or(0);
+    let lead = leads(
+        tokens,
+        &[
+            "only", "just", "no more than", "make it", "please", "at least", "exactly", "no less than", "let there be",
+            "there should be", "there must be", "keep", "leave", "i want", "i need", "we need", "there should only be",
+            "there should be only", "there should be just", "there ought to be", "make that", "i would like", "id like",
+        ],
+    )
+    .unwrap_or(0);
     let (a, b) = measure(&tokens[lead..]).filter(|m| m.0 == 0)?;
     let (a, b) = (a + lead, b + lead);
     let step = is(tokens.get(b), &["less", "more", "fewer"]);
@@ -280,6 +328,18 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 
 /// "must not be 25 m ahead but only 17": must be 17 m ahead.
 fn not_but(tokens: Vec<Token>) -> Vec<Token> {
+    // "30 m ahead, not 20"
+    let late = (3..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["not", "instead", "rather"])
+            && leads(&tokens[*i..], &["not", "and not", "instead of", "rather than"]).is_some_and(|n| {
+                tokens.get(i + n).is_some_and(|t| number(t).is_some())
+                    && i + n + 1 + unit_at(&tokens[i + n + 1..]).unwrap_or(0) == tokens.len()
+            })
+            && measure(&tokens[..*i]).is_some_and(|m| super::words::is_place(&tokens[m.1..*i]))
+    });
+    if let Some(late) = late {
+        return super::words::trimmed(&tokens[..late]).to_vec();
+    }
     let found = (0..tokens.len()).find_map(|i| {
         let not = is(tokens.get(i), &["not", "mustnt", "shouldnt", "isnt"]).then_some(i)?;
         let (a, b) = measure(&tokens[not + 1..]).filter(|m| m.0 < 3)?;

@@ -33,7 +33,7 @@ const WHICH: &[&str] = &["that", "which", "who"];
 
 /// A sentence (without its stop) as the exchange that it asks for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let tokens = in_exchange(tokens);
+    let tokens = so_many_instead(what_bothers(not_this_but(in_exchange(tokens))));
     let rest = &tokens[excused(&tokens)..];
     denied_first(rest, talk)
         .or_else(|| denied_last(rest, talk))
@@ -41,6 +41,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .or_else(|| belongs_there(rest, talk))
         .or_else(|| own_swapped(rest, talk))
         .or_else(|| where_it_is(rest, talk))
+        .or_else(|| made_out_of(rest, talk))
         .unwrap_or_else(|| the_one_that(tokens, talk))
 }
 
@@ -69,7 +70,7 @@ fn excused(tokens: &[Token]) -> usize {
     match tokens.get(n) {
         Some(t) if n > 0 && t.kind == TokenKind::Comma => n + 1,
         _ if n > 0 && is(tokens.first(), &["sorry", "oops", "whoops"]) => n,
-        _ => 0,
+        _ => leads(tokens, &["actually", "in fact", "in reality", "really", "rather", "of course", "clearly"]).unwrap_or(0),
     }
 }
 
@@ -136,7 +137,8 @@ fn denied_first(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 /// Where something is, of "follows us", "drives behind us", "behind us"; nothing of nothing.
 fn stood(words: &[Token], verb: bool) -> Option<&[Token]> {
     let words = trimmed(words);
-    if words.is_empty() {
+    if words.is_empty() || leads(words, THERE) == Some(words.len()) {
+        let words = &words[..0];
         return Some(words);
     }
     let k = if verb {
@@ -295,14 +297,92 @@ fn own_swapped(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .then(|| led("replace", &tokens[0], &[&np, &led("with", &tokens[0], &[&new[..d]])]))
 }
 
+/// "make barriers out of the cones".
+fn made_out_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    is(tokens.first(), &["make", "create", "form", "build"]).then_some(())?;
+    let (_, b) = first_noun(&tokens[1..]).filter(|x| x.0 < 3)?;
+    let new = &tokens[1..1 + b];
+    let n = leads(&tokens[1 + b..], &["out of", "from", "of"])?;
+    let old = trimmed(&tokens[1 + b + n..]);
+    is(old.first(), &["the", "that", "all", "both", "these", "those"]).then_some(())?;
+    let (_, e) = first_noun(old).filter(|x| x.0 < 4)?;
+    ((e == old.len() || is_place(&old[e..])) && !has_noun(&old[e..]) && talk.fits(old) > 0)
+        .then(|| led("replace", &tokens[0], &[old, &led("with", &tokens[0], &[new])]))
+}
+
+/// "not come towards us but drive 15 m behind us": what it should do.
+fn not_this_but(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((a, b)) = first_noun(&tokens).filter(|x| x.0 > 0 && x.0 < 4 && is(tokens.first(), &["the", "both", "all", "that", "my"])) else {
+        return tokens;
+    };
+    let not = (b..tokens.len().min(b + 6)).find(|k| is(tokens.get(*k), &["not", "shouldnt", "mustnt", "doesnt", "dont"]));
+    let but = not.and_then(|not| (not + 2..tokens.len()).find(|k| is(tokens.get(*k), &["but"])));
+    let (Some(not), Some(but)) = (not, but) else {
+        return tokens;
+    };
+    let k = but + 1 + leads(&tokens[but + 1..], &["rather", "instead", "should", "should be", "only", "just"]).unwrap_or(0);
+    let rest = &tokens[k..];
+    let does = rest.first().is_some_and(|t| super::words::is_finite(text(t), true)) && !is(rest.first(), &["is", "are", "has"]);
+    let place = (1..rest.len().min(4)).any(|i| is_place(&rest[i..]));
+    let denied = &tokens[not + 1..but];
+    let did = denied.first().is_some_and(|t| super::words::is_finite(text(t), true));
+    if !(does && place && did) || has_noun(denied) || denied.iter().any(|t| t.kind == TokenKind::Stop) || a > 3 {
+        return tokens;
+    }
+    let helper = led("should", &tokens[not], &[]);
+    [&tokens[..b], &helper, rest].concat()
+}
+
+/// "what bothers me is the motorcycle": the motorcycle.
+fn what_bothers(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["what", "the only thing that", "the thing that", "one thing that", "all that"]) else {
+        return tokens;
+    };
+    let is_at = (n + 1..tokens.len().min(n + 7)).find(|k| is(tokens.get(*k), &["is", "are"]));
+    let bothers = tokens[n..is_at.unwrap_or(n)].iter().any(|t| {
+        is(Some(t), &["bothers", "disturbs", "annoys", "irritates", "dislike", "hate", "worries", "spoils", "bugs", "troubles", "wrong", "bothering", "disturbing"])
+            || is(Some(t), &["like"]) && tokens[n..is_at.unwrap_or(n)].iter().any(|t| is(Some(t), &["dont", "not"]))
+    });
+    match is_at {
+        Some(k) if bothers && !has_noun(&tokens[n..k]) && is(tokens.get(k + 1), &["the", "that", "those", "these", "both", "all"]) => {
+            tokens[k + 1..].to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+/// "three instead of two pedestrians on the left sidewalk": there should be three there.
+fn so_many_instead(tokens: Vec<Token>) -> Vec<Token> {
+    let there = leads(&tokens, &["there should be", "there are", "there must be", "i want", "i need", "we need", "make it", "id like"]).unwrap_or(0);
+    let rest = &tokens[there..];
+    let n = 1 + leads(rest.get(1..).unwrap_or(&[]), &["instead of", "rather than", "not", "and not", "in place of"]).unwrap_or(0);
+    let count = |t: Option<&Token>| t.is_some_and(|t| number(t).is_some() && !is(Some(t), &["a", "an"]));
+    let link = usize::from(n == 1 && rest.get(1).is_some_and(|t| t.kind == TokenKind::Comma) && is(rest.get(2), &["not"])) * 2;
+    let n = n + link;
+    if n == 1 || !count(rest.first()) || !count(rest.get(n)) {
+        return tokens;
+    }
+    match first_noun(&rest[n + 1..]) {
+        Some((a, b)) if a < 3 => {
+            let late = &rest[n + 1 + b..];
+            if late.is_empty() || is_place(late) {
+                return led("there should be", &tokens[0], &[&rest[..1], &rest[n + 1..]]);
+            }
+            tokens
+        }
+        _ => tokens,
+    }
+}
+
 /// "use a bus where the car is".
 fn where_it_is(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["use", "take", "show", "draw", "have", "i want", "i need", "id like", "there should be", "we need", "put", "place"])?;
+    let n = leads(tokens, &["let", "use", "take", "show", "draw", "have", "i want", "i need", "id like", "there should be", "we need", "put", "place"])?;
     let new = &tokens[n..];
     let (_, b) = kind(new)?;
     is(new.first(), &["a", "an"]).then_some(())?;
-    is(new.get(b), &["where"]).then_some(())?;
-    let old = &new[b + 1..];
+    let stand = usize::from(is(new.get(b), &["stand", "be", "drive", "wait", "ride", "appear", "park"]));
+    is(new.get(b + stand), &["where"]).then_some(())?;
+    let old = &new[b + stand + 1..];
     is(old.first(), &["the", "that"]).then_some(())?;
     let (_, e) = first_noun(old).filter(|x| x.0 < 4)?;
     let verb = (e..old.len()).find(|k| is(old.get(*k), &["is", "stands", "drives", "was", "stood"]))?;

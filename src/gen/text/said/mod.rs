@@ -233,7 +233,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
-    let out = mistaken::plain(of_several::from_there(out, talk), talk);
+    let out = mistaken::plain(of_several::from_there(of_several::both_of_them(out, talk), talk), talk);
     let out = joined_by::plain(told_again::plain(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);

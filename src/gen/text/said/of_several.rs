@@ -100,6 +100,26 @@ pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     })
 }
 
+/// "let both of them walk there" where nothing was named: the two that there are of one kind.
+pub(super) fn both_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["both of them", "the two of them", "the pair of them"]) else {
+        return tokens;
+    };
+    let mut counts: BTreeMap<Class, i64> = BTreeMap::new();
+    for b in talk.boxes.values() {
+        *counts.entry(b.class).or_default() += 1;
+    }
+    let mut two = counts.iter().filter(|(_, n)| **n == 2).map(|(c, _)| *c);
+    match (two.next(), two.next()) {
+        (Some(class), None) if talk.last.is_none() && first_noun(&tokens[..i]).is_none() => {
+            let both = led("both", &tokens[i], &[]);
+            let noun = led(&super::super::lexicon::plural(&class.label()), &tokens[i], &[]);
+            [&tokens[..i], &both, &noun, &tokens[i + n..]].concat()
+        }
+        _ => tokens,
+    }
+}
+
 /// "the front truck", "rear lorry": of several, the one ahead of us or behind us, else the first or last of them.
 pub(super) fn front_and_rear(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
@@ -166,9 +186,7 @@ fn counted(tokens: &[Token], at: usize) -> usize {
 
 /// A word that picks one only before "one": "the left one of the two", not "to the left of the two".
 fn side_at(tokens: &[Token]) -> Option<usize> {
-    const SIDES: &[&str] = &[
-        "left hand", "right hand", "left", "right", "front", "rear", "back", "near", "far", "upper", "lower",
-    ];
+    const SIDES: &[&str] = &["left hand", "right hand", "left", "right"];
     leads(tokens, SIDES).filter(|n| is(tokens.get(*n), &["one"]))
 }
 
@@ -314,8 +332,13 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     let rest = trimmed(&tokens[end..]);
     // "only the nearest one should remain"
     let only = leads(rest, &["only the", "just the", "keep only the", "leave only the"]);
+    // ("only the blue car stays": its noun is there already)
+    let painted = |r: &[Token]| {
+        let colour = r.first().is_some_and(super::super::coloured_ones::is_colour);
+        (colour && first_noun(&r[1..]).is_some_and(|x| x.0 == 0)).then_some(1)
+    };
     if let Some(n) = only
-        && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)))
+        && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)).or_else(|| painted(r)))
         && (rest[n + p..]
             .iter()
             .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]))
