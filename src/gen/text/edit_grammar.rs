@@ -10,7 +10,7 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, as_orders, chosen, except, one_distance, one_group, one_mistake, pointed_back, room_of, said, told_once, unasked,
+    Left, Piece, Room, Talk, apart, as_orders, chosen, except, one_distance, one_group, one_mistake, one_place, pointed_back, room_of, said, told_once, unasked,
     without_asides, worded,
 };
 use super::tag::tag;
@@ -260,7 +260,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: unasked(apart(unasked(as_orders(one_group(one_mistake(one_distance(labelled_apart(
+            tokens: unasked(apart(unasked(as_orders(one_group(one_place(one_mistake(one_distance(labelled_apart(
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
                         super::common::plain(&tokens(text)),
@@ -268,7 +268,7 @@ impl<'t> Reader<'t> {
                     ))),
                     true,
                 ),
-            )))))))),
+            ))))))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

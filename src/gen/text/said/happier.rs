@@ -39,6 +39,13 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if is(tokens.first(), &["couldnt", "cant", "shouldnt", "wouldnt", "mightnt"]) && known(tokens.get(1)) {
         tokens[0].text = "could".into();
     }
+    let tokens = super::super::wording::replaced(
+        &tokens,
+        "the night is over|night is over|the night has passed|the night has ended|it should not be night|it shouldnt be night|\
+         it must not be night|it is no longer night|its no longer night|it is not night any more|it isnt night any more|\
+         it is not night|it isnt night|its not night|the darkness is over|it should not be dark|it shouldnt be dark",
+        "make it day",
+    );
     let tokens = nothing_there(same_in(tokens));
     absolute(liked(got(pulled_over(tokens, talk), talk), talk), talk)
 }
@@ -89,7 +96,7 @@ fn same_in(tokens: Vec<Token>) -> Vec<Token> {
         "everything", "the scene", "the same street", "exactly the same", "the same setting", "the same traffic",
     ];
     let found = (0..tokens.len().min(8)).find_map(|i| leads(&tokens[i..], SAME).map(|n| (i, n)));
-    let Some((i, n)) = found.filter(|_| !has_noun(&tokens)) else {
+    let Some((i, n)) = found.filter(|x| !has_noun(&tokens[..x.0]) && !has_noun(&tokens[x.0 + x.1..])) else {
         return tokens;
     };
     let lead = &tokens[..i];
@@ -132,7 +139,7 @@ fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
         if let Some(n) = leads(rest, &["following us", "following me", "follows us", "follows me", "tailing us", "on our tail", "on our heels"])
             && closes(&rest[n..])
         {
-            return led("remove everything behind us", &tokens[0], &[]);
+            return led("remove everything in our lane behind us", &tokens[0], &[]);
         }
     }
     tokens

@@ -4,7 +4,7 @@
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, rewritten};
 use super::Talk;
-use super::words::{first_noun, has_noun, is, leads, led, number, text, unit_at};
+use super::words::{find, first_noun, has_noun, is, leads, led, number, text, unit_at};
 
 const TOO: &[&str] = &[
     "far", "close", "near", "closely", "much", "little", "few", "many", "short", "long", "small", "big", "large",
@@ -83,7 +83,13 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// A sentence (without its stop) that says plainly how far something should be.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = of_us(forward(towards(not_but(tokens)), talk));
+    let out = super::super::wording::replaced(
+        &tokens,
+        "i would have expected|i expected|we expected|we would have expected|id have expected|id expect|i would expect|i had expected",
+        "i want",
+    );
+    let out = gained(out);
+    let out = of_us(forward(towards(not_but(out)), talk));
     if let Some(new) = too_far(&out, talk)
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
@@ -124,6 +130,35 @@ fn towards(tokens: Vec<Token>) -> Vec<Token> {
         out.extend(led("closer", &tokens[i], &[]));
         Some(end)
     })
+}
+
+/// "let the taxi gain ten metres", "give the taxi a lead of 25 m": so far on, so far ahead.
+fn gained(tokens: Vec<Token>) -> Vec<Token> {
+    const GAINS: &[&str] = &["gain", "gains", "gained", "gain another", "gains another", "has gained", "make up", "pull away by"];
+    let out = rewritten(&tokens, |i, out| {
+        let n = leads(&tokens[i..], GAINS).filter(|_| has_noun(out))?;
+        let (a, b) = measure(&tokens[i + n..]).filter(|m| m.0 == 0)?;
+        let end = i + n + b;
+        let closes = tokens.get(end).is_none_or(|t| is_mark(t) || is(Some(t), &["and", "on"]));
+        closes.then(|| {
+            out.extend(led("move", &tokens[i], &[&tokens[i + n + a..end]]));
+            out.extend(led("further ahead", &tokens[i], &[]));
+            let us = leads(&tokens[end..], &["on us", "on me"]).unwrap_or(0);
+            end + us
+        })
+    });
+    let lead = find(&out, &["a lead of", "a head start of", "the lead of", "a headway of"]);
+    let Some((i, n)) = lead.filter(|_| is(out.first(), &["give", "the", "that", "let", "allow", "grant"])) else {
+        return out;
+    };
+    let from = usize::from(is(out.first(), &["give", "let", "allow", "grant"]));
+    let Some((_, b)) = first_noun(&out[from..i]).filter(|x| x.0 < 4) else {
+        return out;
+    };
+    match measure(&out[i + n..]).filter(|m| m.0 == 0 && i + n + m.1 == out.len()) {
+        Some(_) => [&out[from..from + b], &led("should be", &out[i], &[&out[i + n..]]), &led("ahead of us", &out[i], &[])].concat(),
+        None => out,
+    }
 }
 
 /// "pull forward by ten metres", "moves up 5 m": so far the way it faces.
@@ -222,7 +257,8 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         }
         // "12 m is too close for the truck"
         let of = &tokens[late..mark];
-        let rest = begins(of, FROM)?;
+        let gap = leads(of, &["a distance", "a gap", "of a distance", "of a gap"]).unwrap_or(0);
+        let rest = gap + begins(&of[gap..], FROM)?;
         return keeps(&of[rest..], &after[n], unit, talk);
     }
     // "the distance to the bus is too small"

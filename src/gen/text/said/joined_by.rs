@@ -17,6 +17,9 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if let Some((k, new)) = links.filter_map(|k| Some((k, comes_to(&out[k..], talk)?))).last() {
         return [&out[..k], &new].concat();
     }
+    if let Some(new) = some_stay(&out, talk) {
+        return new;
+    }
     if let Some(new) = comes_to(&out, talk)
         .or_else(|| group_of(&out))
         .or_else(|| with_the_others(&out, talk))
@@ -169,6 +172,28 @@ fn comes_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     };
     let (_, _, k) = comers(new)?;
     add(&new[..k], whom, &new[k..], talk)
+}
+
+/// "two workers stay on the right sidewalk, one is on the left one", of three that are there: one of them goes.
+fn some_stay(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let many = number(tokens.first()?)?;
+    let (a, b) = first_noun(tokens).filter(|x| x.0 > 0 && x.0 < 5)?;
+    leads(&tokens[b..], &["stay", "stays", "remain", "remains", "should stay", "keep standing", "are still"])?;
+    let link = (b + 1..tokens.len()).find(|k| {
+        (mark(&tokens[*k]) || is(tokens.get(*k), &["and", "while", "but"])) && !is(tokens.get(k + 1), &["and", "while", "but"])
+    })?;
+    if has_noun(&tokens[b..link]) {
+        return None;
+    }
+    let rest = &tokens[link + 1..];
+    let others = number(rest.first()?)?;
+    let own = first_noun(rest).filter(|x| x.0 == 1).map_or(1, |x| x.1);
+    let verb = is(rest.get(own), &["is", "are", "goes", "go", "moves", "move", "stands", "stand", "walks", "walk", "crosses", "should"]);
+    let place = (own + 1..rest.len().min(own + 5)).any(|k| is_place(&rest[k..]));
+    let noun = &tokens[a..b];
+    (verb && place && many + others == talk.fits(noun) as i64 && many > 0).then_some(())?;
+    let of = led("of the", &rest[0], &[noun]);
+    Some([&rest[..1], &of, &rest[own..]].concat())
 }
 
 /// Add those who come where they are said to be, or where the others are.

@@ -169,7 +169,9 @@ fn denied_last(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let which = is(between.first(), WHICH);
     let place = stood(&between[usize::from(which)..], which)?;
     let late = trimmed(&old[e..]);
-    let place = if late.is_empty() { place } else { stood(late, false)? };
+    // ("a car, not a bus, drives in the left lane")
+    let verb = super::words::is_finite(late.first().map_or("", text), true) || is(late.first(), &["is", "should"]);
+    let place = if late.is_empty() { place } else { stood(late, verb)? };
     // (a full sentence about a new place is more than a slip)
     (meant > 0 || place.is_empty() || which).then_some(())?;
     exchange(&old[..e], place, &new[..b], talk)

@@ -118,6 +118,7 @@ pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
+pub use told_again::joined as one_place;
 pub use vacated::{Room, room_of};
 pub use which::spared;
 pub use worded::worded;

@@ -111,6 +111,13 @@ fn ordered(body: &[Token]) -> Option<Vec<Token>> {
         }
         return Some(out);
     }
+    // "lane change of the truck to the right"
+    if let Some(n) = begins(rest, "lane change of|lane change by|change of lane of|change of lanes of|a lane change of|a lane change by")
+        && let Some((_, b)) = first_noun(&rest[n..]).filter(|x| x.0 < 4)
+        && begins(&rest[n + b..], "to the right|to the left|to its right|to its left") == Some(rest.len() - n - b)
+    {
+        return Some(led("move", &rest[0], &[&rest[n..n + b], &led("one lane", &rest[0], &[&rest[n + b..]])]));
+    }
     // "bus removal"
     let (last, np) = rest.split_last()?;
     let (verb, _) = done_at(std::slice::from_ref(last))?;

@@ -333,12 +333,17 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     // "only the nearest one should remain"
     let only = leads(rest, &["only the", "just the", "keep only the", "leave only the"]);
     // ("only the blue car stays": its noun is there already)
-    let painted = |r: &[Token]| {
-        let colour = r.first().is_some_and(super::super::coloured_ones::is_colour);
-        (colour && first_noun(&r[1..]).is_some_and(|x| x.0 == 0)).then_some(1)
-    };
     if let Some(n) = only
-        && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)).or_else(|| painted(r)))
+        && rest.get(n).is_some_and(super::super::coloured_ones::is_colour)
+        && let Some((0, b)) = rest.get(n + 1..).and_then(first_noun)
+        && rest[n + 1 + b..].iter().any(|t| STAYS.contains(&text(t)))
+    {
+        let all = bare_np(np);
+        let except = led("except the", &rest[0], &[&rest[n..n + 1 + b]]);
+        return led("remove all the", &tokens[0], &[&all, &except]);
+    }
+    if let Some(n) = only
+        && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)))
         && (rest[n + p..]
             .iter()
             .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]))

@@ -17,7 +17,7 @@ const USES: &str =
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
     let out = replaced(&tokens, STAYS_SO, "");
     let out = replaced(&out, WHATEVER, "delete whatever is");
-    let out = cut_from(out);
+    let out = cut_from(only_wanted(out));
     let out = one_stays(fewer(besides(out)));
     let out = keeps_beside(too_many(stationed(out)));
     uses(&distance_between(&into_there(&out)))
@@ -33,6 +33,22 @@ fn cut_from(mut tokens: Vec<Token>) -> Vec<Token> {
         tokens[0].text = "remove".into();
     }
     tokens
+}
+
+/// "I only want to see one of the workers": keep one of them.
+fn only_wanted(tokens: Vec<Token>) -> Vec<Token> {
+    const WANTS: &str = "i only want to see|we only want to see|i only want to have|i only want to keep|i only want|we only want|i only need|\
+        we only need|i just want|i just need|we just need|i want to see only|i want only|i need only|i want just|we need only";
+    match begins(&tokens, WANTS) {
+        Some(n)
+            if tokens.get(n).is_some_and(|t| number(t).is_some())
+                && is(tokens.get(n + 1), &["of"])
+                && first_noun(&tokens[n..]).is_some_and(|x| n + x.1 == tokens.len()) =>
+        {
+            led("keep", &tokens[0], &[&tokens[n..]])
+        }
+        _ => tokens,
+    }
 }
 
 /// "there should be one child fewer": one child fewer.

@@ -8,6 +8,44 @@ use super::lists::OTHER_WAY;
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, longest, number, text, trimmed};
 use crate::scene::Class;
 
+/// "The right lane is empty; put a car there": a car in the right lane.
+pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
+    const EMPTY: &[&str] = &["empty", "free", "deserted", "unused", "unoccupied", "bare", "vacant", "clear"];
+    let mut from = 0;
+    for i in 0..tokens.len() {
+        if tokens[i].kind != TokenKind::Stop && tokens[i].kind != TokenKind::Comma {
+            continue;
+        }
+        let here = &tokens[from..i];
+        let end = (i + 1..tokens.len())
+            .find(|k| tokens[*k].kind == TokenKind::Stop)
+            .unwrap_or(tokens.len());
+        let rest = &tokens[i + 1..end];
+        let place = is(here.first(), &["the", "our"])
+            .then(|| here.get(1..).and_then(longest))
+            .flatten()
+            .filter(|x| matches!(x.0, super::Sense::Place(..)) && is(here.get(1 + x.1), &["is", "looks", "seems"]));
+        let so = usize::from(is(rest.first(), &["so", "and", "please"]));
+        if let Some((_, n)) = place
+            && is(here.last(), EMPTY)
+            && is(rest.get(so), &["put", "add", "place", "set", "let", "have", "park"])
+            && let Some(there) = rest.iter().position(|t| is(Some(t), &["there"]))
+            && rest.get(there + 1).is_none_or(|t| is(Some(t), &["please", "too"]))
+            && has_noun(&rest[..there])
+        {
+            let lane = is(here.get(n), &["lane", "junction", "intersection", "park", "lot"]);
+            let at = led(if lane { "in" } else { "on" }, &rest[there], &[&here[..=n]]);
+            let new = [&rest[so..there], &at, &rest[there + 1..]].concat();
+            tokens.splice(from..end, new);
+            return tokens;
+        }
+        if tokens[i].kind == TokenKind::Stop {
+            from = i + 1;
+        }
+    }
+    tokens
+}
+
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = in_detail(wanted_there(tokens));
