@@ -26,7 +26,9 @@ pub fn named(tokens: &[Token]) -> Vec<Token> {
         if t.text == "one"
             && i.checked_sub(1).is_some_and(|k| is_colour(&tokens[k]))
             && tokens.get(i + 1).is_some_and(|t| t.text == "of")
-            && tokens.get(i + 2).is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "our" | "my"))
+            && tokens
+                .get(i + 2)
+                .is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "our" | "my"))
             && let Some(k) = (i + 3..tokens.len().min(i + 6)).find(|k| is_noun(&tokens[*k]))
         {
             out.push(word(&singular(&tokens[k].text), t));

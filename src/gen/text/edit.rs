@@ -656,7 +656,9 @@ impl Editor<'_> {
         let strip = |r: &super::description::Stated| {
             let wide = [LaneRole::Sidewalk, LaneRole::Roadside];
             r.relation == RelationKind::On
-                && wide.iter().any(|w| r.anchor == super::description::Anchor::Lane(*w))
+                && wide
+                    .iter()
+                    .any(|w| r.anchor == super::description::Anchor::Lane(*w))
         };
         if more && spec.relations.iter().all(strip) {
             let alike: Vec<BoxId> = self

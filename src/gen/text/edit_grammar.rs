@@ -10,8 +10,8 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, as_orders, chosen, except, one_distance, one_group, one_mistake, one_place, pointed_back, room_of, said, told_once, unasked,
-    without_asides, worded,
+    Left, Piece, Room, Talk, apart, as_orders, chosen, except, pointed_back, rejoined, room_of, said,
+    told_once, unasked, without_asides, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -260,7 +260,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: unasked(apart(unasked(as_orders(one_group(one_place(one_mistake(one_distance(labelled_apart(
+            tokens: unasked(apart(unasked(as_orders(rejoined(labelled_apart(
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
                         super::common::plain(&tokens(text)),
@@ -268,7 +268,7 @@ impl<'t> Reader<'t> {
                     ))),
                     true,
                 ),
-            ))))))))),
+            )))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

@@ -67,6 +67,8 @@ const SETS: &[(&str, &str)] = sets![
     "causes_p.jsonl",
     "strangers_27.jsonl",
     "strangers_28.jsonl",
+    "strangers_31.jsonl",
+    "causes_u.jsonl",
     "exam_9.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",

@@ -2,44 +2,58 @@
 //! much; 20 would be right", "a distance of 20 m to the bus is what I need", "not 25 m ahead but 17".
 
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::{begins, rewritten};
+use super::super::wording::begins;
 use super::Talk;
-use super::words::{find, first_noun, has_noun, is, leads, led, number, text, unit_at};
+use super::lists::List;
+use super::words::{first_noun, has_noun, is, leads, led, number, text, unit_at};
+use std::sync::LazyLock;
 
-const TOO: &[&str] = &[
-    "far", "close", "near", "closely", "much", "little", "few", "many", "short", "long", "small", "big", "large",
-    "tight", "tightly", "distant", "nearby", "wide", "narrow",
-];
+static TOO: List = LazyLock::new(|| {
+    "\
+    far|close|near|closely|much|little|few|many|short|long|small|big|large|tight|tightly|distant|nearby|\
+    wide|narrow"
+        .split('|')
+        .collect()
+});
 /// Words of the part that says how far it should be: nothing else may stand there but the number and its unit.
-const ANSWER: &[&str] = &[
-    "make", "it", "lets", "let", "us", "have", "there", "be", "would", "will", "should", "must", "do", "is", "are",
-    "right", "better", "fine", "ok", "okay", "good", "enough", "perfect", "ideal", "plenty", "sufficient", "about",
-    "say", "please", "rather", "just", "only", "i", "we", "want", "need", "prefer", "like", "id", "the", "at", "least",
-    "that", "distance", "of", "a", "to", "keep", "best", "nice", "correct", "instead", "use", "needed", "required",
-    "suffice", "nicer", "safer", "more", "realistic", "to", "me", "maybe", "perhaps", "and", "so", "wed", "reasonable",
-    "fit", "suit", "what", "was", "meant", "thinking", "appropriate", "acceptable", "exactly", "set", "around",
-];
+static ANSWER: List = LazyLock::new(|| {
+    "\
+    make|it|lets|let|us|have|there|be|would|will|should|must|do|is|are|right|better|fine|ok|okay|good|\
+    enough|perfect|ideal|plenty|sufficient|about|say|please|rather|just|only|i|we|want|need|prefer|like|\
+    id|the|at|least|that|distance|of|a|to|keep|best|nice|correct|instead|use|needed|required|suffice|\
+    nicer|safer|more|realistic|to|me|maybe|perhaps|and|so|wed|reasonable|fit|suit|what|was|meant|\
+    thinking|appropriate|acceptable|exactly|set|around"
+        .split('|')
+        .collect()
+});
 const GAP: &str = "distance|gap|headway|clearance|spacing|separation|margin|interval|safety distance|following distance|safe distance|minimum distance";
 const FROM: &str = "to|from|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
 
 /// Of a thing they say how far it is; of a number, whether it is right.
-const NEAR_FAR: &[&str] = &["far", "close", "near", "closely", "tight", "tightly", "distant", "nearby"];
-const FAIRLY: &[&str] = &["too", "a bit", "a little", "a little bit", "rather", "quite", "pretty", "somewhat", "very", "a tad", "way"];
+const NEAR_FAR: &[&str] = &[
+    "far", "close", "near", "closely", "tight", "tightly", "distant", "nearby",
+];
+static FAIRLY: List = LazyLock::new(|| {
+    "\
+    too|a bit|a little|a little bit|rather|quite|pretty|somewhat|very|a tad|way"
+        .split('|')
+        .collect()
+});
 
 /// "too close", "a bit short": how many tokens stand before the adjective.
 fn too_at(tokens: &[Token]) -> Option<usize> {
-    leads(tokens, FAIRLY).filter(|n| is(tokens.get(*n), TOO))
+    leads(tokens, &FAIRLY).filter(|n| is(tokens.get(*n), &TOO))
 }
 
 /// The first number with a unit of length from here: where it stands, and one past its unit.
-fn measure(tokens: &[Token]) -> Option<(usize, usize)> {
+pub(super) fn measure(tokens: &[Token]) -> Option<(usize, usize)> {
     (0..tokens.len()).find_map(|i| {
         number(&tokens[i])?;
         Some((i, i + 1 + unit_at(&tokens[i + 1..])?))
     })
 }
 
-fn is_mark(t: &Token) -> bool {
+pub(super) fn is_mark(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_))
 }
 
@@ -68,10 +82,11 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
             .find(|k| tokens[*k].kind == TokenKind::Stop)
             .unwrap_or(tokens.len());
         let far = measure(&tokens[from..i]).is_some();
-        let complains = (from..i).any(|k| {
-            too_at(&tokens[k..]).is_some_and(|n| far || NEAR_FAR.contains(&text(&tokens[k + n])))
-        });
-        if complains && !tokens[from..i].iter().any(|t| t.kind == TokenKind::Comma) && answer(&tokens[i + 1..end]).is_some()
+        let complains = (from..i)
+            .any(|k| too_at(&tokens[k..]).is_some_and(|n| far || NEAR_FAR.contains(&text(&tokens[k + n]))));
+        if complains
+            && !tokens[from..i].iter().any(|t| t.kind == TokenKind::Comma)
+            && answer(&tokens[i + 1..end]).is_some()
         {
             tokens[i].kind = TokenKind::Comma;
             tokens[i].text = ",".into();
@@ -83,13 +98,7 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// A sentence (without its stop) that says plainly how far something should be.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = super::super::wording::replaced(
-        &tokens,
-        "i would have expected|i expected|we expected|we would have expected|id have expected|id expect|i would expect|i had expected",
-        "i want",
-    );
-    let out = gained(out);
-    let out = of_us(forward(towards(not_but(out)), talk));
+    let out = super::strides::plain(tokens, talk);
     if let Some(new) = too_far(&out, talk)
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
@@ -99,136 +108,43 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     out
 }
 
-/// "8 m back towards us", "back in our direction by 8 m": 8 m closer.
-fn towards(tokens: Vec<Token>) -> Vec<Token> {
-    const US: &str = "towards us|toward us|towards me|toward me|towards the ego vehicle|toward the ego vehicle|\
-        towards our car|towards my car|in our direction|in my direction|in the direction of us|to us|to me|our way|\
-        in the direction of the ego vehicle|towards ego|toward ego|in the ego direction|in the direction of our car";
-    rewritten(&tokens, |i, out| {
-        let by = usize::from(is(tokens.get(i), &["by"]));
-        // (metres first, or the way first)
-        let far = |k: usize| measure(&tokens[k..]).filter(|m| m.0 == 0).map(|m| k + m.1);
-        let way = |k: usize| {
-            let back = usize::from(is(tokens.get(k), &["back", "closer", "nearer", "over", "further", "up"]));
-            begins(tokens.get(k + back..)?, US).map(|n| k + back + n)
-        };
-        let closes = |k: usize| {
-            tokens.get(k).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]))
-        };
-        let (metres, end) = match far(i + by) {
-            Some(k) => (&tokens[i + by..k], way(k)?),
-            None => {
-                let k = way(i)?;
-                let by = k + usize::from(is(tokens.get(k), &["by", "for"]));
-                let k = far(by)?;
-                (&tokens[by..k], k)
-            }
-        };
-        // ("so that it faces 8 m towards us" is nothing that anybody says)
-        closes(end).then_some(())?;
-        out.extend_from_slice(metres);
-        out.extend(led("closer", &tokens[i], &[]));
-        Some(end)
-    })
-}
-
-/// "let the taxi gain ten metres", "give the taxi a lead of 25 m": so far on, so far ahead.
-fn gained(tokens: Vec<Token>) -> Vec<Token> {
-    const GAINS: &[&str] = &["gain", "gains", "gained", "gain another", "gains another", "has gained", "make up", "pull away by"];
-    let out = rewritten(&tokens, |i, out| {
-        let n = leads(&tokens[i..], GAINS).filter(|_| has_noun(out))?;
-        let (a, b) = measure(&tokens[i + n..]).filter(|m| m.0 == 0)?;
-        let end = i + n + b;
-        let closes = tokens.get(end).is_none_or(|t| is_mark(t) || is(Some(t), &["and", "on"]));
-        closes.then(|| {
-            out.extend(led("move", &tokens[i], &[&tokens[i + n + a..end]]));
-            out.extend(led("further ahead", &tokens[i], &[]));
-            let us = leads(&tokens[end..], &["on us", "on me"]).unwrap_or(0);
-            end + us
-        })
-    });
-    let lead = find(&out, &["a lead of", "a head start of", "the lead of", "a headway of"]);
-    let Some((i, n)) = lead.filter(|_| is(out.first(), &["give", "the", "that", "let", "allow", "grant"])) else {
-        return out;
-    };
-    let from = usize::from(is(out.first(), &["give", "let", "allow", "grant"]));
-    let Some((_, b)) = first_noun(&out[from..i]).filter(|x| x.0 < 4) else {
-        return out;
-    };
-    match measure(&out[i + n..]).filter(|m| m.0 == 0 && i + n + m.1 == out.len()) {
-        Some(_) => [&out[from..from + b], &led("should be", &out[i], &[&out[i + n..]]), &led("ahead of us", &out[i], &[])].concat(),
-        None => out,
-    }
-}
-
-/// "pull forward by ten metres", "moves up 5 m": so far the way it faces.
-fn forward(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const GOES: &str = "pull|pulls|pulled|move|moves|moved|drive|drives|drove|driven|roll|rolls|rolled|go|goes|went|gone|come|comes|came|walk|walks|walked|ride|rides|rode|ridden|advance|advances|advanced|edge|creep|inch|step|steps|stepped|run|runs";
-    const ON: &str = "forward by|forward for|forward|forwards by|forwards|ahead by|ahead for|ahead|up by|up|on by|on for|on|onward|onwards by|onwards|along for|along by|further on by|further on";
-    rewritten(&tokens, |i, out| {
-        begins(&tokens[i..], GOES)?;
-        let n = 1 + begins(&tokens[i + 1..], ON)?;
-        let n = n + usize::from(is(tokens.get(i + n), &["another", "about"]));
-        let (a, b) = measure(&tokens[i + n..]).filter(|m| m.0 == 0)?;
-        let end = i + n + b;
-        let closes = tokens
-            .get(end)
-            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "please", "now", "so"]));
-        let (x, y) = first_noun(out)?;
-        closes.then_some(())?;
-        let the = x - usize::from(x > 0);
-        let against = talk.only(&out[the..y]).is_some_and(|b| b.heading().x < -0.5);
-        out.push(tokens[i].clone());
-        out.extend_from_slice(&tokens[i + n + a..end]);
-        out.extend(led(if against { "further back" } else { "further ahead" }, &tokens[i], &[]));
-        Some(end)
-    })
-}
-
-/// "put it 30 m ahead", "truck: 30 m ahead", "I'd expect the truck 30 m ahead": ahead of us, and no step.
-fn of_us(tokens: Vec<Token>) -> Vec<Token> {
-    const PUTS: &[&str] = &["put", "place", "set", "want", "expect", "expected", "need", "like", "have", "position", ":", "prefer"];
-    let steps = is(tokens.first(), &["move", "shift", "push", "pull", "bring", "drive", "send", "take", "get", "make"])
-        || tokens.iter().any(|t| is(Some(t), &["further", "farther", "more", "another", "moves", "by"]));
-    let puts = tokens.iter().position(|t| PUTS.contains(&text(t)));
-    let Some(puts) = puts.filter(|_| !steps) else {
-        return tokens;
-    };
-    rewritten(&tokens, |i, out| {
-        let (a, b) = measure(&tokens[i..]).filter(|m| m.0 == 0 && i > puts)?;
-        let way = match text(tokens.get(i + b)?) {
-            "ahead" => "ahead of us",
-            "behind" => "behind us",
-            _ => return None,
-        };
-        let closes = tokens
-            .get(i + b + 1)
-            .is_none_or(|t| is_mark(t) || is(Some(t), &["and", "please", "now", "instead"]));
-        closes.then(|| {
-            out.extend_from_slice(&tokens[i + a..i + b]);
-            out.extend(led(way, &tokens[i], &[]));
-            i + b + 1
-        })
-    })
-}
-
 /// "X should keep a distance of so many metres", of one thing of the scene.
 fn keeps(np: &[Token], metres: &Token, unit: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let np = super::words::trimmed(np);
     let (a, b) = first_noun(np).filter(|x| x.0 < 5)?;
-    let whole = b == np.len() || super::words::is_place(&np[b..]) || is(np.get(b), &["that", "which", "who", "in"]);
-    let the = !is(np.first(), &["the", "that", "this", "my", "both", "all", "those", "these", "every"]);
+    let whole =
+        b == np.len() || super::words::is_place(&np[b..]) || is(np.get(b), &["that", "which", "who", "in"]);
+    let the = !is(
+        np.first(),
+        &[
+            "the", "that", "this", "my", "both", "all", "those", "these", "every",
+        ],
+    );
     let fresh = is(np.first(), &["a", "an", "another"]) || number(&np[0]).is_some();
     if !whole || fresh || has_noun(&np[b..]) || a > 4 {
         return None;
     }
-    let np = if the { led("the", metres, &[np]) } else { np.to_vec() };
+    let np = if the {
+        led("the", metres, &[np])
+    } else {
+        np.to_vec()
+    };
     if talk.fits(&np) == 0 {
         return None;
     }
     let m = led("m", metres, &[]);
     let unit = if unit.is_empty() { &m[..] } else { unit };
-    Some([&np[..], &led("should keep a distance of", metres, &[std::slice::from_ref(metres), unit])].concat())
+    Some(
+        [
+            &np[..],
+            &led(
+                "should keep a distance of",
+                metres,
+                &[std::slice::from_ref(metres), unit],
+            ),
+        ]
+        .concat(),
+    )
 }
 
 /// "the truck is too close, 22 m would do", "25 m to the bus is too much, make it 20".
@@ -238,14 +154,32 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let late = too + n + 1;
     // what the answer is set off by
     let mark = (late..tokens.len()).find(|k| {
-        is_mark(&tokens[*k]) || is(tokens.get(*k), &["and", "so"]) && number(tokens.get(k + 1).unwrap_or(&tokens[*k])).is_some()
+        is_mark(&tokens[*k])
+            || is(tokens.get(*k), &["and", "so"])
+                && number(tokens.get(k + 1).unwrap_or(&tokens[*k])).is_some()
     })?;
     let after = &tokens[mark + 1..];
     let n = answer(after)?;
     let unit = &after[n + 1..n + 1 + unit_at(&after[n + 1..]).unwrap_or(0)];
     let mut head = &tokens[..too];
     while head.last().is_some_and(|t| {
-        matches!(text(t), "far" | "much" | "way" | "a" | "bit" | "little" | "still" | "just" | "really" | "clearly" | "is" | "are" | "seems" | "looks")
+        matches!(
+            text(t),
+            "far"
+                | "much"
+                | "way"
+                | "a"
+                | "bit"
+                | "little"
+                | "still"
+                | "just"
+                | "really"
+                | "clearly"
+                | "is"
+                | "are"
+                | "seems"
+                | "looks"
+        )
     }) {
         head = &head[..head.len() - 1];
     }
@@ -273,7 +207,24 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         return None;
     }
     // (a number without a unit after a colon may be anything)
-    let verb = |t: &Token| matches!(text(t), "is" | "are" | "follows" | "drives" | "stands" | "rides" | "sits" | "walks" | "waits" | "comes" | "seems" | "has" | "stays" | "keeps");
+    let verb = |t: &Token| {
+        matches!(
+            text(t),
+            "is" | "are"
+                | "follows"
+                | "drives"
+                | "stands"
+                | "rides"
+                | "sits"
+                | "walks"
+                | "waits"
+                | "comes"
+                | "seems"
+                | "has"
+                | "stays"
+                | "keeps"
+        )
+    };
     let end = (1..head.len()).find(|k| verb(&head[*k])).unwrap_or(head.len());
     keeps(&head[..end], &after[n], unit, talk)
 }
@@ -283,7 +234,8 @@ fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let gap = (0..tokens.len()).find(|i| begins(&tokens[*i..], GAP).is_some())?;
     let of = gap + begins(&tokens[gap..], GAP)?;
     // ("17 m is the distance that I want to the bus")
-    let first = measure(&tokens[..gap]).filter(|m| m.0 == 0 && is(tokens.get(m.1), &["is", "should", "would"]));
+    let first =
+        measure(&tokens[..gap]).filter(|m| m.0 == 0 && is(tokens.get(m.1), &["is", "should", "would"]));
     let ((a, b), rest) = match first {
         Some(m) => {
             let to = (of..tokens.len().min(of + 7)).find(|k| {
@@ -308,7 +260,22 @@ fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     }
     let np = &tokens[rest + n..];
     let stop = np.iter().position(|t| {
-        is_mark(t) || matches!(text(t), "is" | "would" | "should" | "must" | "will" | "seems" | "are" | "please" | "was" | "rather" | "instead" | "not" | "needs")
+        is_mark(t)
+            || matches!(
+                text(t),
+                "is" | "would"
+                    | "should"
+                    | "must"
+                    | "will"
+                    | "seems"
+                    | "are"
+                    | "please"
+                    | "was"
+                    | "rather"
+                    | "instead"
+                    | "not"
+                    | "needs"
+            )
     });
     let (np, late) = np.split_at(stop.unwrap_or(np.len()));
     let told = is(late.first(), &["is"]) && is(late.get(1), &["what"]);
@@ -323,9 +290,29 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let lead = leads(
         tokens,
         &[
-            "only", "just", "no more than", "make it", "please", "at least", "exactly", "no less than", "let there be",
-            "there should be", "there must be", "keep", "leave", "i want", "i need", "we need", "there should only be",
-            "there should be only", "there should be just", "there ought to be", "make that", "i would like", "id like",
+            "only",
+            "just",
+            "no more than",
+            "make it",
+            "please",
+            "at least",
+            "exactly",
+            "no less than",
+            "let there be",
+            "there should be",
+            "there must be",
+            "keep",
+            "leave",
+            "i want",
+            "i need",
+            "we need",
+            "there should only be",
+            "there should be only",
+            "there should be just",
+            "there ought to be",
+            "make that",
+            "i would like",
+            "id like",
         ],
     )
     .unwrap_or(0);
@@ -333,19 +320,31 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let (a, b) = (a + lead, b + lead);
     let step = is(tokens.get(b), &["less", "more", "fewer"]);
     let from = b + usize::from(step);
-    let n = begins(&tokens[from..], FROM).filter(|_| !is(tokens.get(from), &["for", "behind", "ahead", "towards"]))?;
+    let n = begins(&tokens[from..], FROM)
+        .filter(|_| !is(tokens.get(from), &["for", "behind", "ahead", "towards"]))?;
     let rest = &tokens[from + n..];
     is(rest.first(), &["the", "that", "my"]).then_some(())?;
     let close = rest
         .iter()
-        .position(|t| is_mark(t) || matches!(text(t), "not" | "rather" | "instead" | "please" | "now" | "would" | "should" | "is" | "are"))
+        .position(|t| {
+            is_mark(t)
+                || matches!(
+                    text(t),
+                    "not" | "rather" | "instead" | "please" | "now" | "would" | "should" | "is" | "are"
+                )
+        })
         .unwrap_or(rest.len());
     let (np, late) = rest.split_at(close);
     // what it is not, or that it would be good so
-    let not = late.iter().any(|t| matches!(text(t), "not" | "instead" | "rather"));
+    let not = late
+        .iter()
+        .any(|t| matches!(text(t), "not" | "instead" | "rather"));
     let numbers = late.iter().filter(|t| number(t).is_some()).count();
     let plain = late.iter().all(|t| {
-        is_mark(t) || number(t).is_some() || ANSWER.contains(&text(t)) || matches!(text(t), "not" | "than" | "now")
+        is_mark(t)
+            || number(t).is_some()
+            || ANSWER.contains(&text(t))
+            || matches!(text(t), "not" | "than" | "now")
             || unit_at(std::slice::from_ref(t)).is_some()
     });
     if !plain || numbers > usize::from(not) {
@@ -355,56 +354,13 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let (_, e) = first_noun(np).filter(|x| x.0 < 4)?;
         let whole = e == np.len() || super::words::is_place(&np[e..]);
         (whole && talk.fits(np) > 0).then_some(())?;
-        let way = if is(tokens.get(b), &["more"]) { "further away" } else { "closer" };
+        let way = if is(tokens.get(b), &["more"]) {
+            "further away"
+        } else {
+            "closer"
+        };
         let way = led(way, &tokens[a], &[]);
         return Some(led("move", &tokens[a], &[np, &tokens[a..b], &way]));
     }
     keeps(np, &tokens[a], &tokens[a + 1..b], talk)
-}
-
-/// "must not be 25 m ahead but only 17": must be 17 m ahead.
-fn not_but(tokens: Vec<Token>) -> Vec<Token> {
-    // "30 m ahead, not 20"
-    let late = (3..tokens.len()).find(|i| {
-        is(tokens.get(*i), &["not", "instead", "rather"])
-            && leads(&tokens[*i..], &["not", "and not", "instead of", "rather than"]).is_some_and(|n| {
-                tokens.get(i + n).is_some_and(|t| number(t).is_some())
-                    && i + n + 1 + unit_at(&tokens[i + n + 1..]).unwrap_or(0) == tokens.len()
-            })
-            && measure(&tokens[..*i]).is_some_and(|m| super::words::is_place(&tokens[m.1..*i]))
-    });
-    if let Some(late) = late {
-        return super::words::trimmed(&tokens[..late]).to_vec();
-    }
-    let found = (0..tokens.len()).find_map(|i| {
-        let not = is(tokens.get(i), &["not", "mustnt", "shouldnt", "isnt"]).then_some(i)?;
-        let (a, b) = measure(&tokens[not + 1..]).filter(|m| m.0 < 3)?;
-        let (a, b) = (not + 1 + a, not + 1 + b);
-        let but = (b..tokens.len().min(b + 8)).find(|k| is(tokens.get(*k), &["but"]))?;
-        let k = but + 1 + leads(&tokens[but + 1..], &["only", "just", "rather", "at least", "instead"]).unwrap_or(0);
-        number(tokens.get(k)?)?;
-        let unit = unit_at(&tokens[k + 1..]).unwrap_or(0);
-        let rest = &tokens[k + 1 + unit..];
-        let ends = rest.is_empty() || unit == 0 && super::words::is_place(rest) && but == b;
-        ends.then_some((not, a, b, but, k, unit))
-    });
-    let Some((not, a, b, but, k, unit)) = found else {
-        return tokens;
-    };
-    let helper = match text(&tokens[not]) {
-        "mustnt" => led("must", &tokens[not], &[]),
-        "shouldnt" => led("should", &tokens[not], &[]),
-        "isnt" => led("should be", &tokens[not], &[]),
-        _ => Vec::new(),
-    };
-    [
-        &tokens[..not],
-        &helper,
-        &tokens[not + 1..a],
-        std::slice::from_ref(&tokens[k]),
-        &tokens[a + 1..b],
-        &tokens[b..but],
-        &tokens[k + 1 + unit..],
-    ]
-    .concat()
 }

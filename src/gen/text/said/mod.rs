@@ -22,6 +22,7 @@ mod frame;
 mod gapped;
 mod gaps;
 mod gifts;
+mod group_sizes;
 mod happier;
 mod headway;
 mod idioms;
@@ -49,6 +50,7 @@ mod presence;
 mod question;
 mod reasons;
 mod recast;
+mod recounted;
 mod remaining;
 mod remarks;
 mod riders;
@@ -62,6 +64,7 @@ mod spaces;
 mod splits;
 mod spoken;
 mod steps;
+mod strides;
 mod strips;
 mod subject;
 mod sums;
@@ -103,11 +106,8 @@ use forms::{
     takes_place,
 };
 use frame::unwrapped;
-pub use headway::joined as one_distance;
-pub use joined_by::joined as one_group;
 pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
-pub use mistaken::joined as one_mistake;
 pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
@@ -118,7 +118,6 @@ pub use remarks::told_once;
 use spoken::{with_ones, without_feet};
 use std::collections::BTreeMap;
 use subject::{Kind, Subject, subject};
-pub use told_again::joined as one_place;
 pub use vacated::{Room, room_of};
 pub use which::spared;
 pub use worded::worded;
@@ -234,7 +233,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
-    let out = mistaken::plain(of_several::from_there(of_several::both_of_them(out, talk), talk), talk);
+    let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
+    let out = mistaken::plain(recounted::plain(out, talk), talk);
     let out = joined_by::plain(told_again::plain(out, talk), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
@@ -261,6 +261,11 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let mut out = totals::plain(out, talk);
     out.extend_from_slice(stop);
     out
+}
+
+/// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
+pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(tokens))))
 }
 
 /// Reads a sentence with its stop.

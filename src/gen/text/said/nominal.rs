@@ -22,10 +22,7 @@ const DONE: &[(&str, &str)] = &[
     ("put", "placement|positioning|placing"),
     ("replace", "replacement|replacing"),
     ("substitute", "substitution"),
-    (
-        "turn",
-        "conversion|transformation|transmutation",
-    ),
+    ("turn", "conversion|transformation|transmutation"),
     ("swap", "swap|swapping|permutation"),
     ("exchange", "exchange"),
     ("turn", "rotation|turning"),
@@ -80,7 +77,8 @@ fn ordered(body: &[Token]) -> Option<Vec<Token>> {
         let what = &rest[n + 1..];
         // (a shift of snow, a change of mind: nothing that is there)
         let named = first_noun(what).filter(|x| x.0 < 6)?;
-        let counted = is(what.first(), &["number", "count", "amount"]) || is(what.get(1), &["number", "count"]);
+        let counted =
+            is(what.first(), &["number", "count", "amount"]) || is(what.get(1), &["number", "count"]);
         // ("increase of traffic" is no number)
         if matches!(verb, "increase" | "reduce") && !counted {
             return None;
@@ -95,7 +93,9 @@ fn ordered(body: &[Token]) -> Option<Vec<Token>> {
             || what.first().is_some_and(|t| number(t).is_some());
         let verb = match verb {
             "put" | "park" if fresh => "add",
-            "turn" if named.1 < what.len() && !what[named.1..].iter().any(|t| is(Some(t), &["into", "to"])) => {
+            "turn"
+                if named.1 < what.len() && !what[named.1..].iter().any(|t| is(Some(t), &["into", "to"])) =>
+            {
                 "turn"
             }
             other => other,
@@ -103,26 +103,37 @@ fn ordered(body: &[Token]) -> Option<Vec<Token>> {
         let mut out = led(verb, at, &[what]);
         // ("conversion of the car to a bus")
         if verb == "turn"
-            && let Some(k) = (named.1..out.len()).find(|k| {
-                is(out.get(*k), &["to"]) && is(out.get(k + 1), &["a", "an", "two", "three"])
-            })
+            && let Some(k) = (named.1..out.len())
+                .find(|k| is(out.get(*k), &["to"]) && is(out.get(k + 1), &["a", "an", "two", "three"]))
         {
             out[k].text = "into".into();
         }
         return Some(out);
     }
     // "lane change of the truck to the right"
-    if let Some(n) = begins(rest, "lane change of|lane change by|change of lane of|change of lanes of|a lane change of|a lane change by")
-        && let Some((_, b)) = first_noun(&rest[n..]).filter(|x| x.0 < 4)
-        && begins(&rest[n + b..], "to the right|to the left|to its right|to its left") == Some(rest.len() - n - b)
+    if let Some(n) = begins(
+        rest,
+        "lane change of|lane change by|change of lane of|change of lanes of|a lane change of|a lane change by",
+    ) && let Some((_, b)) = first_noun(&rest[n..]).filter(|x| x.0 < 4)
+        && begins(
+            &rest[n + b..],
+            "to the right|to the left|to its right|to its left",
+        ) == Some(rest.len() - n - b)
     {
-        return Some(led("move", &rest[0], &[&rest[n..n + b], &led("one lane", &rest[0], &[&rest[n + b..]])]));
+        return Some(led(
+            "move",
+            &rest[0],
+            &[&rest[n..n + b], &led("one lane", &rest[0], &[&rest[n + b..]])],
+        ));
     }
     // "bus removal"
     let (last, np) = rest.split_last()?;
     let (verb, _) = done_at(std::slice::from_ref(last))?;
     let whole = first_noun(np).is_some_and(|x| x.1 == np.len() && x.0 < 3);
-    let the = !is(np.first(), &["the", "all", "both", "a", "an", "one", "every", "that"]);
+    let the = !is(
+        np.first(),
+        &["the", "all", "both", "a", "an", "one", "every", "that"],
+    );
     let the = if the { led("the", last, &[]) } else { Vec::new() };
     (verb == "remove" && whole).then(|| led(verb, last, &[&the, np]))
 }
@@ -132,7 +143,16 @@ fn done_at(tokens: &[Token]) -> Option<(&'static str, usize)> {
     let the = usize::from(is(tokens.first(), &["the", "a", "an", "some", "another"]));
     let quick = usize::from(is(
         tokens.get(the),
-        &["immediate", "complete", "simple", "quick", "slight", "small", "partial", "full"],
+        &[
+            "immediate",
+            "complete",
+            "simple",
+            "quick",
+            "slight",
+            "small",
+            "partial",
+            "full",
+        ],
     ));
     let at = the + quick;
     DONE.iter().find_map(|(verb, list)| {
@@ -188,10 +208,16 @@ mod tests {
         for (noun, verb) in [
             ("Removal of the left car", "remove the left car"),
             ("The removal of the bus is required", "remove the bus"),
-            ("Please carry out the replacement of the van by a bus", "replace the van by a bus"),
+            (
+                "Please carry out the replacement of the van by a bus",
+                "replace the van by a bus",
+            ),
             ("Conversion of the car to a bus", "turn the car into a bus"),
             ("Bus removal, please", "remove the bus"),
-            ("An increase in the number of cones to five", "increase the number of cones to five"),
+            (
+                "An increase in the number of cones to five",
+                "increase the number of cones to five",
+            ),
         ] {
             assert_eq!(said(noun), verb);
         }

@@ -207,7 +207,9 @@ fn only_of(tokens: Vec<Token>) -> Vec<Token> {
     };
     let end = one + b;
     let late = &tokens[end..];
-    let stays = late.iter().any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
+    let stays = late
+        .iter()
+        .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
     if !stays || super::words::has_noun(late) {
         return tokens;
     }
@@ -219,7 +221,13 @@ pub(super) fn from_there(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
     for i in 2..tokens.len() {
         let side = is(tokens.get(i), &["from"])
             && is(tokens.get(i + 1), &["the", "our", "my"])
-            && is(tokens.get(i + 2), &["left", "right", "oncoming", "opposite", "crossing", "zebra", "sidewalk", "pavement", "other"]);
+            && is(
+                tokens.get(i + 2),
+                &[
+                    "left", "right", "oncoming", "opposite", "crossing", "zebra", "sidewalk", "pavement",
+                    "other",
+                ],
+            );
         if !side {
             continue;
         }
@@ -247,7 +255,8 @@ pub(super) fn from_there(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> 
 
 /// "put the pedestrian on the left sidewalk on the road": the one there goes to the road.
 fn put_from(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    if !is(tokens.first(), &["put", "place", "set", "stand", "park"]) || !is(tokens.get(1), &["the", "that"]) {
+    if !is(tokens.first(), &["put", "place", "set", "stand", "park"]) || !is(tokens.get(1), &["the", "that"])
+    {
         return tokens;
     }
     let Some((_, b)) = first_noun(&tokens[1..]).filter(|x| x.0 < 4) else {
@@ -257,11 +266,18 @@ fn put_from(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let on = |k: usize| is(tokens.get(k), &["on", "in"]) && is(tokens.get(k + 1), &["the", "our", "my"]);
     let goal = (from + 3..tokens.len()).find(|k| on(*k));
     if let Some(goal) = goal.filter(|k| {
-        on(from) && !is(tokens.get(k - 1), &["of", "and"]) && talk.fits(&tokens[1..*k]) == 1
+        on(from)
+            && !is(tokens.get(k - 1), &["of", "and"])
+            && talk.fits(&tokens[1..*k]) == 1
             && !tokens[from..*k].iter().any(|t| t.kind != TokenKind::Word)
     }) {
         tokens[0].text = "move".into();
-        tokens[goal].text = if is(tokens.get(goal), &["in"]) { "into" } else { "onto" }.into();
+        tokens[goal].text = if is(tokens.get(goal), &["in"]) {
+            "into"
+        } else {
+            "onto"
+        }
+        .into();
     }
     tokens
 }
@@ -356,7 +372,11 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
         let pick = match text(&rest[n]) {
             "nearer" | "closer" => led("nearest", &rest[n], &[]),
             "farther" | "further" => led("farthest", &rest[n], &[]),
-            _ => rest[n..n + p].iter().filter(|t| text(t) != "hand").cloned().collect(),
+            _ => rest[n..n + p]
+                .iter()
+                .filter(|t| text(t) != "hand")
+                .cloned()
+                .collect(),
         };
         let except = led("except the", &rest[0], &[&pick, &one]);
         return led("remove all the", &tokens[0], &[&all, &except]);

@@ -376,7 +376,12 @@ fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         }
         // ("and is 15 m behind us now": where it is counts)
         let now = is(tokens.get(end), &["and"])
-            && is(tokens.get(end + 1), &["is", "are", "drives", "rides", "now", "walks", "stands", "runs", "follows"])
+            && is(
+                tokens.get(end + 1),
+                &[
+                    "is", "are", "drives", "rides", "now", "walks", "stands", "runs", "follows",
+                ],
+            )
             && (end + 2..tokens.len().min(end + 5)).any(|k| super::words::is_place(&tokens[k..]));
         if now {
             return Some(end + 1);

@@ -45,7 +45,15 @@ fn only_wanted(tokens: Vec<Token>) -> Vec<Token> {
                 && is(tokens.get(n + 1), &["of"])
                 && first_noun(&tokens[n..]).is_some_and(|x| n + x.1 == tokens.len()) =>
         {
-            led("keep", &tokens[0], &[&tokens[n..]])
+            let (a, b) = first_noun(&tokens[n..]).unwrap_or((0, 0));
+            let noun = &tokens[n + a..n + b];
+            let one = number(&tokens[n]) == Some(1);
+            let noun = if one {
+                super::topics::singular_of(noun)
+            } else {
+                noun.to_vec()
+            };
+            led("there should be", &tokens[0], &[&tokens[n..=n], &noun])
         }
         _ => tokens,
     }
@@ -61,7 +69,8 @@ fn fewer(tokens: Vec<Token>) -> Vec<Token> {
     const DOES: &str = "will do|would do|is enough|are enough|is fine|would be fine|is plenty|would be enough|suffices|would suffice|\
         would be better|would be good|would be nice|would be right|is better|will be enough|should do|should be enough";
     let late = (2..tokens.len().min(6)).find(|i| {
-        is(tokens.get(i - 1), &["fewer", "less"]) && begins(&tokens[*i..], DOES).is_some_and(|n| i + n == tokens.len())
+        is(tokens.get(i - 1), &["fewer", "less"])
+            && begins(&tokens[*i..], DOES).is_some_and(|n| i + n == tokens.len())
     });
     if let Some(late) = late.filter(|_| n.is_none() && number(&tokens[0]).is_some()) {
         return tokens[..late].to_vec();

@@ -4,13 +4,23 @@
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::Talk;
-use super::lists::OTHER_WAY;
+use super::lists::{List, OTHER_WAY};
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, longest, number, text, trimmed};
 use crate::scene::Class;
+use std::sync::LazyLock;
 
 /// "The right lane is empty; put a car there": a car in the right lane.
 pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
-    const EMPTY: &[&str] = &["empty", "free", "deserted", "unused", "unoccupied", "bare", "vacant", "clear"];
+    const EMPTY: &[&str] = &[
+        "empty",
+        "free",
+        "deserted",
+        "unused",
+        "unoccupied",
+        "bare",
+        "vacant",
+        "clear",
+    ];
     let mut from = 0;
     for i in 0..tokens.len() {
         if tokens[i].kind != TokenKind::Stop && tokens[i].kind != TokenKind::Comma {
@@ -24,13 +34,20 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
         let place = is(here.first(), &["the", "our"])
             .then(|| here.get(1..).and_then(longest))
             .flatten()
-            .filter(|x| matches!(x.0, super::Sense::Place(..)) && is(here.get(1 + x.1), &["is", "looks", "seems"]));
+            .filter(|x| {
+                matches!(x.0, super::Sense::Place(..)) && is(here.get(1 + x.1), &["is", "looks", "seems"])
+            });
         let so = usize::from(is(rest.first(), &["so", "and", "please"]));
         if let Some((_, n)) = place
             && is(here.last(), EMPTY)
-            && is(rest.get(so), &["put", "add", "place", "set", "let", "have", "park"])
+            && is(
+                rest.get(so),
+                &["put", "add", "place", "set", "let", "have", "park"],
+            )
             && let Some(there) = rest.iter().position(|t| is(Some(t), &["there"]))
-            && rest.get(there + 1).is_none_or(|t| is(Some(t), &["please", "too"]))
+            && rest
+                .get(there + 1)
+                .is_none_or(|t| is(Some(t), &["please", "too"]))
             && has_noun(&rest[..there])
         {
             let lane = is(here.get(n), &["lane", "junction", "intersection", "park", "lot"]);
@@ -59,25 +76,64 @@ fn wanted_there(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let place = trimmed(&tokens[..i]);
-    if !is(place.first(), &["on", "in", "at", "along", "behind", "beside", "next", "ahead", "between", "to"]) || !is_place(place) {
+    if !is(
+        place.first(),
+        &[
+            "on", "in", "at", "along", "behind", "beside", "next", "ahead", "between", "to",
+        ],
+    ) || !is_place(place)
+    {
         return tokens;
     }
     let mut k = i + 1;
     let mut wants = false;
     while is(
         tokens.get(k),
-        &["also", "additionally", "now", "still", "would", "want", "need", "like", "love", "to", "see", "have", "really", "just", "prefer", "too", "require", "rather", "could", "do", "with", "further"],
+        &[
+            "also",
+            "additionally",
+            "now",
+            "still",
+            "would",
+            "want",
+            "need",
+            "like",
+            "love",
+            "to",
+            "see",
+            "have",
+            "really",
+            "just",
+            "prefer",
+            "too",
+            "require",
+            "rather",
+            "could",
+            "do",
+            "with",
+            "further",
+        ],
     ) {
-        wants |= is(tokens.get(k), &["want", "need", "like", "love", "prefer", "require"]);
+        wants |= is(
+            tokens.get(k),
+            &["want", "need", "like", "love", "prefer", "require"],
+        );
         k += 1;
     }
     let new = tokens.get(k..).unwrap_or(&[]);
-    let fresh = new.first().is_some_and(|t| is(Some(t), &["a", "an", "another", "some"]) || number(t).is_some());
+    let fresh = new
+        .first()
+        .is_some_and(|t| is(Some(t), &["a", "an", "another", "some"]) || number(t).is_some());
     let Some((_, b)) = first_noun(new).filter(|x| wants && fresh && x.0 < 5) else {
         return tokens;
     };
     let late = trimmed(&new[b..]);
-    if !(late.is_empty() || leads(late, &["as well", "too", "also", "additionally", "in addition", "there"]) == Some(late.len())) {
+    if !(late.is_empty()
+        || leads(
+            late,
+            &["as well", "too", "also", "additionally", "in addition", "there"],
+        ) == Some(late.len()))
+    {
         return tokens;
     }
     led("add", &tokens[0], &[&new[..b], place])
@@ -93,7 +149,8 @@ fn class_of(noun: &[Token]) -> Option<Class> {
 
 /// "some children: four kids on the sidewalk": four kids.
 fn in_detail(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(some) = (0..tokens.len().min(5)).find(|i| is(tokens.get(*i), &["some", "several", "more", "a"])) else {
+    let Some(some) = (0..tokens.len().min(5)).find(|i| is(tokens.get(*i), &["some", "several", "more", "a"]))
+    else {
         return tokens;
     };
     let lead = &tokens[..some];
@@ -103,10 +160,24 @@ fn in_detail(tokens: Vec<Token>) -> Vec<Token> {
     let noun = &tokens[some + a..some + b];
     // ("a school group", "some more workers are needed")
     let mut k = some + b;
-    if let Some(n) = leads(&tokens[k..], &["are needed", "are missing", "are wanted", "are required", "group", "is needed", "too", "as well"]) {
+    if let Some(n) = leads(
+        &tokens[k..],
+        &[
+            "are needed",
+            "are missing",
+            "are wanted",
+            "are required",
+            "group",
+            "is needed",
+            "too",
+            "as well",
+        ],
+    ) {
         k += n;
     }
-    let set_off = tokens.get(k).is_some_and(|t| t.kind == TokenKind::Comma || matches!(text(t), ":" | "-"));
+    let set_off = tokens
+        .get(k)
+        .is_some_and(|t| t.kind == TokenKind::Comma || matches!(text(t), ":" | "-"));
     let one = is(tokens.get(some), &["a"]) && !is(tokens.get(k.wrapping_sub(1)), &["group"]);
     let rest = tokens.get(k + 1..).unwrap_or(&[]);
     let counted = rest.first().is_some_and(|t| number(t).is_some());
@@ -115,7 +186,16 @@ fn in_detail(tokens: Vec<Token>) -> Vec<Token> {
     };
     let same = class_of(noun).is_some() && class_of(noun) == class_of(&rest[c..d]);
     let adds = lead.is_empty()
-        || lead.iter().all(|t| is(Some(t), &["add", "bring", "in", "put", "have", "lets", "let", "us", "there", "are", "should", "be", "i", "we", "want", "need", "show", "include", "insert", "place", "give", "me", "get", "also"]));
+        || lead.iter().all(|t| {
+            is(
+                Some(t),
+                &[
+                    "add", "bring", "in", "put", "have", "lets", "let", "us", "there", "are", "should", "be",
+                    "i", "we", "want", "need", "show", "include", "insert", "place", "give", "me", "get",
+                    "also",
+                ],
+            )
+        });
     if !(same && adds) {
         return tokens;
     }
@@ -126,7 +206,12 @@ fn in_detail(tokens: Vec<Token>) -> Vec<Token> {
 fn there_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(there) = (4..tokens.len()).find(|i| {
         is(tokens.get(*i), &["there"])
-            && is(tokens.get(i - 1), &["parked", "standing", "waiting", "already", "is", "stands", "parks", "are", "stopped"])
+            && is(
+                tokens.get(i - 1),
+                &[
+                    "parked", "standing", "waiting", "already", "is", "stands", "parks", "are", "stopped",
+                ],
+            )
     }) else {
         return tokens;
     };
@@ -134,7 +219,10 @@ fn there_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let mut k = there;
     while is(
         tokens.get(k - 1),
-        &["parked", "standing", "waiting", "already", "is", "stands", "parks", "are", "that", "which", "who", "stopped", "thats"],
+        &[
+            "parked", "standing", "waiting", "already", "is", "stands", "parks", "are", "that", "which",
+            "who", "stopped", "thats",
+        ],
     ) && k > 2
     {
         k -= 1;
@@ -159,7 +247,18 @@ fn there_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     // the place that was said before
     let Some((side, on)) = (1..the).rev().find_map(|i| {
-        let n = leads(&tokens[i..], &["on the", "on our", "on my", "at the", "in the", "along the", "to the"])?;
+        let n = leads(
+            &tokens[i..],
+            &[
+                "on the",
+                "on our",
+                "on my",
+                "at the",
+                "in the",
+                "along the",
+                "to the",
+            ],
+        )?;
         let side = is(tokens.get(i + n), &["left", "right"]).then(|| text(&tokens[i + n]).to_string());
         let on = matches!(longest(&tokens[i + n..]), Some((super::Sense::Place(..), _)));
         (side.is_some() || on).then(|| (side, tokens[i..the].to_vec()))
@@ -185,13 +284,20 @@ fn there_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if talk.fits(&whole) != 1 {
         return tokens;
     }
-    let noun = if parked && !is(noun.first(), &["parked"]) { led("parked", at, &[&noun]) } else { noun };
+    let noun = if parked && !is(noun.first(), &["parked"]) {
+        led("parked", at, &[&noun])
+    } else {
+        noun
+    };
     [&tokens[..=the], &noun, &place, &tokens[there + 1..]].concat()
 }
 
 /// "a coach is coming the other way": towards us.
 fn other_way(tokens: Vec<Token>) -> Vec<Token> {
-    let fresh = tokens.iter().take(5).any(|t| is(Some(t), &["a", "an", "another", "one"]))
+    let fresh = tokens
+        .iter()
+        .take(5)
+        .any(|t| is(Some(t), &["a", "an", "another", "one"]))
         || tokens.iter().take(4).any(|t| number(t).is_some());
     let Some((_, b)) = first_noun(&tokens).filter(|x| fresh && x.0 < 6) else {
         return tokens;
@@ -200,12 +306,37 @@ fn other_way(tokens: Vec<Token>) -> Vec<Token> {
         let goes = i >= b
             && is(
                 tokens.get(i.wrapping_sub(1)),
-                &["coming", "comes", "come", "going", "goes", "drives", "driving", "approaching", "approaches", "rides", "riding", "heading", "travelling", "travels"],
+                &[
+                    "coming",
+                    "comes",
+                    "come",
+                    "going",
+                    "goes",
+                    "drives",
+                    "driving",
+                    "approaching",
+                    "approaches",
+                    "rides",
+                    "riding",
+                    "heading",
+                    "travelling",
+                    "travels",
+                ],
             );
         let from = usize::from(is(tokens.get(i), &["from"]));
-        let n = leads(&tokens[i + from..], &OTHER_WAY)
-            .or_else(|| leads(&tokens[i + from..], &["the other direction", "the opposite direction", "the opposite side"]))?;
-        let closes = tokens.get(i + from + n).is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["now", "and", "please"]));
+        let n = leads(&tokens[i + from..], &OTHER_WAY).or_else(|| {
+            leads(
+                &tokens[i + from..],
+                &[
+                    "the other direction",
+                    "the opposite direction",
+                    "the opposite side",
+                ],
+            )
+        })?;
+        let closes = tokens
+            .get(i + from + n)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["now", "and", "please"]));
         // (after "turned" it is a turn, and "back the way it came" a way)
         (goes && closes && !has_noun(&tokens[i..i + n])).then(|| {
             out.extend(led("towards us", &tokens[i], &[]));
@@ -216,16 +347,19 @@ fn other_way(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "all three have reached the other side and left the picture": they have left.
 fn crossed_and_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const LEFT: &[&str] = &[
-        "left the picture", "left the scene", "left the frame", "left the image", "left the view", "disappeared", "vanished",
-        "are gone", "is gone", "gone", "left us", "gone away", "walked off", "walked away", "driven off", "driven away",
-        "ridden off", "are out of sight", "is out of sight", "are out of the picture", "left our view", "left the area",
-        "disappear", "disappears", "vanish", "vanishes", "leave the picture", "leaves the picture", "leave the scene",
-        "leaves the scene", "have left", "has left", "have gone", "has gone", "have disappeared", "has disappeared",
-        "have left the scene", "has left the scene", "have left the picture", "has left the picture", "gone home", "gone on",
-    ];
+    static LEFT: List = LazyLock::new(|| {
+        "\
+        left the picture|left the scene|left the frame|left the image|left the view|disappeared|vanished|\
+        are gone|is gone|gone|left us|gone away|walked off|walked away|driven off|driven away|ridden off|\
+        are out of sight|is out of sight|are out of the picture|left our view|left the area|disappear|\
+        disappears|vanish|vanishes|leave the picture|leaves the picture|leave the scene|leaves the scene|\
+        have left|has left|have gone|has gone|have disappeared|has disappeared|have left the scene|\
+        has left the scene|have left the picture|has left the picture|gone home|gone on"
+            .split('|')
+            .collect()
+    });
     let Some((and, _)) = find(&tokens, &["and", "and then", "and so", "and now"])
-        .filter(|(i, n)| leads(&tokens[i + n..], LEFT).is_some_and(|m| i + n + m == tokens.len()))
+        .filter(|(i, n)| leads(&tokens[i + n..], &LEFT).is_some_and(|m| i + n + m == tokens.len()))
     else {
         return tokens;
     };
@@ -236,7 +370,10 @@ fn crossed_and_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let whole = a > 0 || talk.fits(&head[..b]) > 0;
     let verb = is(
         head.get(b),
-        &["have", "has", "reach", "reaches", "finish", "finishes", "cross", "crosses", "walk", "walks", "drive", "drives", "turn", "turns", "ride", "rides", "are", "is", "had"],
+        &[
+            "have", "has", "reach", "reaches", "finish", "finishes", "cross", "crosses", "walk", "walks",
+            "drive", "drives", "turn", "turns", "ride", "rides", "are", "is", "had",
+        ],
     );
     let one_subject = !has_noun(&head[b..]) && !head.iter().any(|t| t.kind == TokenKind::Comma);
     if !(whole && verb && one_subject) {
