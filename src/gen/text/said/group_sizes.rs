@@ -35,11 +35,17 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
             continue;
         }
         let here = &tokens[from..i];
+        let only = is(here.first(), &["only", "just"]) && here.get(1).is_some_and(|t| number(t).is_some());
+        if !only {
+            if tokens[i].kind == TokenKind::Stop {
+                from = i + 1;
+            }
+            continue;
+        }
         let end = (i + 1..tokens.len())
             .find(|k| tokens[*k].kind == TokenKind::Stop)
             .unwrap_or(tokens.len());
         let rest = &tokens[i + 1..end];
-        let only = is(here.first(), &["only", "just"]) && here.get(1).is_some_and(|t| number(t).is_some());
         let others = leads(
             rest,
             &[
@@ -64,7 +70,7 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
                 ],
             )
         });
-        if let (true, true, Some(stays)) = (only, others, stays)
+        if let (true, Some(stays)) = (others, stays)
             && stays + 1 < here.len()
             && !rest
                 .iter()

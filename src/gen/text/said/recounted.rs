@@ -62,7 +62,7 @@ fn own_swapped(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let helpers = np[b.min(np.len())..]
         .iter()
         .all(|t| is(Some(t), &["has", "have", "should", "must", "now", "just", "can"]))
-        || is_place(&np[b..]);
+        || np.get(b..).is_some_and(is_place);
     let np: Vec<Token> = np
         .iter()
         .filter(|t| !is(Some(t), &["has", "have", "should", "must", "now", "just", "can"]))

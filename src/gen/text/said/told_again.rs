@@ -27,16 +27,22 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
             continue;
         }
         let here = &tokens[from..i];
-        let end = (i + 1..tokens.len())
-            .find(|k| tokens[*k].kind == TokenKind::Stop)
-            .unwrap_or(tokens.len());
-        let rest = &tokens[i + 1..end];
         let place = is(here.first(), &["the", "our"])
             .then(|| here.get(1..).and_then(longest))
             .flatten()
             .filter(|x| {
                 matches!(x.0, super::Sense::Place(..)) && is(here.get(1 + x.1), &["is", "looks", "seems"])
             });
+        if place.is_none() || !is(here.last(), EMPTY) {
+            if tokens[i].kind == TokenKind::Stop {
+                from = i + 1;
+            }
+            continue;
+        }
+        let end = (i + 1..tokens.len())
+            .find(|k| tokens[*k].kind == TokenKind::Stop)
+            .unwrap_or(tokens.len());
+        let rest = &tokens[i + 1..end];
         let so = usize::from(is(rest.first(), &["so", "and", "please"]));
         if let Some((_, n)) = place
             && is(here.last(), EMPTY)
