@@ -31,7 +31,7 @@ pub fn named(tokens: &[Token]) -> Vec<Token> {
                 .is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "our" | "my"))
             && let Some(k) = (i + 3..tokens.len().min(i + 6)).find(|k| is_noun(&tokens[*k]))
         {
-            out.push(word(&singular(&tokens[k].text), t));
+            out.push(word(singular(&tokens[k].text), t));
             skip = k + 1;
             continue;
         }

@@ -16,7 +16,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         (mark(&out[k - 1]) || is(out.get(k - 1), &["and"]))
             && is(out.get(*k), &["the", "one", "both", "that"])
     });
-    if let Some((k, new)) = links.filter_map(|k| Some((k, comes_to(&out[k..], talk)?))).last() {
+    if let Some((k, new)) = links.rev().find_map(|k| Some((k, comes_to(&out[k..], talk)?))) {
         return [&out[..k], &new].concat();
     }
     comes_to(&out, talk).unwrap_or(out)

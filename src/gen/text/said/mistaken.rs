@@ -244,10 +244,9 @@ fn denied_last(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             )
     })?;
     // (", instead a bus" brings something in)
-    is(new.get(not), &["instead"])
-        .then(|| is(new.get(not + 1), &["of"]))
-        .unwrap_or(true)
-        .then_some(())?;
+    if is(new.get(not), &["instead"]) && !is(new.get(not + 1), &["of"]) {
+        return None;
+    }
     let old = trimmed(&new[not + n..]);
     let (_, e) = kind(old)?;
     let between = trimmed(&new[b..not]);
