@@ -360,9 +360,10 @@ fn absolute(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             .last()
             .is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and", "but", "only"]));
         // "could we have it with the car replaced": nothing but the wish stands before
-        let wish = lead
-            .iter()
-            .all(|t| AROUND.contains(&text(t)) || LIKING.contains(&text(t)) || t.kind == TokenKind::Comma);
+        let wish = !lead.is_empty()
+            && lead.iter().all(|t| {
+                AROUND.contains(&text(t)) || LIKING.contains(&text(t)) || t.kind == TokenKind::Comma
+            });
         (apart || wish).then_some(())?;
         known(tokens.get(i + 1)).then_some(())?;
         let rest = &tokens[i + 1..];
