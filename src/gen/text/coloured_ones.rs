@@ -17,7 +17,24 @@ pub fn is_colour(t: &Token) -> bool {
 /// A text with nouns for "one" and "ones" after a colour.
 pub fn named(tokens: &[Token]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
+    let mut skip = 0;
     for (i, t) in tokens.iter().enumerate() {
+        if i < skip {
+            continue;
+        }
+        // "the red one of the two cars": the red car
+        if t.text == "one"
+            && i.checked_sub(1).is_some_and(|k| is_colour(&tokens[k]))
+            && tokens.get(i + 1).is_some_and(|t| t.text == "of")
+            && tokens
+                .get(i + 2)
+                .is_some_and(|t| matches!(t.text.as_str(), "the" | "these" | "those" | "our" | "my"))
+            && let Some(k) = (i + 3..tokens.len().min(i + 6)).find(|k| is_noun(&tokens[*k]))
+        {
+            out.push(word(singular(&tokens[k].text), t));
+            skip = k + 1;
+            continue;
+        }
         let many = t.text == "ones";
         if !(many || t.text == "one") || !i.checked_sub(1).is_some_and(|k| is_colour(&tokens[k])) {
             out.push(t.clone());

@@ -679,8 +679,17 @@ impl Editor<'_> {
         .any(|w| more.contains(w))
             || ["second ", "third ", "fourth ", "fifth "]
                 .iter()
-                .any(|w| more.starts_with(w));
-        if more && spec.relations.is_empty() {
+                .any(|w| more.starts_with(w))
+            || c.targets.iter().any(|m| m.pick == Some(Pick::More));
+        // ("on the sidewalk" is the one where they are)
+        let strip = |r: &super::description::Stated| {
+            let wide = [LaneRole::Sidewalk, LaneRole::Roadside];
+            r.relation == RelationKind::On
+                && wide
+                    .iter()
+                    .any(|w| r.anchor == super::description::Anchor::Lane(*w))
+        };
+        if more && spec.relations.iter().all(strip) {
             let alike: Vec<BoxId> = self
                 .boxes
                 .values()

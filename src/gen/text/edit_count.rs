@@ -154,6 +154,24 @@ impl Editor<'_> {
 
     /// More of a kind stand where all of that kind stand, if nothing else was said.
     pub(super) fn like_the_others(&self, spec: &mut ObjectSpec, others: &[BoxId]) {
+        use super::holds::{Target, holds};
+        // (where all of them are on a zebra crossing, more are)
+        let crosses = |id: &BoxId| {
+            let on = |b| holds(&self.map, RelationKind::On, b, &Target::Crossing, None, None);
+            self.boxes.get(id).is_some_and(on)
+        };
+        if spec.class == Class::Pedestrian && !others.is_empty() && others.iter().all(crosses) {
+            if spec.relations.is_empty() {
+                spec.relations.push(Stated {
+                    relation: RelationKind::On,
+                    anchor: Anchor::Crossing,
+                    and: None,
+                    distance_m: None,
+                    span: spec.span,
+                });
+            }
+            return;
+        }
         let roles: Vec<_> = others
             .iter()
             .map(|id| role_of(&self.map, &self.boxes[id]))

@@ -10,8 +10,8 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, chosen, except, pointed_back, room_of, said, told_once, unasked,
-    without_asides, worded,
+    Left, Piece, Room, Talk, apart, as_orders, chosen, except, pointed_back, rejoined, room_of, said,
+    told_once, unasked, without_asides, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -268,13 +268,15 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: unasked(apart(unasked(labelled_apart(super::parker::parker(
-                &told_once(without_asides(pointed_back(
-                    super::said::whole(super::same_words::commands(&super::common::plain(&tokens(text)))),
-                    text,
-                ))),
-                true,
-            ))))),
+            tokens: unasked(apart(unasked(as_orders(rejoined(labelled_apart(
+                super::parker::parker(
+                    &told_once(without_asides(pointed_back(
+                        super::said::whole(super::same_words::commands(&super::common::plain(&tokens(text)))),
+                        text,
+                    ))),
+                    true,
+                ),
+            )))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

@@ -69,6 +69,8 @@ const SETS: &[(&str, &str)] = sets![
     "strangers_28.jsonl",
     "strangers_29.jsonl",
     "causes_s.jsonl",
+    "strangers_31.jsonl",
+    "causes_u.jsonl",
     "exam_9.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",

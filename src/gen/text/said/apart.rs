@@ -204,7 +204,9 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let (left, right) = (&sentence[..a], &sentence[b..]);
         // ("only one of the children is left, and the bus is gone")
         let only = 2 * usize::from(is(left.first(), &["only"]) && left.len() > 3 && is(left.get(2), &["of"]));
-        let plain = !left[only..].iter().any(shares) && !right.iter().any(shares);
+        // ("two on the zebra are too few, let's have five": of what was named)
+        let few = find(left, &["too few", "too many", "not enough"]).is_some() && !has_noun(right);
+        let plain = !few && !left[only..].iter().any(shares) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
         (plain && told_apart).then_some((a, b))
     })

@@ -36,7 +36,11 @@ const TO: &str = "\
     firstly|second|secondly|third|thirdly|finally|lastly|last|additionally|furthermore|moreover|oh|oh and|\
     ok so|okay so|first of all|to begin with|to start with|for starters|after that|afterwards|in addition|\
     instead of that|one more thing|another thing|later|meanwhile|actually|on second thought|on second thoughts|\
-    immediately|carefully|somebody|someone";
+    immediately|carefully|somebody|someone|is it possible to|would it be possible to|is it ok to|would it be ok to|\
+    is there a way to|is there any way to|would you be able to|are you able to|are we able to|i wonder if you could|\
+    i was wondering if you could|i was wondering whether you could|i wonder whether you could|could i ask you to|\
+    may i ask you to|can i ask you to|id ask you to|i would ask you to|any chance to|is there a chance to|\
+    would it be too much to|it might be better to|it might be good to|you had better|youd better|we had better";
 /// Before what is done: "removing".
 const DOING: &str = "\
     would you mind|do you mind|how about|what about|i suggest|we suggest|i propose|we propose|i recommend|try|\

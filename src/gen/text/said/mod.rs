@@ -24,13 +24,19 @@ mod frame;
 mod gapped;
 mod gaps;
 mod gifts;
+mod group_sizes;
+mod happier;
+mod headway;
 mod idioms;
+mod joined_by;
 mod kept;
 mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
+mod mistaken;
 mod newcomers;
+mod nominal;
 mod notes;
 mod of_several;
 mod offhand;
@@ -47,6 +53,7 @@ mod presence;
 mod question;
 mod reasons;
 mod recast;
+mod recounted;
 mod remaining;
 mod remarks;
 mod riders;
@@ -60,6 +67,7 @@ mod spaces;
 mod splits;
 mod spoken;
 mod steps;
+mod strides;
 mod strips;
 mod subject;
 mod sums;
@@ -70,6 +78,7 @@ mod testimony;
 #[cfg(test)]
 mod tests;
 mod tidy;
+mod told_again;
 mod topics;
 mod totals;
 mod turns;
@@ -103,6 +112,7 @@ use forms::{
 use frame::unwrapped;
 pub use left::Left;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
+pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
 pub use pointers::plain as pointed_back;
@@ -237,6 +247,10 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
     let out = placing::plain(bare::plain(out, talk), talk);
+    let out = headway::plain(happier::plain(out, talk), talk);
+    let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
+    let out = mistaken::plain(recounted::plain(out, talk), talk);
+    let out = joined_by::plain(told_again::plain(out, talk), talk);
     let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
@@ -262,6 +276,11 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let mut out = totals::plain(out, talk);
     out.extend_from_slice(stop);
     out
+}
+
+/// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
+pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(tokens))))
 }
 
 /// Reads a sentence with its stop.

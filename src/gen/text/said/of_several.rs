@@ -50,7 +50,7 @@ const STAYS: &[&str] = &["remain", "remains", "stay", "stays", "survive", "survi
 
 /// The sentence with such a choice as one noun phrase.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = pick_of(tokens);
+    let out = pick_of(only_of(tokens));
     let out = pick_of_them(out, talk);
     let out = only_the_one(out);
     group_first(out)
@@ -70,7 +70,7 @@ pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             matches!(
                 look_up(text(t)),
                 Some(Sense::State(_, false) | Sense::Color(_) | Sense::Size(_))
-            )
+            ) || is(Some(t), &["oncoming", "approaching", "waiting", "moving"])
         };
         let noun = tokens[end..].iter().take_while(|t| described(t)).count() + end;
         let named = super::words::noun_at(&tokens[noun..]).is_some();
@@ -98,6 +98,26 @@ pub(super) fn of_the_group(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         out.extend(led(&class.label(), &tokens[i], &[]));
         Some(end)
     })
+}
+
+/// "let both of them walk there" where nothing was named: the two that there are of one kind.
+pub(super) fn both_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((i, n)) = find(&tokens, &["both of them", "the two of them", "the pair of them"]) else {
+        return tokens;
+    };
+    let mut counts: BTreeMap<Class, i64> = BTreeMap::new();
+    for b in talk.boxes.values() {
+        *counts.entry(b.class).or_default() += 1;
+    }
+    let mut two = counts.iter().filter(|(_, n)| **n == 2).map(|(c, _)| *c);
+    match (two.next(), two.next()) {
+        (Some(class), None) if talk.last.is_none() && first_noun(&tokens[..i]).is_none() => {
+            let both = led("both", &tokens[i], &[]);
+            let noun = led(&super::super::lexicon::plural(&class.label()), &tokens[i], &[]);
+            [&tokens[..i], &both, &noun, &tokens[i + n..]].concat()
+        }
+        _ => tokens,
+    }
 }
 
 /// "the front truck", "rear lorry": of several, the one ahead of us or behind us, else the first or last of them.
@@ -177,11 +197,109 @@ fn counted(tokens: &[Token], at: usize) -> usize {
     at + usize::from(many)
 }
 
+/// A word that picks one only before "one": "the left one of the two", not "to the left of the two".
+fn side_at(tokens: &[Token]) -> Option<usize> {
+    const SIDES: &[&str] = &["left hand", "right hand", "left", "right"];
+    leads(tokens, SIDES).filter(|n| is(tokens.get(*n), &["one"]))
+}
+
+/// "only the right one of the two parked cars remains": of the two parked cars only the right one remains.
+fn only_of(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["only the", "just the"]) else {
+        return tokens;
+    };
+    let Some(pick) = pick_at(&tokens[n..]).or_else(|| side_at(&tokens[n..])) else {
+        return tokens;
+    };
+    let one = n + pick + usize::from(is(tokens.get(n + pick), &["one"]));
+    let Some(_) = leads(&tokens[one..], GROUPS) else {
+        return tokens;
+    };
+    let Some((_, b)) = first_noun(&tokens[one..]).filter(|x| x.0 < 6) else {
+        return tokens;
+    };
+    let end = one + b;
+    let late = &tokens[end..];
+    let stays = late
+        .iter()
+        .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]));
+    if !stays || super::words::has_noun(late) {
+        return tokens;
+    }
+    [&tokens[one..end], &tokens[..one], late].concat()
+}
+
+/// "the parked car from the left roadside has driven away": the one that stands there.
+pub(super) fn from_there(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    for i in 2..tokens.len() {
+        let side = is(tokens.get(i), &["from"])
+            && is(tokens.get(i + 1), &["the", "our", "my"])
+            && is(
+                tokens.get(i + 2),
+                &[
+                    "left", "right", "oncoming", "opposite", "crossing", "zebra", "sidewalk", "pavement",
+                    "other",
+                ],
+            );
+        if !side {
+            continue;
+        }
+        let n = match super::words::longest(&tokens[i + 2..]) {
+            Some((Sense::Place(..), n)) => n,
+            _ if is(tokens.get(i + 3), &["side"]) => 2,
+            _ => continue,
+        };
+        // (who goes from there to elsewhere is told apart by where he goes)
+        let goes = is(tokens.get(i + 2 + n), &["to", "onto", "into", "over", "across"]);
+        let Some((a, b)) = first_noun(&tokens[..i]).filter(|x| x.1 == i) else {
+            continue;
+        };
+        let the = a > 0 && is(tokens.get(a - 1), &["the", "that", "parked"]);
+        let lane = tokens[i..i + 2 + n].iter().any(|t| text(t) == "lane");
+        let on = if lane { "in" } else { "on" };
+        let np = [&tokens[a..b], &led(on, &tokens[i], &[&tokens[i + 1..i + 2 + n]])].concat();
+        let moves = is(tokens.first(), &["move", "shift", "take", "bring"]) && !goes;
+        if the && !goes && !moves && talk.fits(&np) == 1 {
+            tokens[i].text = on.into();
+        }
+    }
+    put_from(tokens, talk)
+}
+
+/// "put the pedestrian on the left sidewalk on the road": the one there goes to the road.
+fn put_from(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if !is(tokens.first(), &["put", "place", "set", "stand", "park"]) || !is(tokens.get(1), &["the", "that"])
+    {
+        return tokens;
+    }
+    let Some((_, b)) = first_noun(&tokens[1..]).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let from = 1 + b;
+    let on = |k: usize| is(tokens.get(k), &["on", "in"]) && is(tokens.get(k + 1), &["the", "our", "my"]);
+    let goal = (from + 3..tokens.len()).find(|k| on(*k));
+    if let Some(goal) = goal.filter(|k| {
+        on(from)
+            && !is(tokens.get(k - 1), &["of", "and"])
+            && talk.fits(&tokens[1..*k]) == 1
+            && !tokens[from..*k].iter().any(|t| t.kind != TokenKind::Word)
+    }) {
+        tokens[0].text = "move".into();
+        tokens[goal].text = if is(tokens.get(goal), &["in"]) {
+            "into"
+        } else {
+            "onto"
+        }
+        .into();
+    }
+    tokens
+}
+
 /// "the farthest of the three parked cars": the farthest parked car.
 fn pick_of(tokens: Vec<Token>) -> Vec<Token> {
     let found = (1..tokens.len()).find_map(|i| {
         is(tokens.get(i - 1), &["the", "that"]).then_some(())?;
-        let pick = pick_at(&tokens[i..])?;
+        let pick = pick_at(&tokens[i..]).or_else(|| side_at(&tokens[i..]))?;
         let mut k = i + pick;
         let many = tokens
             .get(k)
@@ -243,8 +361,18 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     let rest = trimmed(&tokens[end..]);
     // "only the nearest one should remain"
     let only = leads(rest, &["only the", "just the", "keep only the", "leave only the"]);
+    // ("only the blue car stays": its noun is there already)
     if let Some(n) = only
-        && let Some(p) = rest.get(n..).and_then(pick_at)
+        && rest.get(n).is_some_and(super::super::coloured_ones::is_colour)
+        && let Some((0, b)) = rest.get(n + 1..).and_then(first_noun)
+        && rest[n + 1 + b..].iter().any(|t| STAYS.contains(&text(t)))
+    {
+        let all = bare_np(np);
+        let except = led("except the", &rest[0], &[&rest[n..n + 1 + b]]);
+        return led("remove all the", &tokens[0], &[&all, &except]);
+    }
+    if let Some(n) = only
+        && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)))
         && (rest[n + p..]
             .iter()
             .any(|t| STAYS.contains(&text(t)) || is(Some(t), &["left", "kept"]))
@@ -253,7 +381,17 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
     {
         let all = bare_np(np);
         let one = singular_of(&all);
-        let except = led("except the", &rest[0], &[&rest[n..n + p], &one]);
+        // (of which one the comparative is said is not known any more)
+        let pick = match text(&rest[n]) {
+            "nearer" | "closer" => led("nearest", &rest[n], &[]),
+            "farther" | "further" => led("farthest", &rest[n], &[]),
+            _ => rest[n..n + p]
+                .iter()
+                .filter(|t| text(t) != "hand")
+                .cloned()
+                .collect(),
+        };
+        let except = led("except the", &rest[0], &[&pick, &one]);
         return led("remove all the", &tokens[0], &[&all, &except]);
     }
     let Some(n) = leads(
@@ -336,7 +474,7 @@ fn group_first(tokens: Vec<Token>) -> Vec<Token> {
     }
     let picked = (1..rest.len()).find_map(|i| {
         is(rest.get(i - 1), &["the"]).then_some(())?;
-        let k = i + pick_at(&rest[i..])?;
+        let k = i + pick_at(&rest[i..]).or_else(|| side_at(&rest[i..]))?;
         let one = usize::from(is(rest.get(k), &["one"]));
         first_noun(&rest[k..]).is_none_or(|x| x.0 > 1).then_some((k, one))
     });

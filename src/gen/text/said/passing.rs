@@ -374,6 +374,18 @@ fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         if !ends(tokens.get(end)) && !is(tokens.get(end), &["and", "so"]) {
             return None;
         }
+        // ("and is 15 m behind us now": where it is counts)
+        let now = is(tokens.get(end), &["and"])
+            && is(
+                tokens.get(end + 1),
+                &[
+                    "is", "are", "drives", "rides", "now", "walks", "stands", "runs", "follows",
+                ],
+            )
+            && (end + 2..tokens.len().min(end + 5)).any(|k| super::words::is_place(&tokens[k..]));
+        if now {
+            return Some(end + 1);
+        }
         let beyond = other.filter(|np| {
             let boxes = talk.boxes_of(np);
             !me || !boxes.is_empty() && boxes.iter().all(|b| b.center_m.x > 0.0)

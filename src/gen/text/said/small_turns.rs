@@ -21,7 +21,7 @@ pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
     let out = replaced(&out, WHATEVER, "delete whatever is");
     let out = replaced(&out, "double park|double parks", "park");
     let out = replaced(&out, OFF_THEY_GO, "remove them");
-    let out = cut_from(out);
+    let out = cut_from(only_wanted(out));
     let out = one_stays(fewer(besides(out)));
     let out = keeps_beside(too_many(stationed(out)));
     uses(&distance_between(&into_there(&out)))
@@ -39,12 +39,46 @@ fn cut_from(mut tokens: Vec<Token>) -> Vec<Token> {
     tokens
 }
 
+/// "I only want to see one of the workers": keep one of them.
+fn only_wanted(tokens: Vec<Token>) -> Vec<Token> {
+    const WANTS: &str = "i only want to see|we only want to see|i only want to have|i only want to keep|i only want|we only want|i only need|\
+        we only need|i just want|i just need|we just need|i want to see only|i want only|i need only|i want just|we need only";
+    match begins(&tokens, WANTS) {
+        Some(n)
+            if tokens.get(n).is_some_and(|t| number(t).is_some())
+                && is(tokens.get(n + 1), &["of"])
+                && first_noun(&tokens[n..]).is_some_and(|x| n + x.1 == tokens.len()) =>
+        {
+            let (a, b) = first_noun(&tokens[n..]).unwrap_or((0, 0));
+            let noun = &tokens[n + a..n + b];
+            let one = number(&tokens[n]) == Some(1);
+            let noun = if one {
+                super::topics::singular_of(noun)
+            } else {
+                noun.to_vec()
+            };
+            led("there should be", &tokens[0], &[&tokens[n..=n], &noun])
+        }
+        _ => tokens,
+    }
+}
+
 /// "there should be one child fewer": one child fewer.
 fn fewer(tokens: Vec<Token>) -> Vec<Token> {
     let n = begins(
         &tokens,
         "there should be|there must be|there shall be|i want|we need|i need|make it|let there be",
     );
+    // "one cone fewer will do"
+    const DOES: &str = "will do|would do|is enough|are enough|is fine|would be fine|is plenty|would be enough|suffices|would suffice|\
+        would be better|would be good|would be nice|would be right|is better|will be enough|should do|should be enough";
+    let late = (2..tokens.len().min(6)).find(|i| {
+        is(tokens.get(i - 1), &["fewer", "less"])
+            && begins(&tokens[*i..], DOES).is_some_and(|n| i + n == tokens.len())
+    });
+    if let Some(late) = late.filter(|_| n.is_none() && number(&tokens[0]).is_some()) {
+        return tokens[..late].to_vec();
+    }
     match n {
         Some(n)
             if is(tokens.last(), &["fewer", "less"])

@@ -569,6 +569,28 @@ fn out_and_in(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     let what = trimmed(&tokens[i + 1..tokens.len() - 1]);
+    // ("van out, bus in": in its place)
+    let one = |np: &[Token]| {
+        let kind = first_noun(np).filter(|x| x.1 == np.len() && x.0 < 3);
+        kind.is_some_and(|x| {
+            x.1 == x.0 + 1 && matches!(super::look_up(text(&np[x.0])), Some(super::Sense::Noun(_, false)))
+        }) && np
+            .iter()
+            .all(|t| number(t).is_none() || is(Some(t), &["a", "an"]))
+    };
+    if one(&tokens[..i]) && one(what) {
+        let the = if is(tokens.first(), &["the", "that"]) {
+            "replace"
+        } else {
+            "replace the"
+        };
+        let with = if is(what.first(), &["a", "an", "the"]) {
+            "with"
+        } else {
+            "with a"
+        };
+        return led(the, &tokens[0], &[&tokens[..i], &led(with, &tokens[i], &[what])]);
+    }
     led(
         "remove",
         &tokens[0],
