@@ -29,7 +29,7 @@ fn is_number(t: &Token) -> bool {
 
 /// A text in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let out = ordinals(tokens);
+    let out = ordinals(&paced(tokens));
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
@@ -50,6 +50,33 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = sides_in_short(&out);
     let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));
     super::carried::plain(some_so_many(&part_for_whole(&out)))
+}
+
+/// "ten paces ahead": in metres, as far as that is with ordinary steps.
+fn paced(tokens: &[Token]) -> Vec<Token> {
+    const PACE_M: f64 = 0.75;
+    const STEPS: &str = "paces|steps|strides|footsteps|big steps|long strides|large steps|good paces";
+    const WHITHER: &str = "ahead|in front|before|behind|away|from|off|back|forward|forwards|backwards|to|towards|toward|left|right|nearer|closer|further|farther|up|down|beyond|past|apart|after|of|on|aside|beside";
+    rewritten(tokens, |i, out| {
+        let many = super::ellipsis::number(&tokens[i]).filter(|n| *n > 0)?;
+        let n = 1 + begins(tokens.get(i + 1..)?, STEPS)?;
+        let rest = &tokens[i + n..];
+        let far = rest.first().is_none_or(|t| t.kind != TokenKind::Word) || begins(rest, WHITHER).is_some();
+        // ("in three steps" is how, not how far)
+        let how = out
+            .last()
+            .is_some_and(|t| matches!(t.text.as_str(), "in" | "these" | "those"));
+        (far && !how).then(|| {
+            let metres = f64::from(many) * PACE_M;
+            out.push(Token {
+                kind: TokenKind::Number(metres),
+                text: metres.to_string(),
+                span: tokens[i].span,
+            });
+            out.push(word("m", &tokens[i + n - 1]));
+            i + n
+        })
+    })
 }
 
 /// "1st", "2nd": in words.

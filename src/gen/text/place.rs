@@ -15,6 +15,8 @@ use crate::scene::graph::{
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
+/// As far off, m, is wholly wrong for what should be near.
+const FAR_M: f64 = 9.0;
 /// Orders that are tried while something is left out or a relation broken.
 const ATTEMPTS: u64 = 5;
 /// Boxes beyond this many are not tried: the scene is full long before.
@@ -294,7 +296,8 @@ impl Placer<'_> {
             .map(|i| self.graph.edges[*i])
             .map(|e| (e, self.target(e.to)))
             .collect();
-        let candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
+        let mut candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
+        candidates.extend(self.from.and_then(|old| turned_where_it_is(old, &stated)));
         let siblings: Vec<DVec2> = self.siblings(id, o, edges);
         let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
         let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
@@ -315,6 +318,13 @@ impl Placer<'_> {
                     Class::TrafficCone | Class::Barrier => 0.5 * near,
                     _ => 0.02 * near,
                 };
+            }
+            // In a lane is rather in its middle than on its edge.
+            if small {
+                cost += stated
+                    .iter()
+                    .map(|(e, t)| self.off_middle(e, t, s.p))
+                    .sum::<f64>();
             }
             // Small things that block a lane stand side by side across it.
             if blocks && small {
@@ -398,17 +408,20 @@ impl Placer<'_> {
                 break;
             }
             // What is ahead but not so far is nearer to what was said than what is behind.
-            let wrong = |e: &Edge| {
-                !self.edge_holds(
+            let wrong = |(e, to): &&(Edge, Option<Target>)| {
+                let held = self.edge_holds(
                     &Edge {
                         distance_m: None,
                         ..*e
                     },
                     &b,
-                )
+                );
+                !(held || off_near(e, to, &b).is_some_and(|off| off < FAR_M))
             };
-            let wholly = stated.iter().filter(|(e, _)| wrong(e)).count();
-            let total = cost + 40.0 * (broken + wholly) as f64;
+            let wholly = stated.iter().filter(wrong).count();
+            // (what cannot be near is as near as can be)
+            let off: f64 = stated.iter().filter_map(|(e, t)| off_near(e, t, &b)).sum();
+            let total = cost + 40.0 * (broken + wholly) as f64 + off;
             if best.as_ref().is_none_or(|b| total < b.0) {
                 best = Some((total, b));
             }
@@ -430,6 +443,20 @@ impl Placer<'_> {
             Some((_, b)) if broken(&b) > 0 && self.a_twin_holds(&siblings, o.class, &stated) => None,
             Some((_, b)) => Some(b),
             None => None,
+        }
+    }
+
+    fn off_middle(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+        use LaneRole as L;
+        match to {
+            Some(Target::Lane(role @ (L::Ego | L::Left | L::Right | L::Oncoming)))
+                if e.relation == RelationKind::On =>
+            {
+                let lane = self.map.points.iter().filter(|l| l.role == *role);
+                let off = lane.map(|l| l.p.distance(p)).fold(f64::INFINITY, f64::min);
+                4.0 * (off - 1.2).clamp(0.0, 1.0)
+            }
+            _ => 0.0,
         }
     }
 
@@ -513,6 +540,38 @@ impl Placer<'_> {
     }
 }
 
+/// Who is only told where to look stays where he is (what drives keeps to its lane).
+fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
+    use RelationKind as R;
+    let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
+    let p = old.center_m.truncate();
+    let mut looks = None;
+    for (e, to) in stated {
+        match (e.relation, to) {
+            (R::On | R::ParkedOn, Some(Target::Lane(_))) => {}
+            (R::Facing | R::FacingAway, Some(to)) => {
+                let away = if e.relation == R::FacingAway { -1.0 } else { 1.0 };
+                looks = Some(match to {
+                    Target::Thing(b) if b.id.0 == u32::MAX => -p * away,
+                    Target::Thing(b) => (b.center_m.truncate() - p) * away,
+                    _ => return None,
+                });
+            }
+            _ => return None,
+        }
+    }
+    let moves = old.velocity_mps.length() > 0.5;
+    looks.filter(|_| !drives).map(|way| Spot {
+        p,
+        yaw_rad: way.to_angle(),
+        cost: -10.0,
+        still: !moves,
+        moves,
+        on_road: true,
+        anywhere: old.class == Class::Pedestrian,
+    })
+}
+
 /// What it costs to bring a box to a place: the way, and turning it.
 fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
     let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
@@ -527,6 +586,16 @@ fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
     let along = dir.dot(p - ends[0]) - length / 2.0;
     // (the middle is where a reader looks first)
     dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+}
+
+/// Metres that something is farther off than near, at most 30, where it was said to be near.
+fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
+    match (e.relation, to) {
+        (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
+            Some((super::holds::gap_m(b, to) - 3.0).clamp(0.0, 30.0))
+        }
+        _ => None,
+    }
 }
 
 /// How far a place misses what was said in metres, and how far off the line of what it is behind or between.

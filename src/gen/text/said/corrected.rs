@@ -14,7 +14,10 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "what was driving in the left lane were two trucks, not two cars": the cars there are trucks.
 fn was_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    if let Some(new) = not_that(&tokens, talk) {
+    if let Some(new) = not_that(&tokens, talk)
+        .or_else(|| it_was(&tokens, talk))
+        .or_else(|| what_does(&tokens, talk))
+    {
         return new;
     }
     const BE: &[&str] = &[
@@ -101,6 +104,120 @@ fn not_that(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             &[&np, &led("with", &tokens[but], &[new])],
         )
     })
+}
+
+/// "it was a pickup that was following us, not a car": the car that was is a pickup.
+fn it_was(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let n = leads(
+        tokens,
+        &[
+            "it is",
+            "its",
+            "it was",
+            "that is",
+            "thats",
+            "that was",
+            "it has to be",
+            "it should be",
+            "it must be",
+            "it should have been",
+            "it must have been",
+            "it had been",
+            "it is actually",
+            "its actually",
+            "it was actually",
+            "it was in fact",
+            "it is in fact",
+            "it was really",
+            "it is really",
+            "its really",
+        ],
+    )?;
+    let new = &tokens[n..];
+    let (_, b) = first_noun(new).filter(|x| x.0 < 4 && is_new(new))?;
+    let not = (n + b..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["not"]) && matches!(tokens[k - 1].kind, TokenKind::Comma | TokenKind::Mark)
+    })?;
+    let old = trimmed(&tokens[not + 1..]);
+    let article = usize::from(is(old.first(), &["a", "an", "the"]));
+    let whole = first_noun(old).is_some_and(|x| x.0 < 4 && x.1 == old.len());
+    let said = &tokens[n + b..not];
+    let relative = usize::from(is(said.first(), &["that", "which", "who"]));
+    let helped = said[relative..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count();
+    let place = trimmed(&said[relative + helped..]);
+    let bare = &old[article..];
+    (whole && bare.first().is_some_and(|t| number(t).is_none())).then_some(())?;
+    let there = [bare, place].concat();
+    let np = [&there[..], bare].into_iter().find(|np| talk.fits(np) == 1)?;
+    Some(led(
+        "replace the",
+        &tokens[0],
+        &[np, &led("with", &tokens[not], &[&new[..b]])],
+    ))
+}
+
+/// "what waits there should be a bus rather than the car", "the thing ahead should be a van and not a bus": that becomes it.
+fn what_does(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    leads(
+        tokens,
+        &[
+            "what",
+            "whatever",
+            "who",
+            "whoever",
+            "the thing",
+            "the vehicle",
+            "the one",
+        ],
+    )?;
+    let be = (2..tokens.len()).find_map(|k| {
+        leads(
+            &tokens[k..],
+            &[
+                "should be",
+                "must be",
+                "ought to be",
+                "has to be",
+                "shall be",
+                "should have been",
+                "is to be",
+            ],
+        )
+        .map(|n| k + n)
+    })?;
+    let new = &tokens[be..];
+    let (_, b) = first_noun(new).filter(|x| x.0 < 4 && is_new(new))?;
+    let than = trimmed(&new[b..]);
+    let n = leads(
+        than,
+        &[
+            "rather than",
+            "instead of",
+            "in place of",
+            "and not",
+            "not",
+            "in lieu of",
+        ],
+    )?;
+    let old = &than[n..];
+    let whole = first_noun(old).is_some_and(|x| x.0 < 4 && x.1 == old.len());
+    let article = usize::from(is(old.first(), &["a", "an", "the", "that"]));
+    let np = &old[article..];
+    (whole && talk.fits(np) == 1).then(|| {
+        led(
+            "replace the",
+            &tokens[0],
+            &[np, &led("with", &tokens[be], &[&new[..b]])],
+        )
+    })
+}
+
+/// "a van", "two vans".
+fn is_new(np: &[Token]) -> bool {
+    is(np.first(), &["a", "an"]) || np.first().is_some_and(|t| number(t).is_some())
 }
 
 /// "our fleet has grown: six parked cars now", "five pedestrians now": so many of them.

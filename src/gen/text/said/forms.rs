@@ -492,17 +492,21 @@ pub(super) fn preferred(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> 
 
 /// "make a bus of that truck"
 pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
-    if !is(inner.first(), &["make", "build", "create", "form"])
-        || !is(inner.get(1), &["a", "an", "two", "three"])
-    {
+    let several = first_noun(inner).is_some_and(|x| x.0 == 1)
+        || inner
+            .get(1)
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]));
+    if !is(inner.first(), &["make", "build", "create", "form"]) || !several {
         return None;
     }
     let (i, n) = find(inner, &["out of", "of", "from"])?;
     let (new, old) = (&inner[1..i], &inner[i + n..]);
     let known = is(
         old.first(),
-        &["the", "that", "this", "those", "both", "my", "it", "them"],
-    );
+        &[
+            "the", "that", "this", "those", "both", "my", "it", "them", "all", "every",
+        ],
+    ) || old.first().is_some_and(|t| number(t).is_some()) && is(old.get(1), &["of"]);
     let end = first_noun(old).map_or(1, |x| x.1);
     (known && has_noun(new)).then(|| {
         vec![Piece::Plain(led(

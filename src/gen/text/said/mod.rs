@@ -21,9 +21,11 @@ mod forms;
 mod frame;
 mod gapped;
 mod gaps;
+mod gaze;
 mod gifts;
 mod idioms;
 mod kept;
+mod lane_of;
 mod left;
 mod likewise;
 mod limits;
@@ -54,6 +56,7 @@ mod skies;
 mod small_turns;
 mod some_of;
 mod spaces;
+mod speakers;
 mod splits;
 mod spoken;
 mod steps;
@@ -221,11 +224,14 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = speakers::plain(testimony::plain(body.to_vec()), talk);
+    let out = owned::plain(remarks::reported(out), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
+    let out = gaze::plain(spoken::coming(out, talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
-    let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
+    let out = seconds::plain(vacated::plain(out, talk), talk);
+    let out = notes::plain(lane_of::plain(out, talk), talk);
     let out = of_several::front_and_rear(spoken::little_ones(out, talk), talk);
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
@@ -313,7 +319,19 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
             .filter(|v| {
                 matches!(
                     text(v),
-                    "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
+                    "put"
+                        | "move"
+                        | "place"
+                        | "set"
+                        | "bring"
+                        | "shift"
+                        | "send"
+                        | "position"
+                        | "reposition"
+                        | "relocate"
+                        | "transfer"
+                        | "park"
+                        | "stand"
                 )
             })
             .or(told);

@@ -234,7 +234,21 @@ pub(super) fn carries(clause: &[Token]) -> bool {
     let (inner, _) = unwrapped(clause);
     is(
         inner.first(),
-        &["put", "move", "place", "set", "bring", "shift", "send"],
+        &[
+            "put",
+            "move",
+            "place",
+            "set",
+            "bring",
+            "shift",
+            "send",
+            "position",
+            "reposition",
+            "relocate",
+            "transfer",
+            "park",
+            "stand",
+        ],
     ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
 }
 

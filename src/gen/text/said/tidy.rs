@@ -232,7 +232,7 @@ fn set_out(tokens: Vec<Token>) -> Vec<Token> {
                 out.push(tokens[i + 1].clone());
                 out.push(super::words::word("parked", t));
             }
-            _ if i > 1
+            _ if i > 0
                 && text(&tokens[i - 1]) == "park"
                 && out.last().is_some_and(|o| text(o) == "parked") => {}
             _ => out.push(t.clone()),

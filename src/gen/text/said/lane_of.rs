@@ -1,0 +1,110 @@
+//! Strips told by who is there: "in the same lane as the bus", "let a truck drive in that lane", "on the pavement opposite".
+
+use super::super::holds::role_of;
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::{begins, rewritten};
+use super::Talk;
+use super::words::{first_noun, is, led};
+use crate::scene::SceneBox;
+use crate::scene::graph::LaneRole as L;
+
+const STRIP: &str = "lane|sidewalk|pavement|footpath|walkway|footway|kerb|curb|roadside|side of the road|side of the street|edge of the road|verge|shoulder";
+
+/// A sentence in which they bear their names.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    in_that(same_as(opposite_last(tokens), talk), talk)
+}
+
+/// "on the pavement opposite": on the opposite pavement.
+fn opposite_last(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], STRIP).filter(|_| is(out.last(), &["the"]))?;
+        let m = begins(
+            &tokens[i + n..],
+            "opposite|across the road|across the street|over the road|over the way|across the way",
+        )?;
+        let end = i + n + m;
+        // ("on the kerb opposite the bus" is across from it)
+        tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "too", "please", "instead"]))
+            .then(|| {
+                out.extend(led("opposite", &tokens[i], &[&tokens[i..i + n]]));
+                end
+            })
+    })
+}
+
+/// The words for where all of these are, if that is one lane or strip.
+fn name_of(boxes: &[SceneBox], talk: &Talk<'_>) -> Option<&'static str> {
+    let role = role_of(talk.map, boxes.first()?)?;
+    let all = boxes.iter().all(|b| role_of(talk.map, b) == Some(role));
+    let name = match role {
+        L::Ego => "our lane",
+        L::Left => "the left lane",
+        L::Right => "the right lane",
+        L::Oncoming => "the oncoming lane",
+        L::LeftSidewalk => "the left sidewalk",
+        L::RightSidewalk => "the right sidewalk",
+        L::LeftRoadside => "the left roadside",
+        L::RightRoadside => "the right roadside",
+        _ => return None,
+    };
+    all.then_some(name)
+}
+
+/// True if a lane is spoken of and named, or a strip and no lane.
+fn is_of_kind(lane: bool, name: &str) -> bool {
+    lane == name.ends_with(" lane")
+}
+
+/// "in the same lane as the bus": in the oncoming lane, if it is there.
+fn same_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let the = usize::from(is(tokens.get(i), &["the"]));
+        let same = i + the;
+        let n = begins(tokens.get(same + 1..)?, STRIP).filter(|_| is(tokens.get(same), &["same"]))?;
+        let as_ = same + 1 + n;
+        is(tokens.get(as_), &["as"]).then_some(())?;
+        let np = &tokens[as_ + 1..];
+        let (_, b) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "those"]))?;
+        let name = name_of(&talk.boxes_of(&np[..b]), talk)?;
+        is_of_kind(is(tokens.get(same + 1), &["lane"]), name).then_some(())?;
+        if !is(out.last(), &["in", "on", "along", "at", "into", "onto", "to"]) {
+            let at = if name.ends_with(" lane") { "in" } else { "on" };
+            out.extend(led(at, &tokens[i], &[]));
+        }
+        out.extend(led(name, &tokens[i], &[]));
+        Some(as_ + 1 + b)
+    })
+}
+
+/// "delete the taxi, then let a bus come towards us in that lane": where the taxi was.
+fn in_that(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let that = is(tokens.get(i), &["that", "this"])
+            && is(
+                out.last(),
+                &["in", "on", "along", "into", "onto", "at", "down", "to"],
+            );
+        let n = begins(tokens.get(i + 1..)?, STRIP).filter(|_| that)?;
+        // ("on that side of the bus" says where)
+        is(tokens.get(i + 1 + n), &["of", "as", "where", "which"])
+            .then_some(())
+            .map_or(Some(()), |()| None)?;
+        let lane = is(tokens.get(i + 1), &["lane"]);
+        // what was named before it in the sentence, else what was spoken of last
+        let before = (0..out.len()).rev().find_map(|k| {
+            is(out.get(k), &["the", "that", "both", "my"]).then_some(())?;
+            let (_, b) = first_noun(&out[k..]).filter(|x| x.0 < 4)?;
+            name_of(&talk.boxes_of(&out[k..k + b]), talk).filter(|name| is_of_kind(lane, name))
+        });
+        let last = || {
+            let np = led(&format!("the {}", talk.last.as_deref()?), &tokens[i], &[]);
+            name_of(&talk.boxes_of(&np), talk).filter(|name| is_of_kind(lane, name))
+        };
+        let name = before.or_else(last)?;
+        out.extend(led(name, &tokens[i], &[]));
+        Some(i + 1 + n)
+    })
+}
