@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use super::description::{Became, Description, Phrase, Reading, TimeOfDay, Unread, Weather};
-use super::edit_grammar::{Back, Command, Reader};
+use super::edit_grammar::{Back, Command, Destination, Reader};
 use super::holds::in_role;
 use super::lanes::LaneMap;
 use super::mention::Mention;
@@ -329,6 +329,10 @@ impl Editor<'_> {
                     true
                 } else {
                     let mut d = d.clone();
+                    // "park a van next to her"
+                    if let (Some(state), Some(first)) = (c.state, d.foreground.first_mut()) {
+                        first.state.get_or_insert(state);
+                    }
                     if let [only] = d.foreground.as_mut_slice() {
                         self.as_the_others(only, c);
                     }
@@ -353,6 +357,19 @@ impl Editor<'_> {
             Verb::Keep => {
                 self.keep(c);
                 done.push("kept so many".into());
+            }
+            // "the truck waits 20 m behind us", where there is none: there is one now
+            Verb::Move if self.tells_of_absent(c) => {
+                if let (Some(Destination::Place(spec)), Some(m)) = (&c.destination, c.targets.first()) {
+                    self.note(format!("no {} is in the scene: one is added", m.spec.noun));
+                    let foreground = c.with_anchors(spec, spec.class);
+                    if self.add(&Description {
+                        foreground,
+                        ..Description::default()
+                    }) {
+                        done.push("added".into());
+                    }
+                }
             }
             Verb::Move => {
                 if let Some(ids) = self.targets(c, false) {
@@ -438,6 +455,28 @@ impl Editor<'_> {
             self.gone = gone_before;
         }
         (!done.is_empty()).then(|| done.join(", "))
+    }
+
+    /// True if a sentence tells in metres where something stands of which the scene has none.
+    fn tells_of_absent(&self, c: &Command) -> bool {
+        let ([m], Some(Destination::Place(spec))) = (c.targets.as_slice(), &c.destination) else {
+            return false;
+        };
+        let measured = spec
+            .relations
+            .iter()
+            .any(|r| r.distance_m.is_some() && r.anchor == super::description::Anchor::Ego);
+        let words = c.text.to_lowercase();
+        let states = ["the ", "my ", "our "].iter().any(|w| words.starts_with(w));
+        let none = |m: &Mention| !self.boxes.values().any(|b| m.classes.contains(&b.class));
+        states
+            && measured
+            && !m.plural
+            && m.id.is_none()
+            && m.pick.is_none()
+            && c.back.is_none()
+            && c.nth.is_none()
+            && none(m)
     }
 
     /// True if what a command replaces was taken away just before.

@@ -252,6 +252,7 @@ impl Editor<'_> {
                 }
             }
         }
+        any |= with_whom(&mut follows);
         let tried = match any.then(|| self.arrange(&follows, None)) {
             Some(Arranged::Asked) => return false,
             Some(Arranged::Placed { new, left_out, unmet }) if left_out.is_empty() && unmet.is_empty() => {
@@ -417,6 +418,40 @@ impl Editor<'_> {
         };
         heading * speed
     }
+}
+
+/// "a woman next to the man on the crossing" is on the crossing, too, if there is room. True if somebody is.
+fn with_whom(d: &mut Description) -> bool {
+    use crate::scene::graph::LaneRole as L;
+    let mut any = false;
+    for i in 0..d.foreground.len() {
+        let placed = |r: &Stated| matches!(r.anchor, Anchor::Lane(_) | Anchor::Crossing | Anchor::Junction);
+        let o = &d.foreground[i];
+        let free = o.class == crate::scene::Class::Pedestrian && !o.relations.iter().any(placed);
+        let Some(k) = o.relations.iter().find_map(|r| match (r.relation, r.anchor) {
+            (RelationKind::NextTo, Anchor::Object(k)) if free => Some(k),
+            _ => None,
+        }) else {
+            continue;
+        };
+        let there = d.foreground.get(k).and_then(|with| {
+            let walks = |r: &&Stated| {
+                r.relation == RelationKind::On
+                    && matches!(
+                        r.anchor,
+                        Anchor::Crossing | Anchor::Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)
+                    )
+            };
+            with.relations
+                .iter()
+                .find(walks)
+                .filter(|_| with.class == crate::scene::Class::Pedestrian)
+                .copied()
+        });
+        any |= there.is_some();
+        d.foreground[i].relations.extend(there);
+    }
+    any
 }
 
 /// True if a word picks a certain one.

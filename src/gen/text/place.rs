@@ -17,6 +17,8 @@ use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
 /// As far off, m, is wholly wrong for what should be near.
 const FAR_M: f64 = 9.0;
+/// So far off along the road, m, is about where it was said to be.
+const ALONG_M: f64 = 4.0;
 /// Orders that are tried while something is left out or a relation broken.
 const ATTEMPTS: u64 = 5;
 /// Boxes beyond this many are not tried: the scene is full long before.
@@ -373,9 +375,14 @@ impl Placer<'_> {
             ranked.push((cost, i));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let along = stated.iter().any(|(e, _)| {
+            matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind) && e.distance_m.is_some()
+        });
         // Told to stand close to the ego vehicle it may.
         let close = stated.iter().any(|(e, t)| {
-            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX) && e.distance_m.is_some_and(|d| d < 8.0)
+            let half_m = if along { size_m.x / 2.0 } else { 0.0 };
+            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                && e.distance_m.is_some_and(|d| d < 8.0_f64.max(half_m + 5.5))
         });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
@@ -416,11 +423,21 @@ impl Placer<'_> {
                     },
                     &b,
                 );
-                !(held || off_near(e, to, &b).is_some_and(|off| off < FAR_M))
+                let along = || self.off_along(e, to, b.center_m.truncate());
+                !(held
+                    || off_near(e, to, &b).is_some_and(|off| off < FAR_M)
+                    || along().is_some_and(|off| off < ALONG_M))
             };
             let wholly = stated.iter().filter(wrong).count();
             // (what cannot be near is as near as can be)
-            let off: f64 = stated.iter().filter_map(|(e, t)| off_near(e, t, &b)).sum();
+            let off_by = |(e, t): &(Edge, Option<Target>)| {
+                let along = || {
+                    self.off_along(e, t, b.center_m.truncate())
+                        .filter(|_| !self.edge_holds(e, &b))
+                };
+                off_near(e, t, &b).or_else(along)
+            };
+            let off: f64 = stated.iter().filter_map(off_by).sum();
             let total = cost + 40.0 * (broken + wholly) as f64 + off;
             if best.as_ref().is_none_or(|b| total < b.0) {
                 best = Some((total, b));
@@ -446,6 +463,19 @@ impl Placer<'_> {
         }
     }
 
+    /// Metres that something is off along the road, at most 30, that was said to be so far ahead of the ego vehicle or behind
+    /// it: in a curve that is not straight ahead.
+    fn off_along(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> Option<f64> {
+        let ego = matches!(to, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+        let way = match e.relation {
+            RelationKind::InFrontOf if ego => 1.0,
+            RelationKind::Behind if ego => -1.0,
+            _ => return None,
+        };
+        let (s, off, _) = self.map.course(p)?;
+        Some(((s * way - e.distance_m?).abs() + 0.2 * (off.abs() - 8.0).max(0.0)).min(30.0))
+    }
+
     fn off_middle(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
         use LaneRole as L;
         match to {
@@ -454,7 +484,7 @@ impl Placer<'_> {
             {
                 let lane = self.map.points.iter().filter(|l| l.role == *role);
                 let off = lane.map(|l| l.p.distance(p)).fold(f64::INFINITY, f64::min);
-                4.0 * (off - 1.2).clamp(0.0, 1.0)
+                4.0 * (off - 0.9).clamp(0.0, 1.0)
             }
             _ => 0.0,
         }

@@ -68,6 +68,8 @@ const SETS: &[(&str, &str)] = sets![
     "strangers_27.jsonl",
     "strangers_28.jsonl",
     "exam_9.jsonl",
+    "strangers_30.jsonl",
+    "causes_t.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",
     "variants.jsonl",

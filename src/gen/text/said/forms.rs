@@ -506,13 +506,21 @@ pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
         &[
             "the", "that", "this", "those", "both", "my", "it", "them", "all", "every",
         ],
-    ) || old.first().is_some_and(|t| number(t).is_some()) && is(old.get(1), &["of"]);
+    );
     let end = first_noun(old).map_or(1, |x| x.1);
-    (known && has_noun(new)).then(|| {
+    // "out of two of the parked cars": any two of them
+    let some = old.first().is_some_and(|t| number(t).is_some())
+        && is(old.get(1), &["of"])
+        && is(old.get(2), &["the", "those", "these", "my"]);
+    let old = match some {
+        true => led("any", &old[0], &[&old[..1], &old[3..end]]),
+        false => old[..end].to_vec(),
+    };
+    ((known || some) && has_noun(new)).then(|| {
         vec![Piece::Plain(led(
             "replace",
             &inner[0],
-            &[&old[..end], &led("with", &inner[0], &[new])],
+            &[&old, &led("with", &inner[0], &[new])],
         ))]
     })
 }

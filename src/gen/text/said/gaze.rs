@@ -7,6 +7,7 @@ use super::lists::PRONOUNS;
 use super::words::{first_noun, is, led, text, trimmed};
 
 const HAS: &str = "has|have|had|has got|have got|keeps|keep|kept|has had|should have|should keep|must have|must keep|is to have|are to have|shall have";
+const STANDS: &str = "stands with|stand with|standing with|is standing with|are standing with|should stand with|must stand with|waits with|wait with|waiting with|is waiting with|are waiting with|sits with|sit with|sitting with|is sitting with|remains with|remain with|poses with";
 const WHOSE: &str =
     "his|her|their|its|both his|both her|both their|all their|a watchful|one|a close|a wary|an|a|the";
 const EYES: &str = "eyes|eye|gaze|face|faces|sights|look|attention|nose|noses|glance";
@@ -43,7 +44,12 @@ fn named_after(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "the policeman has his eyes on the van": he faces it; "they have their backs to us": they face away.
 fn has_eyes(tokens: Vec<Token>) -> Vec<Token> {
     let found = (1..tokens.len()).find_map(|i| {
-        let mut k = i + begins(&tokens[i..], HAS)?;
+        // (what is new is read as a whole)
+        let known = (0..i).rev().find(|k| is(tokens.get(*k), &KNOWN));
+        let known = known.is_some_and(|k| first_noun(&tokens[k..i]).is_some_and(|x| k + x.1 == i))
+            || i == 1 && PRONOUNS.contains(&text(&tokens[0]));
+        let stands = begins(&tokens[i..], STANDS).filter(|_| known);
+        let mut k = i + begins(&tokens[i..], HAS).or(stands)?;
         let whose = begins(&tokens[k..], WHOSE)?;
         let own = !is(tokens.get(k), &["a", "an", "one", "the"]);
         k += whose;
@@ -54,9 +60,16 @@ fn has_eyes(tokens: Vec<Token>) -> Vec<Token> {
         };
         k += n;
         let to = k + begins(&tokens[k..], UPON)?;
-        let whom = is(tokens.get(to), &["us", "me", "it", "him", "her", "them", "each"])
-            || first_noun(&tokens[to..]).is_some_and(|x| x.0 < 4);
-        whom.then_some((i, to, back))
+        let pronoun = is(tokens.get(to), &["us", "me", "it", "him", "her", "them", "each"]);
+        let end = match pronoun {
+            true => to + 1,
+            false => to + first_noun(&tokens[to..]).filter(|x| x.0 < 4)?.1,
+        };
+        // ("the girl standing with her back to us should go" says only who)
+        let ends = tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "now"]));
+        (stands.is_none() || ends).then_some((i, to, back))
     });
     match found {
         Some((i, to, back)) => {

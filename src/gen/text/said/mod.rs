@@ -227,7 +227,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
     let out = owned::plain(remarks::reported(out), talk);
     let out = sites::plain(kept::plain(out, talk), talk);
-    let out = gaze::plain(spoken::coming(out, talk), talk);
+    let out = left::only_person(gaze::plain(spoken::coming(out, talk), talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
     let out = seconds::plain(vacated::plain(out, talk), talk);
@@ -302,9 +302,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         let mut clause = clause.to_vec();
         let bare = is(clause.first(), &parting::WHOLE)
             && first_noun(&clause).is_some_and(|n| n.0 < 4 && is_place(&clause[n.1..]))
-            && !clause
-                .iter()
-                .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
+            && !parting::has_verb(&clause);
         if let (true, Some(verb)) = (bare, &lead) {
             clause.insert(0, words::word(text(verb), &clause[0]));
         }

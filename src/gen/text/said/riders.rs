@@ -20,7 +20,10 @@ fn somebody(who: &[Token]) -> bool {
     match who {
         [one] => is(Some(one), &["somebody", "someone"]),
         [first, ..] => is(Some(first), &["my", "our", "a", "an", "another", "some"])
-            && first_noun(who).is_some_and(|x| x.1 == who.len() && x.0 < 4)
+            && first_noun(who).is_some_and(|x| {
+                let whose = leads(&who[x.1..], &["of mine", "of ours", "of his", "of hers"]).unwrap_or(0);
+                x.0 < 4 && x.1 + whose == who.len()
+            })
             && who[1..].iter().all(
                 |t| !matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] != Class::Pedestrian),
             ),
@@ -79,7 +82,7 @@ fn drives_in(tokens: Vec<Token>) -> Vec<Token> {
         "approaches",
         "is approaching",
     ];
-    let found = (1..tokens.len().min(5)).find_map(|i| {
+    let found = (1..tokens.len().min(6)).find_map(|i| {
         let n = leads(&tokens[i..], DRIVES).filter(|_| somebody(&tokens[..i]))?;
         let at = (i + n..tokens.len().min(i + n + 7)).find_map(|k| {
             is(tokens.get(k), &["in", "on", "with"]).then_some(())?;
