@@ -350,7 +350,9 @@ impl Editor<'_> {
                 if all && placed {
                     self.note(format!("{:?}: what should go was not understood", c.text));
                 } else if !c.reading.description.absent.is_empty() {
-                    self.take_absent(&c.reading.description);
+                    // ("a fence at the kerb instead of the barriers": the new one stays)
+                    let new = if added { self.last.clone() } else { Vec::new() };
+                    self.take_absent_but(&c.reading.description, &new);
                     done.push("removed".into());
                 }
             }
@@ -418,7 +420,15 @@ impl Editor<'_> {
             // "why is the cyclist in front of me?": only what "he" will mean
             Verb::Note => {
                 for m in &c.targets {
-                    if let Chosen::These(ids) = choose(&self.map, &self.boxes, m, &c.mentions) {
+                    let chosen = match choose(&self.map, &self.boxes, m, &c.mentions) {
+                        // ("one van stays where it is": whichever)
+                        Chosen::Several { candidates, .. } if !m.definite && !m.uncounted => {
+                            let ids = candidates.iter().map(|x| x.id);
+                            Chosen::These(ids.take(m.spec.count.n as usize).collect())
+                        }
+                        other => other,
+                    };
+                    if let Chosen::These(ids) = chosen {
                         // "the other one" is of the same kind
                         self.part_of = self
                             .boxes

@@ -13,11 +13,16 @@ use crate::scene::{BoxId, Class, SceneBox};
 
 impl Editor<'_> {
     pub(super) fn take_absent(&mut self, d: &Description) {
+        self.take_absent_but(d, &[]);
+    }
+
+    /// Takes away what shall not be there, except these.
+    pub(super) fn take_absent_but(&mut self, d: &Description, spared: &[BoxId]) {
         for a in &d.absent {
             let ids: Vec<BoxId> = self
                 .boxes
                 .values()
-                .filter(|b| a.classes.contains(&b.class))
+                .filter(|b| a.classes.contains(&b.class) && !spared.contains(&b.id))
                 .filter(|b| a.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
                 .map(|b| b.id)
                 .collect();

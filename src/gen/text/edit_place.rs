@@ -102,7 +102,10 @@ impl Editor<'_> {
         let stands_for = (0..d.foreground.len()).find_map(|i| {
             let o = &d.foreground[i];
             let named = self.definite.contains(&o.span) && refers.contains(&i) && o.relations.is_empty();
-            if !named || !self.meant(o).is_empty() {
+            // (what the text itself brings in is nearer than several that could be meant)
+            let again = |n: &ObjectSpec| n.noun == o.noun && !self.definite.contains(&n.span);
+            let several = self.meant(o).len() > 1 && o.count.n == 1 && d.foreground.iter().any(again);
+            if !named || !self.meant(o).is_empty() && !several {
                 return None;
             }
             let new = (0..d.foreground.len()).find(|&j| {

@@ -321,6 +321,8 @@ impl Placer<'_> {
                     _ => 0.02 * near,
                 };
             }
+            // What is before or behind a thing is by it.
+            cost += stated.iter().map(|(e, t)| off_thing(e, t, s.p)).sum::<f64>();
             // In a lane is rather in its middle than on its edge.
             if small {
                 cost += stated
@@ -616,6 +618,19 @@ fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
     let along = dir.dot(p - ends[0]) - length / 2.0;
     // (the middle is where a reader looks first)
     dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+}
+
+/// What it costs to be far before or behind what was named.
+fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+    match (e.relation, to) {
+        (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
+            if b.id.0 != u32::MAX && e.distance_m.is_none() =>
+        {
+            let gap = p.distance(b.center_m.truncate()) - b.size_m.x / 2.0;
+            0.15 * (gap - 6.0).clamp(0.0, 30.0)
+        }
+        _ => 0.0,
+    }
 }
 
 /// Metres that something is farther off than near, at most 30, where it was said to be near.

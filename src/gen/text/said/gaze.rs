@@ -19,7 +19,7 @@ const KNOWN: [&str; 8] = ["the", "both", "all", "every", "each", "that", "my", "
 
 /// A sentence that says it in plain words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    turned_to(has_eyes(named_after(tokens, talk)), talk)
+    turned_to(has_eyes(back_is_to(named_after(tokens, talk))), talk)
 }
 
 /// "he looks at the truck, that man": the man does.
@@ -38,6 +38,42 @@ fn named_after(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         [np, &tokens[1..k]].concat()
     } else {
         tokens
+    }
+}
+
+/// "his back is to us": he faces away; "her eyes are on the bus": she faces it.
+fn back_is_to(tokens: Vec<Token>) -> Vec<Token> {
+    const IS: &str = "is|are|was|were|should be|must be|is turned|are turned|is kept|are fixed|is fixed";
+    let found = (0..tokens.len()).find_map(|i| {
+        let opens = i == 0
+            || tokens[i - 1].kind != TokenKind::Word
+            || is(tokens.get(i - 1), &["and", "but", "so", "with"]);
+        let who = match tokens.get(i).map(text).filter(|_| opens)? {
+            "his" => "he",
+            "her" => "she",
+            "their" => "they",
+            "its" => "it",
+            _ => return None,
+        };
+        let back = begins(&tokens[i + 1..], BACK);
+        let k = i + 1 + back.or_else(|| begins(&tokens[i + 1..], EYES))?;
+        let k = k + begins(&tokens[k..], IS)?;
+        Some((i, who, back.is_some(), k + begins(&tokens[k..], UPON)?))
+    });
+    match found {
+        Some((i, who, back, to)) => {
+            let does = if back {
+                "should face away from"
+            } else {
+                "should face"
+            };
+            [
+                &tokens[..i],
+                &led(&format!("{who} {does}"), &tokens[i], &[&tokens[to..]]),
+            ]
+            .concat()
+        }
+        None => tokens,
     }
 }
 

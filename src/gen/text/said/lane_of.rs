@@ -12,7 +12,87 @@ const STRIP: &str = "lane|sidewalk|pavement|footpath|walkway|footway|kerb|curb|r
 
 /// A sentence in which they bear their names.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    in_that(same_as(opposite_last(tokens), talk), talk)
+    let out = goes_over(owners_lane(as_before(opposite_last(tokens)), talk), talk);
+    in_that(same_as(out, talk), talk)
+}
+
+/// "only 7 m ahead, same lane as before": what is not told otherwise stays so.
+fn as_before(tokens: Vec<Token>) -> Vec<Token> {
+    const BEFORE: &str = "in the same lane as before|the same lane as before|same lane as before|in the same lane as now|same lane as now|still in the same lane|still in its lane|in its own lane as before|on the same side as before|same side as before";
+    rewritten(&tokens, |i, out| {
+        let comma = usize::from(tokens[i].kind == TokenKind::Comma);
+        let n = begins(tokens.get(i + comma..)?, BEFORE).filter(|_| comma == 1 && !out.is_empty())?;
+        let end = i + comma + n;
+        tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word)
+            .then_some(end)
+    })
+}
+
+/// "in the coach's lane": where the coach is.
+fn owners_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let (_, b) = first_noun(&tokens[i..]).filter(|x| x.0 < 4 && is(tokens.get(i), &["the", "that"]))?;
+        let lane = is(tokens.get(i + b), &["lane"])
+            && is(out.last(), &["in", "into", "to", "along"])
+            // ("the bus lane" is a lane for buses)
+            && talk.text.to_lowercase().contains("s lane")
+            && talk.text.contains(['\'', '\u{2019}']);
+        let name =
+            name_of(&talk.boxes_of(&tokens[i..i + b]), talk).filter(|name| lane && is_of_kind(true, name))?;
+        out.extend(led(name, &tokens[i], &[]));
+        // ("in the coach's lane behind it": behind the coach)
+        let end = i + b + 1;
+        let by = begins(
+            tokens.get(end..)?,
+            "behind|ahead of|in front of|after|right behind|just behind",
+        );
+        let it = by
+            .map(|n| end + n)
+            .filter(|k| is(tokens.get(*k), &["it", "him", "her"]));
+        if let Some(k) = it {
+            out.extend_from_slice(&tokens[end..k]);
+            out.extend_from_slice(&tokens[i..i + b]);
+        }
+        Some(it.map_or(end, |k| k + 1))
+    })
+}
+
+/// "the vans go over to the right", who stand at the left kerb: to the kerb there.
+fn goes_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const GOES: &str = "go|goes|move|moves|come|comes|cross|crosses|change|changes|swing|swings|switch|switches|went|moved|crossed|should go|should move|should cross|must go|shift|shifts|get|gets";
+    const TO: &str = "over to the|across to the|to the";
+    const SIDE: &str = "side|hand side|one|side of the road|side of the street|hand side of the road|hand side of the street";
+    rewritten(&tokens, |i, out| {
+        let goes = begins(&tokens[i..], GOES)?;
+        let over = is(tokens.get(i + goes), &["over", "across"]);
+        let at = i + goes + begins(&tokens[i + goes..], TO)?;
+        let side = super::words::text(tokens.get(at)?).to_string();
+        let n = begins(&tokens[at + 1..], SIDE).filter(|_| is(tokens.get(at), &["left", "right"]));
+        (over || n.is_some()).then_some(())?;
+        let end = at + 1 + n.unwrap_or(0);
+        let closes = tokens
+            .get(end)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "now", "please", "too"]));
+        let name = (0..out.len()).rev().find_map(|k| {
+            is(
+                out.get(k),
+                &["the", "that", "both", "all", "my", "every", "those", "these"],
+            )
+            .then_some(())?;
+            let (_, b) = first_noun(&out[k..]).filter(|x| x.0 < 4)?;
+            name_of(&talk.boxes_of(&out[k..k + b]), talk)
+        })?;
+        let strip = name
+            .strip_prefix("the left ")
+            .or(name.strip_prefix("the right "))
+            .filter(|s| matches!(*s, "roadside" | "sidewalk"))?;
+        (closes && matches!(side.as_str(), "left" | "right")).then(|| {
+            out.extend(led(&format!("should be on the {side} {strip}"), &tokens[i], &[]));
+            end
+        })
+    })
 }
 
 /// "on the pavement opposite": on the opposite pavement.

@@ -61,7 +61,7 @@ fn only_number(body: &[Token]) -> Option<&Token> {
     (many.next().is_none() && plain && !more).then_some(first)
 }
 
-/// "a policeman stands beside her", where nobody was named and one person is there: that one.
+/// "a policeman stands beside her", where nobody was named and one person is there: that one; "with them": all of several.
 pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const BY: &str = "next to|beside|behind|ahead of|in front of|near|close to|by|opposite|alongside|towards|facing|with|after|left of|right of|to the left of|to the right of";
     let people = talk
@@ -69,12 +69,16 @@ pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .values()
         .filter(|b| b.class == Class::Pedestrian)
         .count();
-    if people != 1 {
+    if people == 0 {
         return tokens;
     }
+    let (pronouns, whom): (&[&str], _) = match people {
+        1 => (&["him", "her"], "the pedestrian"),
+        _ => (&["them"], "the pedestrians"),
+    };
     let person = |t: &Token| matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Pedestrian | Class::Bicycle | Class::Motorcycle));
-    rewritten(&tokens, |i, out| {
-        is(tokens.get(i), &["him", "her"]).then_some(())?;
+    let mut out = rewritten(&tokens, |i, out| {
+        is(tokens.get(i), pronouns).then_some(())?;
         // ("her car" is hers)
         tokens
             .get(i + 1)
@@ -85,15 +89,21 @@ pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let new = is(
             out.first(),
             &[
-                "a", "an", "another", "put", "add", "place", "park", "set", "one", "two", "three",
+                "a", "an", "another", "put", "add", "place", "park", "set", "one", "two", "three", "their",
+                "his", "her",
             ],
         );
         let named = many > usize::from(new);
         (by && !named).then(|| {
-            out.extend(led("the pedestrian", &tokens[i], &[]));
+            out.extend(led(whom, &tokens[i], &[]));
             i + 1
         })
-    })
+    });
+    // "their teacher stands with them": somebody new
+    if out != tokens && is(out.first(), &["their", "his", "her"]) && out.get(1).is_some_and(person) {
+        out[0].text = "a".into();
+    }
+    out
 }
 
 impl Left {

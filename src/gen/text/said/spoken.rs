@@ -170,6 +170,17 @@ pub(super) fn coming(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             i + n
         })
     });
+    let out = rewritten(&out, |i, new| {
+        // "a scooter takes up one of the empty bays"
+        const TAKES: &str = "takes up|takes|has taken|occupies|fills|uses|now takes up|now occupies|stands in|sits in|pulls into|has pulled into|parks in|is parked in";
+        const FREE: &str = "one of the empty|one of the free|one of the vacant|one of the vacated|a free|a vacant|an empty|the empty|the free|the vacant|the freed";
+        const BAY: &str = "bay|bays|parking bay|parking bays|space|spaces|parking space|parking spaces|spot|spots|parking spot|parking spots|slot|slots|parking slot|parking slots";
+        let takes = begins(&out[i..], TAKES)?;
+        let free = i + takes + begins(&out[i + takes..], FREE)?;
+        let n = begins(&out[free..], BAY)?;
+        new.extend(led("is parked in the car park", &out[i], &[]));
+        Some(free + n)
+    });
     some_stay(laid_out(into_one(out)), talk)
 }
 
