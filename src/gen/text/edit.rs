@@ -478,7 +478,10 @@ impl Editor<'_> {
             .any(|r| r.distance_m.is_some() && r.anchor == super::description::Anchor::Ego);
         let words = c.text.to_lowercase();
         let states = ["the ", "my ", "our "].iter().any(|w| words.starts_with(w));
-        let none = |m: &Mention| !self.boxes.values().any(|b| m.classes.contains(&b.class));
+        let none = |m: &Mention| {
+            matches!(choose(&self.map, &self.boxes, m, &c.mentions), Chosen::None(_))
+                && !self.boxes.values().any(|b| m.classes.contains(&b.class))
+        };
         states
             && measured
             && !m.plural

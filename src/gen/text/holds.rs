@@ -187,19 +187,11 @@ pub fn holds(
             let toward = heading.dot((at(b) - p).normalize_or_zero());
             let held = match relation {
                 // (roads bend: what is far down the road is ahead of the ego vehicle)
-                // (what is told in metres may stand at the edge of a wide road)
                 R::InFrontOf => {
-                    let wide = match is_ego {
-                        true if distance_m.is_some() => 0.97,
-                        true if fwd > 10.0 => 0.85,
-                        _ => 0.6,
-                    };
-                    fwd > half.x && lat.abs() <= (wide * fwd).max(2.0)
+                    fwd > half.x
+                        && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
                 }
-                R::Behind => {
-                    let wide = if is_ego && distance_m.is_some() { 0.97 } else { 0.6 };
-                    -fwd > half.x && lat.abs() <= (-wide * fwd).max(2.0)
-                }
+                R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
                 // Of the ego vehicle it means the whole side of the street.
                 R::LeftOf => {
                     lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0))

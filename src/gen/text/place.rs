@@ -386,6 +386,11 @@ impl Placer<'_> {
             matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
                 && e.distance_m.is_some_and(|d| d < 8.0_f64.max(half_m + 5.5))
         });
+        // What is told to be so far ahead at the edge of a wide road is there rather than farther ahead.
+        let strip = stated.iter().any(|(e, t)| {
+            matches!(e.relation, RelationKind::On | RelationKind::ParkedOn)
+                && matches!(t, Some(Target::Lane(role)) if *role != LaneRole::Carpark)
+        });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
             if best.as_ref().is_some_and(|b| b.0 <= cost) {
@@ -417,25 +422,15 @@ impl Placer<'_> {
                 break;
             }
             // What is ahead but not so far is nearer to what was said than what is behind.
-            let wrong = |(e, to): &&(Edge, Option<Target>)| {
-                let held = self.edge_holds(
-                    &Edge {
-                        distance_m: None,
-                        ..*e
-                    },
-                    &b,
-                );
-                let along = || self.off_along(e, to, b.center_m.truncate());
-                !(held
-                    || off_near(e, to, &b).is_some_and(|off| off < FAR_M)
-                    || along().is_some_and(|off| off < ALONG_M))
-            };
-            let wholly = stated.iter().filter(wrong).count();
+            let wholly = stated
+                .iter()
+                .filter(|(e, t)| self.misses(e, t, &b, strip))
+                .count();
             // (what cannot be near is as near as can be)
             let off_by = |(e, t): &(Edge, Option<Target>)| {
                 let along = || {
-                    self.off_along(e, t, b.center_m.truncate())
-                        .filter(|_| !self.edge_holds(e, &b))
+                    self.off_along(e, t, &b)
+                        .filter(|_| strip && !self.edge_holds(e, &b))
                 };
                 off_near(e, t, &b).or_else(along)
             };
@@ -447,34 +442,41 @@ impl Placer<'_> {
         }
         // Several in one lane: a place that breaks what was said is none.
         // (one that only misses the metres is better than none: "three cars 12 m ahead" are three)
-        let broken = |b: &SceneBox| {
-            let whole = |e: &Edge| Edge {
-                distance_m: None,
-                ..*e
-            };
-            stated
-                .iter()
-                .filter(|(e, _)| !self.edge_holds(&whole(e), b))
-                .count()
-        };
         match best {
             // (where none at all holds, a wrong place is better than none, and is reported)
-            Some((_, b)) if broken(&b) > 0 && self.a_twin_holds(&siblings, o.class, &stated) => None,
+            Some((_, b))
+                if stated.iter().any(|(e, t)| self.misses(e, t, &b, strip))
+                    && self.a_twin_holds(&siblings, o.class, &stated) =>
+            {
+                None
+            }
             Some((_, b)) => Some(b),
             None => None,
         }
     }
 
+    /// True if a statement does not hold even roughly: not but for the metres, and nothing like it. `strip`: a strip of the road
+    /// was named, and along it metres are measured.
+    fn misses(&self, e: &Edge, to: &Option<Target>, b: &SceneBox, strip: bool) -> bool {
+        let whole = Edge {
+            distance_m: None,
+            ..*e
+        };
+        !(self.edge_holds(&whole, b)
+            || off_near(e, to, b).is_some_and(|off| off < FAR_M)
+            || strip && self.off_along(e, to, b).is_some_and(|off| off < ALONG_M))
+    }
+
     /// Metres that something is off along the road, at most 30, that was said to be so far ahead of the ego vehicle or behind
     /// it: in a curve that is not straight ahead.
-    fn off_along(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> Option<f64> {
+    fn off_along(&self, e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
         let ego = matches!(to, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
         let way = match e.relation {
             RelationKind::InFrontOf if ego => 1.0,
             RelationKind::Behind if ego => -1.0,
             _ => return None,
         };
-        let (s, off, _) = self.map.course(p)?;
+        let (s, off, _) = self.map.course(b.center_m.truncate())?;
         Some(((s * way - e.distance_m?).abs() + 0.2 * (off.abs() - 8.0).max(0.0)).min(30.0))
     }
 

@@ -95,6 +95,10 @@ pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         );
         let named = many > usize::from(new);
         (by && !named).then(|| {
+            if is(out.last(), &["with"]) {
+                out.pop();
+                out.extend(led("next to", &tokens[i], &[]));
+            }
             out.extend(led(whom, &tokens[i], &[]));
             i + 1
         })
