@@ -105,7 +105,8 @@ pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     });
     // "their teacher stands with them": somebody new
     if out != tokens && is(out.first(), &["their", "his", "her"]) && out.get(1).is_some_and(person) {
-        out[0].text = "a".into();
+        let new = led("add a", &out[0], &[]);
+        out.splice(..1, new);
     }
     out
 }
