@@ -389,7 +389,7 @@ impl Placer<'_> {
         // What is told to be so far ahead at the edge of a wide road is there rather than farther ahead.
         let strip = stated.iter().any(|(e, t)| {
             matches!(e.relation, RelationKind::On | RelationKind::ParkedOn)
-                && matches!(t, Some(Target::Lane(role)) if *role != LaneRole::Carpark)
+                && matches!(t, Some(Target::Lane(role)) if is_beside(*role))
         });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
@@ -486,8 +486,8 @@ impl Placer<'_> {
             Some(Target::Lane(role @ (L::Ego | L::Left | L::Right | L::Oncoming)))
                 if e.relation == RelationKind::On =>
             {
-                let lane = self.map.points.iter().filter(|l| l.role == *role);
-                let off = lane.map(|l| l.p.distance(p)).fold(f64::INFINITY, f64::min);
+                let lane = self.map.nearest(p).filter(|l| l.role == *role);
+                let off = lane.map_or(f64::INFINITY, |l| l.p.distance(p));
                 4.0 * (off - 0.9).clamp(0.0, 1.0)
             }
             _ => 0.0,
@@ -680,6 +680,15 @@ pub(super) fn stands(relation: RelationKind) -> bool {
         relation,
         RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking
     )
+}
+
+/// Strips on either side of the road: its edges and the sidewalks.
+fn is_beside(role: LaneRole) -> bool {
+    is_roadside(role)
+        || matches!(
+            role,
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
+        )
 }
 
 /// Roles beside the lanes.
