@@ -29,7 +29,7 @@ fn is_number(t: &Token) -> bool {
 
 /// A text in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let out = super::same_words::plain(&ordinals(tokens));
+    let out = super::same_words::plain(&ordinals(&paced(&halves(tokens))));
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
@@ -50,6 +50,55 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = sides_in_short(&out);
     let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));
     super::carried::plain(this_side(&some_so_many(&part_for_whole(&out))))
+}
+
+/// "twelve and a half metres": 12.5 m.
+fn halves(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let whole = super::ellipsis::number(&tokens[i]).filter(|n| *n > 0)?;
+        let n = 1 + begins(tokens.get(i + 1..)?, "and a half|and one half")?;
+        let unit = (1..=2).any(|k| {
+            let words = tokens.get(i + n..i + n + k);
+            let words = words.map(|w| w.iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" "));
+            words.is_some_and(|w| matches!(look_up(&w), Some(Sense::Unit(_))))
+        });
+        unit.then(|| {
+            let metres = f64::from(whole) + 0.5;
+            out.push(Token {
+                kind: TokenKind::Number(metres),
+                text: metres.to_string(),
+                span: tokens[i].span.to(tokens[i + n - 1].span),
+            });
+            i + n
+        })
+    })
+}
+
+/// "ten paces ahead": in metres, as far as that is with ordinary steps.
+fn paced(tokens: &[Token]) -> Vec<Token> {
+    const PACE_M: f64 = 0.75;
+    const STEPS: &str = "paces|steps|strides|footsteps|big steps|long strides|large steps|good paces";
+    const WHITHER: &str = "ahead|in front|before|behind|away|from|off|back|forward|forwards|backwards|to|towards|toward|left|right|nearer|closer|further|farther|up|down|beyond|past|apart|after|of|on|aside|beside";
+    rewritten(tokens, |i, out| {
+        let many = super::ellipsis::number(&tokens[i]).filter(|n| *n > 0)?;
+        let n = 1 + begins(tokens.get(i + 1..)?, STEPS)?;
+        let rest = &tokens[i + n..];
+        let far = rest.first().is_none_or(|t| t.kind != TokenKind::Word) || begins(rest, WHITHER).is_some();
+        // ("in three steps" is how, not how far)
+        let how = out
+            .last()
+            .is_some_and(|t| matches!(t.text.as_str(), "in" | "these" | "those"));
+        (far && !how).then(|| {
+            let metres = f64::from(many) * PACE_M;
+            out.push(Token {
+                kind: TokenKind::Number(metres),
+                text: metres.to_string(),
+                span: tokens[i].span,
+            });
+            out.push(word("m", &tokens[i + n - 1]));
+            i + n
+        })
+    })
 }
 
 /// "1st", "2nd": in words.

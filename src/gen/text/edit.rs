@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use super::description::{Became, Description, Phrase, Reading, TimeOfDay, Unread, Weather};
-use super::edit_grammar::{Back, Command, Reader};
+use super::edit_grammar::{Back, Command, Destination, Reader};
 use super::holds::in_role;
 use super::lanes::LaneMap;
 use super::mention::Mention;
@@ -335,6 +335,10 @@ impl Editor<'_> {
                     true
                 } else {
                     let mut d = d.clone();
+                    // "park a van next to her"
+                    if let (Some(state), Some(first)) = (c.state, d.foreground.first_mut()) {
+                        first.state.get_or_insert(state);
+                    }
                     if let [only] = d.foreground.as_mut_slice() {
                         self.as_the_others(only, c);
                     }
@@ -352,13 +356,28 @@ impl Editor<'_> {
                 if all && placed {
                     self.note(format!("{:?}: what should go was not understood", c.text));
                 } else if !c.reading.description.absent.is_empty() {
-                    self.take_absent(&c.reading.description);
+                    // ("a fence at the kerb instead of the barriers": the new one stays)
+                    let new = if added { self.last.clone() } else { Vec::new() };
+                    self.take_absent_but(&c.reading.description, &new);
                     done.push("removed".into());
                 }
             }
             Verb::Keep => {
                 self.keep(c);
                 done.push("kept so many".into());
+            }
+            // "the truck waits 20 m behind us", where there is none: there is one now
+            Verb::Move if self.tells_of_absent(c) => {
+                if let (Some(Destination::Place(spec)), Some(m)) = (&c.destination, c.targets.first()) {
+                    self.note(format!("no {} is in the scene: one is added", m.spec.noun));
+                    let foreground = c.with_anchors(spec, spec.class);
+                    if self.add(&Description {
+                        foreground,
+                        ..Description::default()
+                    }) {
+                        done.push("added".into());
+                    }
+                }
             }
             Verb::Move => {
                 if let Some(ids) = self.targets(c, false) {
@@ -411,7 +430,15 @@ impl Editor<'_> {
             // "why is the cyclist in front of me?": only what "he" will mean
             Verb::Note => {
                 for m in &c.targets {
-                    if let Chosen::These(ids) = choose(&self.map, &self.boxes, m, &c.mentions) {
+                    let chosen = match choose(&self.map, &self.boxes, m, &c.mentions) {
+                        // ("one van stays where it is": whichever)
+                        Chosen::Several { candidates, .. } if !m.definite && !m.uncounted => {
+                            let ids = candidates.iter().map(|x| x.id);
+                            Chosen::These(ids.take(m.spec.count.n as usize).collect())
+                        }
+                        other => other,
+                    };
+                    if let Chosen::These(ids) = chosen {
                         // "the other one" is of the same kind
                         self.part_of = self
                             .boxes
@@ -467,6 +494,31 @@ impl Editor<'_> {
             self.gone = spots;
             self.left.clear();
         }
+    }
+
+    /// True if a sentence tells in metres where something stands of which the scene has none.
+    fn tells_of_absent(&self, c: &Command) -> bool {
+        let ([m], Some(Destination::Place(spec))) = (c.targets.as_slice(), &c.destination) else {
+            return false;
+        };
+        let measured = spec
+            .relations
+            .iter()
+            .any(|r| r.distance_m.is_some() && r.anchor == super::description::Anchor::Ego);
+        let words = c.text.to_lowercase();
+        let states = ["the ", "my ", "our "].iter().any(|w| words.starts_with(w));
+        let none = |m: &Mention| {
+            matches!(choose(&self.map, &self.boxes, m, &c.mentions), Chosen::None(_))
+                && !self.boxes.values().any(|b| m.classes.contains(&b.class))
+        };
+        states
+            && measured
+            && !m.plural
+            && m.id.is_none()
+            && m.pick.is_none()
+            && c.back.is_none()
+            && c.nth.is_none()
+            && none(m)
     }
 
     /// True if what a command replaces was taken away just before.

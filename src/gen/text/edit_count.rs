@@ -13,11 +13,16 @@ use crate::scene::{BoxId, Class, SceneBox};
 
 impl Editor<'_> {
     pub(super) fn take_absent(&mut self, d: &Description) {
+        self.take_absent_but(d, &[]);
+    }
+
+    /// Takes away what shall not be there, except these.
+    pub(super) fn take_absent_but(&mut self, d: &Description, spared: &[BoxId]) {
         for a in &d.absent {
             let ids: Vec<BoxId> = self
                 .boxes
                 .values()
-                .filter(|b| a.classes.contains(&b.class))
+                .filter(|b| a.classes.contains(&b.class) && !spared.contains(&b.id))
                 .filter(|b| a.state.is_none_or(|s| super::select::state_of(&self.map, b, s)))
                 .map(|b| b.id)
                 .collect();
@@ -143,13 +148,42 @@ impl Editor<'_> {
                 let mut spec = m.spec.clone();
                 spec.count = Count::exactly((wanted - fitting.len()) as u32);
                 self.like_the_others(&mut spec, &fitting);
+                let foreground = match side_by_side(said).then(|| self.beside_those(&spec)) {
+                    Some(pair) => pair,
+                    None => vec![spec],
+                };
                 let d = Description {
-                    foreground: vec![spec],
+                    foreground,
                     ..Description::default()
                 };
                 self.add(&d);
             }
         }
+    }
+
+    /// "two cyclists side by side", where one is there: the other beside him.
+    fn beside_those(&mut self, spec: &ObjectSpec) -> Vec<ObjectSpec> {
+        let there = ObjectSpec {
+            count: Count::exactly(1),
+            relations: Vec::new(),
+            state: None,
+            // (of no words of the text)
+            span: super::tokens::Span {
+                start: usize::MAX,
+                end: usize::MAX,
+            },
+            ..spec.clone()
+        };
+        self.definite.push(there.span);
+        let mut new = spec.clone();
+        new.relations.push(Stated {
+            relation: RelationKind::NextTo,
+            anchor: Anchor::Object(1),
+            and: None,
+            distance_m: None,
+            span: spec.span,
+        });
+        vec![new, there]
     }
 
     /// More of a kind stand where all of that kind stand, if nothing else was said.
@@ -310,6 +344,21 @@ impl Editor<'_> {
         }
         self.push(TextEdit::Replace { id, object: new });
     }
+}
+
+/// "two cyclists side by side".
+fn side_by_side(words: &str) -> bool {
+    [
+        "side by side",
+        "next to each other",
+        "next to one another",
+        "beside each other",
+        "beside one another",
+        "abreast",
+        "shoulder to shoulder",
+    ]
+    .iter()
+    .any(|w| words.contains(w))
 }
 
 /// "by a single truck": one for all of them.

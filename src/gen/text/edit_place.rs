@@ -103,7 +103,10 @@ impl Editor<'_> {
         let stands_for = (0..d.foreground.len()).find_map(|i| {
             let o = &d.foreground[i];
             let named = self.definite.contains(&o.span) && refers.contains(&i) && o.relations.is_empty();
-            if !named || !self.meant(o).is_empty() {
+            // (what the text itself brings in is nearer than several that could be meant)
+            let again = |n: &ObjectSpec| n.noun == o.noun && !self.definite.contains(&n.span);
+            let several = self.meant(o).len() > 1 && o.count.n == 1 && d.foreground.iter().any(again);
+            if !named || !self.meant(o).is_empty() && !several {
                 return None;
             }
             let new = (0..d.foreground.len()).find(|&j| {
@@ -253,6 +256,7 @@ impl Editor<'_> {
                 }
             }
         }
+        any |= with_whom(&mut follows);
         let tried = match any.then(|| self.arrange(&follows, None)) {
             Some(Arranged::Asked) => return false,
             Some(Arranged::Placed { new, left_out, unmet }) if left_out.is_empty() && unmet.is_empty() => {
@@ -418,6 +422,40 @@ impl Editor<'_> {
         };
         heading * speed
     }
+}
+
+/// "a woman next to the man on the crossing" is on the crossing, too, if there is room. True if somebody is.
+fn with_whom(d: &mut Description) -> bool {
+    use crate::scene::graph::LaneRole as L;
+    let mut any = false;
+    for i in 0..d.foreground.len() {
+        let placed = |r: &Stated| matches!(r.anchor, Anchor::Lane(_) | Anchor::Crossing | Anchor::Junction);
+        let o = &d.foreground[i];
+        let free = o.class == crate::scene::Class::Pedestrian && !o.relations.iter().any(placed);
+        let Some(k) = o.relations.iter().find_map(|r| match (r.relation, r.anchor) {
+            (RelationKind::NextTo, Anchor::Object(k)) if free => Some(k),
+            _ => None,
+        }) else {
+            continue;
+        };
+        let there = d.foreground.get(k).and_then(|with| {
+            let walks = |r: &&Stated| {
+                r.relation == RelationKind::On
+                    && matches!(
+                        r.anchor,
+                        Anchor::Crossing | Anchor::Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk)
+                    )
+            };
+            with.relations
+                .iter()
+                .find(walks)
+                .filter(|_| with.class == crate::scene::Class::Pedestrian)
+                .copied()
+        });
+        any |= there.is_some();
+        d.foreground[i].relations.extend(there);
+    }
+    any
 }
 
 /// True if a word picks a certain one.

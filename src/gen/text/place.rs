@@ -15,6 +15,10 @@ use crate::scene::graph::{
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
+/// As far off, m, is wholly wrong for what should be near.
+const FAR_M: f64 = 9.0;
+/// So far off along the road, m, is about where it was said to be.
+const ALONG_M: f64 = 4.0;
 /// Orders that are tried while something is left out or a relation broken.
 const ATTEMPTS: u64 = 5;
 /// Boxes beyond this many are not tried: the scene is full long before.
@@ -294,7 +298,8 @@ impl Placer<'_> {
             .map(|i| self.graph.edges[*i])
             .map(|e| (e, self.target(e.to)))
             .collect();
-        let candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
+        let mut candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
+        candidates.extend(self.from.and_then(|old| turned_where_it_is(old, &stated)));
         let siblings: Vec<DVec2> = self.siblings(id, o, edges);
         let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
         let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
@@ -315,6 +320,15 @@ impl Placer<'_> {
                     Class::TrafficCone | Class::Barrier => 0.5 * near,
                     _ => 0.02 * near,
                 };
+            }
+            // What is before or behind a thing is by it.
+            cost += stated.iter().map(|(e, t)| off_thing(e, t, s.p)).sum::<f64>();
+            // In a lane is rather in its middle than on its edge.
+            if small {
+                cost += stated
+                    .iter()
+                    .map(|(e, t)| self.off_middle(e, t, s.p))
+                    .sum::<f64>();
             }
             // Small things that block a lane stand side by side across it.
             if blocks && small {
@@ -363,9 +377,19 @@ impl Placer<'_> {
             ranked.push((cost, i));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let along = stated.iter().any(|(e, _)| {
+            matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind) && e.distance_m.is_some()
+        });
         // Told to stand close to the ego vehicle it may.
         let close = stated.iter().any(|(e, t)| {
-            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX) && e.distance_m.is_some_and(|d| d < 8.0)
+            let half_m = if along { size_m.x / 2.0 } else { 0.0 };
+            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                && e.distance_m.is_some_and(|d| d < 8.0_f64.max(half_m + 5.5))
+        });
+        // What is told to be so far ahead at the edge of a wide road is there rather than farther ahead.
+        let strip = stated.iter().any(|(e, t)| {
+            matches!(e.relation, RelationKind::On | RelationKind::ParkedOn)
+                && matches!(t, Some(Target::Lane(role)) if is_beside(*role))
         });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
@@ -398,38 +422,75 @@ impl Placer<'_> {
                 break;
             }
             // What is ahead but not so far is nearer to what was said than what is behind.
-            let wrong = |e: &Edge| {
-                !self.edge_holds(
-                    &Edge {
-                        distance_m: None,
-                        ..*e
-                    },
-                    &b,
-                )
+            let wholly = stated
+                .iter()
+                .filter(|(e, t)| self.misses(e, t, &b, strip))
+                .count();
+            // (what cannot be near is as near as can be)
+            let off_by = |(e, t): &(Edge, Option<Target>)| {
+                let along = || {
+                    self.off_along(e, t, &b)
+                        .filter(|_| strip && !self.edge_holds(e, &b))
+                };
+                off_near(e, t, &b).or_else(along)
             };
-            let wholly = stated.iter().filter(|(e, _)| wrong(e)).count();
-            let total = cost + 40.0 * (broken + wholly) as f64;
+            let off: f64 = stated.iter().filter_map(off_by).sum();
+            let total = cost + 40.0 * (broken + wholly) as f64 + off;
             if best.as_ref().is_none_or(|b| total < b.0) {
                 best = Some((total, b));
             }
         }
         // Several in one lane: a place that breaks what was said is none.
         // (one that only misses the metres is better than none: "three cars 12 m ahead" are three)
-        let broken = |b: &SceneBox| {
-            let whole = |e: &Edge| Edge {
-                distance_m: None,
-                ..*e
-            };
-            stated
-                .iter()
-                .filter(|(e, _)| !self.edge_holds(&whole(e), b))
-                .count()
-        };
         match best {
             // (where none at all holds, a wrong place is better than none, and is reported)
-            Some((_, b)) if broken(&b) > 0 && self.a_twin_holds(&siblings, o.class, &stated) => None,
+            Some((_, b))
+                if stated.iter().any(|(e, t)| self.misses(e, t, &b, strip))
+                    && self.a_twin_holds(&siblings, o.class, &stated) =>
+            {
+                None
+            }
             Some((_, b)) => Some(b),
             None => None,
+        }
+    }
+
+    /// True if a statement does not hold even roughly: not but for the metres, and nothing like it. `strip`: a strip of the road
+    /// was named, and along it metres are measured.
+    fn misses(&self, e: &Edge, to: &Option<Target>, b: &SceneBox, strip: bool) -> bool {
+        let whole = Edge {
+            distance_m: None,
+            ..*e
+        };
+        !(self.edge_holds(&whole, b)
+            || off_near(e, to, b).is_some_and(|off| off < FAR_M)
+            || strip && self.off_along(e, to, b).is_some_and(|off| off < ALONG_M))
+    }
+
+    /// Metres that something is off along the road, at most 30, that was said to be so far ahead of the ego vehicle or behind
+    /// it: in a curve that is not straight ahead.
+    fn off_along(&self, e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
+        let ego = matches!(to, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+        let way = match e.relation {
+            RelationKind::InFrontOf if ego => 1.0,
+            RelationKind::Behind if ego => -1.0,
+            _ => return None,
+        };
+        let (s, off, _) = self.map.course(b.center_m.truncate())?;
+        Some(((s * way - e.distance_m?).abs() + 0.2 * (off.abs() - 8.0).max(0.0)).min(30.0))
+    }
+
+    fn off_middle(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+        use LaneRole as L;
+        match to {
+            Some(Target::Lane(role @ (L::Ego | L::Left | L::Right | L::Oncoming)))
+                if e.relation == RelationKind::On =>
+            {
+                let lane = self.map.nearest(p).filter(|l| l.role == *role);
+                let off = lane.map_or(f64::INFINITY, |l| l.p.distance(p));
+                4.0 * (off - 0.9).clamp(0.0, 1.0)
+            }
+            _ => 0.0,
         }
     }
 
@@ -513,6 +574,38 @@ impl Placer<'_> {
     }
 }
 
+/// Who is only told where to look stays where he is (what drives keeps to its lane).
+fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
+    use RelationKind as R;
+    let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
+    let p = old.center_m.truncate();
+    let mut looks = None;
+    for (e, to) in stated {
+        match (e.relation, to) {
+            (R::On | R::ParkedOn, Some(Target::Lane(_))) => {}
+            (R::Facing | R::FacingAway, Some(to)) => {
+                let away = if e.relation == R::FacingAway { -1.0 } else { 1.0 };
+                looks = Some(match to {
+                    Target::Thing(b) if b.id.0 == u32::MAX => -p * away,
+                    Target::Thing(b) => (b.center_m.truncate() - p) * away,
+                    _ => return None,
+                });
+            }
+            _ => return None,
+        }
+    }
+    let moves = old.velocity_mps.length() > 0.5;
+    looks.filter(|_| !drives).map(|way| Spot {
+        p,
+        yaw_rad: way.to_angle(),
+        cost: -10.0,
+        still: !moves,
+        moves,
+        on_road: true,
+        anywhere: old.class == Class::Pedestrian,
+    })
+}
+
 /// What it costs to bring a box to a place: the way, and turning it.
 fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
     let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
@@ -527,6 +620,29 @@ fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
     let along = dir.dot(p - ends[0]) - length / 2.0;
     // (the middle is where a reader looks first)
     dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+}
+
+/// What it costs to be far before or behind what was named.
+fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+    match (e.relation, to) {
+        (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
+            if b.id.0 != u32::MAX && e.distance_m.is_none() =>
+        {
+            let gap = p.distance(b.center_m.truncate()) - b.size_m.x / 2.0;
+            0.15 * (gap - 6.0).clamp(0.0, 30.0)
+        }
+        _ => 0.0,
+    }
+}
+
+/// Metres that something is farther off than near, at most 30, where it was said to be near.
+fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
+    match (e.relation, to) {
+        (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
+            Some((super::holds::gap_m(b, to) - 3.0).clamp(0.0, 30.0))
+        }
+        _ => None,
+    }
 }
 
 /// How far a place misses what was said in metres, and how far off the line of what it is behind or between.
@@ -564,6 +680,15 @@ pub(super) fn stands(relation: RelationKind) -> bool {
         relation,
         RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking
     )
+}
+
+/// Strips on either side of the road: its edges and the sidewalks.
+fn is_beside(role: LaneRole) -> bool {
+    is_roadside(role)
+        || matches!(
+            role,
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
+        )
 }
 
 /// Roles beside the lanes.

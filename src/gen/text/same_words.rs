@@ -5,7 +5,6 @@ use super::lexicon::{Sense, look_up};
 use super::said::words::{is_unit, longest, noun_at, number};
 use super::tokens::{Token, TokenKind};
 use super::wording::{begins, rewritten, word};
-use crate::scene::Class;
 
 /// Things: the word that stands for them, and their other names, which say no more. Plurals follow by their own lists.
 const THINGS: &[(&str, &str)] = &[
@@ -262,6 +261,7 @@ const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|
 const TURN: &str = "rotate|spin|swivel|pivot|reorient|revolve|turn round|turn around|spin round|spin around|twist";
 const CLEAR_ROAD: &str = "clear the highway|clear the motorway|clear the freeway|clear the street|clear the autobahn|clear the carriageway|empty the highway|empty the motorway|\
     empty the road|empty the street|clear this road|clear this street|clear the whole road|clear the whole street|clear the entire road";
+const OF_THE_SCENE: &str = "worker|workers|road worker|construction worker|jogger|pedestrian|pedestrians|cones|barriers|excavator|digger|crane|cyclist|roller|bulldozer";
 const SO_MANY: &str = "add|put|place|insert|draw|park|take|move|bring|remove|delete|send|line up|set up|paint|turn";
 const WHEEL: &str = "wheel|swing";
 const EXCHANGE: &str = "swap|switch|trade|exchange|supplant|supersede|swap out|switch out|change out|trade in|swap over|interchange";
@@ -270,15 +270,8 @@ const EXCHANGE: &str = "swap|switch|trade|exchange|supplant|supersede|swap out|s
 pub fn commands(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
         // "our worker" is in the scene; "our car" is the ego vehicle
-        if matches!(tokens[i].text.as_str(), "our" | "my")
-            && !(i > 0 && tokens[i - 1].text == "of")
-            && tokens.get(i + 1).is_some_and(|t| !matches!(t.text.as_str(), "driver" | "drivers" | "rider" | "passenger"))
-            && let Some((Sense::Noun(noun, _), _)) = tokens.get(i + 1..).and_then(longest)
-            && matches!(
-                noun.classes[0],
-                Class::Pedestrian | Class::TrafficCone | Class::Barrier | Class::ConstructionVehicle
-            )
-        {
+        let there = || begins(tokens.get(i + 1..)?, OF_THE_SCENE);
+        if tokens[i].text == "our" && !(i > 0 && tokens[i - 1].text == "of") && there().is_some() {
             out.push(word("the", &tokens[i]));
             return Some(i + 1);
         }

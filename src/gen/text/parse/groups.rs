@@ -448,6 +448,13 @@ impl Parser<'_> {
                 }
                 Some(i) => self.anchor(Anchor::Object(i), item.span),
                 None if item.words == "that" => return true,
+                // "a zebra crossing is 20 m ahead; a car waits at it"
+                None if item.words == "it"
+                    && matches!(self.last_place, Some(Anchor::Crossing | Anchor::Junction))
+                    && self.pending.as_ref().is_some_and(|p| p.prep == Prep::At) =>
+                {
+                    self.anchor(self.last_place.unwrap_or(Anchor::Crossing), item.span);
+                }
                 None if self.ego_named || self.ego_subject => self.anchor(Anchor::Ego, item.span),
                 None if self.fronted.iter().any(|f| f.anchor == Anchor::Ego) => {
                     self.anchor(Anchor::Ego, item.span)

@@ -419,7 +419,11 @@ fn placed(
     let complement = settled(tag(&main));
     items.extend(complement);
     let (reading, mentions) = parse(talk.text, &items);
-    let spec = reading.description.foreground.first()?.clone();
+    let mut spec = reading.description.foreground.first()?.clone();
+    // ("put the bus in the left lane" does not tell it to drive)
+    if is(main.first(), &["move"]) && spec.attributes.iter().any(|a| a == "move") {
+        spec.state = None;
+    }
     let ways = |r: RelationKind| {
         matches!(
             r,

@@ -3,6 +3,7 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::{begins, rewritten};
 use super::lists::HELPERS;
 use super::words::{has_noun, is, is_finite, is_place, leads, number, text};
 
@@ -200,6 +201,7 @@ const HELP: &[&str] = &[
 
 /// A text without such remarks.
 pub fn without(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = in_the_way(tokens);
     let mut out = Vec::with_capacity(tokens.len());
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         let close = sentence
@@ -212,6 +214,22 @@ pub fn without(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     out
+}
+
+/// "leave it in the junction, where it blocks everything": who has to wait is not told.
+fn in_the_way(tokens: Vec<Token>) -> Vec<Token> {
+    const WHERE: &str = "where it|where he|where she|where they|so that it|so that they|so it|so they|and it|which|because it|since it";
+    const BLOCKS: &str = "blocks|block|obstructs|obstruct|holds up|hold up|is blocking|are blocking|will block|can block|stops|gets in the way of|is in the way of|disturbs|hinders";
+    const ALL: &str = "everything|everybody|everyone|all|all of us|all traffic|all the traffic|the traffic|the whole traffic|everything else|everybody else|everyone else|all the others|the others|the whole road|the whole street|the way";
+    rewritten(&tokens, |i, out| {
+        let comma = usize::from(tokens[i].kind == TokenKind::Comma);
+        let mut k = i + comma;
+        k += begins(tokens.get(k..)?, WHERE)?;
+        k += begins(tokens.get(k..)?, BLOCKS)?;
+        k += begins(tokens.get(k..)?, ALL)?;
+        let ends = tokens.get(k).is_none_or(|t| t.kind != TokenKind::Word);
+        (ends && !out.is_empty()).then_some(k)
+    })
 }
 
 /// Where the remark at the end of a sentence begins.

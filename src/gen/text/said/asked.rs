@@ -32,7 +32,7 @@ const TO: &str = "\
     maybe we should|perhaps we should|maybe you could|perhaps you could|maybe|perhaps|we are going to|were going to|\
     i am going to|im going to|we now|we then|you then|i now|you might want to|you may want to|we might want to|\
     there is a need to|i have to ask you to|time to|next we|now we|next you|now you|i hereby ask you to|kindly|\
-    please|simply|quickly|and|also|then|now|next|so|ok|okay|hey|hi|hello|well then|alright|right then|first|\
+    please to|please|simply|quickly|and|also|then|now|next|so|ok|okay|hey|hi|hello|well then|alright|right then|first|\
     firstly|second|secondly|third|thirdly|finally|lastly|last|additionally|furthermore|moreover|oh|oh and|\
     ok so|okay so|first of all|to begin with|to start with|for starters|after that|afterwards|in addition|\
     instead of that|one more thing|another thing|later|meanwhile|actually|on second thought|on second thoughts|\

@@ -3,6 +3,7 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::begins;
 use super::Talk;
 use super::lists::MATES;
 use super::topics::singular_of;
@@ -11,11 +12,49 @@ use crate::scene::Class;
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(joining(joining_there(tokens, talk), talk), talk);
+    let out = keeps_company(tokens);
+    let out = same_place(joining(joining_there(out, talk), talk), talk);
     let out = companion(with_those(out, talk), talk);
     let out = kin(out, talk);
     let out = beside_it(as_one(boards(out, talk)));
     takes_away(out, talk)
+}
+
+/// "a second man keeps the first one company, right beside him": he stands next to him.
+fn keeps_company(tokens: Vec<Token>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        is(
+            tokens.get(i),
+            &["keeps", "keep", "keeping", "kept", "bears", "bear"],
+        )
+        .then_some(())?;
+        let company = (i + 2..tokens.len().min(i + 8)).find(|k| is(tokens.get(*k), &["company"]))?;
+        Some((i, company))
+    });
+    let Some((i, company)) = found else {
+        return tokens;
+    };
+    // (where he stands then is told by whom he is with)
+    let after = trimmed(&tokens[company + 1..]);
+    let again = begins(
+        after,
+        "right beside him|right beside her|right beside it|beside him|beside her|beside it|next to him|next to her|next to it|right next to him|right next to her|right next to it|at his side|at her side|by his side|by her side|right beside them|beside them|next to them|close to him|close to her",
+    );
+    let rest = match again {
+        Some(n) => &after[n..],
+        None => &tokens[company + 1..],
+    };
+    let whom = led("next to", &tokens[i], &[&tokens[i + 1..company], rest]);
+    // ("to keep him company")
+    let to = is(tokens.get(i - 1), &["to"]);
+    let lead = if to {
+        Vec::new()
+    } else if is(tokens.get(i), &["keep", "keeping"]) {
+        led("standing", &tokens[i], &[])
+    } else {
+        led("stands", &tokens[i], &[])
+    };
+    [&tokens[..i - usize::from(to)], &lead, &whom].concat()
 }
 
 /// "my son comes by bike: add him as a cyclist": add a cyclist.

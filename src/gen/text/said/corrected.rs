@@ -5,16 +5,119 @@ use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::lists::HELPERS;
 use super::some_of::{bare_np, removes};
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed};
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    was_not(now_so_many(tokens, talk), talk)
+    was_not(now_so_many(happier(none_left(not_but(tokens))), talk), talk)
+}
+
+/// "the jogger isn't on the pavement at all but in our lane": he should be in our lane.
+fn not_but(tokens: Vec<Token>) -> Vec<Token> {
+    const NOT: &[&str] = &[
+        "isnt", "is not", "arent", "are not", "wasnt", "was not", "werent", "were not",
+    ];
+    let Some((i, n)) = find(&tokens, NOT).filter(|x| x.0 > 0) else {
+        return tokens;
+    };
+    let but = (i + n + 1..tokens.len()).find(|k| is(tokens.get(*k), &["but"]));
+    let known = is(
+        tokens.first(),
+        &[
+            "the", "both", "all", "that", "my", "those", "he", "she", "it", "they",
+        ],
+    );
+    let Some(but) = but.filter(|_| known && is_place(&tokens[i + n..])) else {
+        return tokens;
+    };
+    let at_all = is(tokens.get(but - 1), &["all", "anymore", "longer", "more"]);
+    let rest = &tokens[but + 1..];
+    if at_all && is_place(rest) {
+        [&tokens[..i], &led("should be", &tokens[i], &[rest])].concat()
+    } else {
+        tokens
+    }
+}
+
+/// "no child is on the left any more, they're all on the crossing": all of them are there, and none has gone away.
+fn none_left(tokens: Vec<Token>) -> Vec<Token> {
+    const THEY: &[&str] = &[
+        "they are all",
+        "theyre all",
+        "they all are",
+        "all of them are",
+        "they are",
+        "theyre",
+        "all are",
+        "they all stand",
+        "all of them stand",
+    ];
+    let no = leads(&tokens, &["no", "not a single", "not one", "none of the"]);
+    let Some((n, (_, b))) = no.and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 3)?))) else {
+        return tokens;
+    };
+    let later = (n + b..tokens.len()).find_map(|k| {
+        (tokens[k].kind != TokenKind::Word || is(tokens.get(k), &["but", "as", "because"])).then_some(())?;
+        let they = k + 1 + usize::from(is(tokens.get(k + 1), &["but", "because"]));
+        leads(tokens.get(they..)?, THEY).map(|m| they + m)
+    });
+    match later {
+        Some(at) if is_place(&tokens[at..]) => led(
+            "all",
+            &tokens[0],
+            &[
+                &tokens[n..n + b],
+                &led("should be", &tokens[at], &[&tokens[at..]]),
+            ],
+        ),
+        _ => tokens,
+    }
+}
+
+/// "I'd feel better with the motorcycle in front of us rather than behind": it should be there.
+fn happier(tokens: Vec<Token>) -> Vec<Token> {
+    const HAPPY: &[&str] = &[
+        "id feel better with",
+        "i would feel better with",
+        "id feel safer with",
+        "i would feel safer with",
+        "id be happier with",
+        "i would be happier with",
+        "wed be happier with",
+        "it would be better with",
+        "itd be better with",
+        "it would look better with",
+        "it looks better with",
+        "it would be nicer with",
+        "we would be better off with",
+        "id be better off with",
+    ];
+    let Some((n, (_, b))) =
+        leads(&tokens, HAPPY).and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 4)?)))
+    else {
+        return tokens;
+    };
+    let place = &tokens[n + b..];
+    let known = is(tokens.get(n), &["the", "both", "all", "that", "my"]);
+    if !known || !is_place(place) {
+        return tokens;
+    }
+    // (where it was until now)
+    let than =
+        (2..place.len()).find(|k| leads(&place[*k..], &["rather than", "instead of", "than"]).is_some());
+    let place = match than {
+        Some(k) if !has_noun(&place[k..]) => &place[..k],
+        _ => place,
+    };
+    [&tokens[n..n + b], &led("should be", &tokens[n], &[place])].concat()
 }
 
 /// "what was driving in the left lane were two trucks, not two cars": the cars there are trucks.
 fn was_not(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    if let Some(new) = not_that(&tokens, talk) {
+    if let Some(new) = not_that(&tokens, talk)
+        .or_else(|| it_was(&tokens, talk))
+        .or_else(|| what_does(&tokens, talk))
+    {
         return new;
     }
     const BE: &[&str] = &[
@@ -101,6 +204,120 @@ fn not_that(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             &[&np, &led("with", &tokens[but], &[new])],
         )
     })
+}
+
+/// "it was a pickup that was following us, not a car": the car that was is a pickup.
+fn it_was(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let n = leads(
+        tokens,
+        &[
+            "it is",
+            "its",
+            "it was",
+            "that is",
+            "thats",
+            "that was",
+            "it has to be",
+            "it should be",
+            "it must be",
+            "it should have been",
+            "it must have been",
+            "it had been",
+            "it is actually",
+            "its actually",
+            "it was actually",
+            "it was in fact",
+            "it is in fact",
+            "it was really",
+            "it is really",
+            "its really",
+        ],
+    )?;
+    let new = &tokens[n..];
+    let (_, b) = first_noun(new).filter(|x| x.0 < 4 && is_new(new))?;
+    let not = (n + b..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["not"]) && matches!(tokens[k - 1].kind, TokenKind::Comma | TokenKind::Mark)
+    })?;
+    let old = trimmed(&tokens[not + 1..]);
+    let article = usize::from(is(old.first(), &["a", "an", "the"]));
+    let whole = first_noun(old).is_some_and(|x| x.0 < 4 && x.1 == old.len());
+    let said = &tokens[n + b..not];
+    let relative = usize::from(is(said.first(), &["that", "which", "who"]));
+    let helped = said[relative..]
+        .iter()
+        .take_while(|t| HELPERS.contains(&text(t)))
+        .count();
+    let place = trimmed(&said[relative + helped..]);
+    let bare = &old[article..];
+    (whole && bare.first().is_some_and(|t| number(t).is_none())).then_some(())?;
+    let there = [bare, place].concat();
+    let np = [&there[..], bare].into_iter().find(|np| talk.fits(np) == 1)?;
+    Some(led(
+        "replace the",
+        &tokens[0],
+        &[np, &led("with", &tokens[not], &[&new[..b]])],
+    ))
+}
+
+/// "what waits there should be a bus rather than the car", "the thing ahead should be a van and not a bus": that becomes it.
+fn what_does(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    leads(
+        tokens,
+        &[
+            "what",
+            "whatever",
+            "who",
+            "whoever",
+            "the thing",
+            "the vehicle",
+            "the one",
+        ],
+    )?;
+    let be = (2..tokens.len()).find_map(|k| {
+        leads(
+            &tokens[k..],
+            &[
+                "should be",
+                "must be",
+                "ought to be",
+                "has to be",
+                "shall be",
+                "should have been",
+                "is to be",
+            ],
+        )
+        .map(|n| k + n)
+    })?;
+    let new = &tokens[be..];
+    let (_, b) = first_noun(new).filter(|x| x.0 < 4 && is_new(new))?;
+    let than = trimmed(&new[b..]);
+    let n = leads(
+        than,
+        &[
+            "rather than",
+            "instead of",
+            "in place of",
+            "and not",
+            "not",
+            "in lieu of",
+        ],
+    )?;
+    let old = &than[n..];
+    let whole = first_noun(old).is_some_and(|x| x.0 < 4 && x.1 == old.len());
+    let article = usize::from(is(old.first(), &["a", "an", "the", "that"]));
+    let np = &old[article..];
+    (whole && talk.fits(np) == 1).then(|| {
+        led(
+            "replace the",
+            &tokens[0],
+            &[np, &led("with", &tokens[be], &[&new[..b]])],
+        )
+    })
+}
+
+/// "a van", "two vans".
+fn is_new(np: &[Token]) -> bool {
+    is(np.first(), &["a", "an"]) || np.first().is_some_and(|t| number(t).is_some())
 }
 
 /// "our fleet has grown: six parked cars now", "five pedestrians now": so many of them.

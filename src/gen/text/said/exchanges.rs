@@ -4,6 +4,7 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::begins;
 use super::Talk;
 use super::lists::{EXCHANGING, HELPERS};
 use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed};
@@ -12,7 +13,7 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = keep_and_rest(tokens, talk);
     let out = place_of(no_but(out, talk), talk);
-    let out = where_was(out, talk);
+    let out = where_is(where_was(out, talk), talk);
     let out = in_place_of(out, talk);
     let out = just_as_many(out, talk);
     told_again(out, talk)
@@ -385,6 +386,26 @@ fn where_was(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     match exchange(old, tokens.get(k..).unwrap_or_default()) {
         Some((out, end)) => [&out, &tokens[k + end..]].concat(),
+        None => tokens,
+    }
+}
+
+/// "use barriers where the cones are now": those become these.
+fn where_is(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const REST: &str = "is|are|is now|are now|is at present|are at present|is right now|are right now|is at the moment|are at the moment|stands|stand|stands now|stand now|is standing|are standing|is currently|are currently|currently is|currently are|currently stands|currently stand|now stands|now stand|now is|now are|was|were|was before|were before|used to be|used to stand|stood|stood before|is parked|are parked|drives|drives now|waits|sits|sit";
+    let uses = is(tokens.first(), &["use", "take"]);
+    let Some((_, b)) = first_noun(&tokens[..tokens.len().min(6)]).filter(|_| uses) else {
+        return tokens;
+    };
+    let new = &tokens[1..b];
+    let at = is(tokens.get(b), &["where"]) && !is(new.first(), &["the", "that", "those", "both"]);
+    let Some((_, e)) = tokens.get(b + 1..).and_then(first_noun).filter(|x| at && x.0 < 4) else {
+        return tokens;
+    };
+    let (old, rest) = (&tokens[b + 1..b + 1 + e], &tokens[b + 1 + e..]);
+    let told = begins(rest, REST).is_some_and(|n| trimmed(&rest[n..]).is_empty());
+    match known(old, talk).filter(|_| told) {
+        Some(old) => led("replace", &tokens[0], &[&old, &led("with", &tokens[b], &[new])]),
         None => tokens,
     }
 }

@@ -518,23 +518,35 @@ pub(super) fn preferred(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> 
 
 /// "make a bus of that truck"
 pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
-    if !is(inner.first(), &["make", "build", "create", "form"])
-        || !is(inner.get(1), &["a", "an", "two", "three"])
-    {
+    let several = first_noun(inner).is_some_and(|x| x.0 == 1)
+        || inner
+            .get(1)
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an"]));
+    if !is(inner.first(), &["make", "build", "create", "form"]) || !several {
         return None;
     }
     let (i, n) = find(inner, &["out of", "of", "from"])?;
     let (new, old) = (&inner[1..i], &inner[i + n..]);
     let known = is(
         old.first(),
-        &["the", "that", "this", "those", "both", "my", "it", "them"],
+        &[
+            "the", "that", "this", "those", "both", "my", "it", "them", "all", "every",
+        ],
     );
     let end = first_noun(old).map_or(1, |x| x.1);
-    (known && has_noun(new)).then(|| {
+    // "out of two of the parked cars": any two of them
+    let some = old.first().is_some_and(|t| number(t).is_some())
+        && is(old.get(1), &["of"])
+        && is(old.get(2), &["the", "those", "these", "my"]);
+    let old = match some {
+        true => led("any", &old[0], &[&old[..1], &old[3..end]]),
+        false => old[..end].to_vec(),
+    };
+    ((known || some) && has_noun(new)).then(|| {
         vec![Piece::Plain(led(
             "replace",
             &inner[0],
-            &[&old[..end], &led("with", &inner[0], &[new])],
+            &[&old, &led("with", &inner[0], &[new])],
         ))]
     })
 }

@@ -36,6 +36,17 @@ fn wish(tokens: &[Token]) -> Option<usize> {
             "would" | "should" | "do" | "really" | "much" | "just" | "also" | "now" | "still"
             | "definitely" | "d" | "had" | "only" | "urgently" | "for" | "please" => {}
             "see" | "have" | "to" | "get" if wishes => {}
+            // "I'd have every child look away" ("I'd have removed it" asks for nothing)
+            "have"
+                if (matches!(text(&tokens[0]), "id" | "wed" | "youd")
+                    || is(tokens.get(k - 1), &["would"]))
+                    && is(
+                        tokens.get(k + 1),
+                        &["the", "every", "each", "all", "both", "a", "an", "that"],
+                    ) =>
+            {
+                wishes = true;
+            }
             _ => break,
         }
         k += 1;

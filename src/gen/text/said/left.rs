@@ -1,10 +1,12 @@
 //! What a sentence leaves to be pointed at by the next: "why is nobody on the right sidewalk? Put somebody there", "the
 //! sidewalk is empty. Put two children on the right one", "who is behind us? A car."
 
-use super::super::lexicon::Sense;
+use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::{begins, rewritten};
 use super::Talk;
 use super::words::{first_noun, is, is_place, leads, led, longest, number};
+use crate::scene::Class;
 
 /// Words for strips that "one" may stand for.
 const STRIPS: &[&str] = &[
@@ -57,6 +59,56 @@ fn only_number(body: &[Token]) -> Option<&Token> {
     // ("two more" is two more)
     let more = body.iter().any(|t| t.text == "more");
     (many.next().is_none() && plain && !more).then_some(first)
+}
+
+/// "a policeman stands beside her", where nobody was named and one person is there: that one; "with them": all of several.
+pub(super) fn only_person(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const BY: &str = "next to|beside|behind|ahead of|in front of|near|close to|by|opposite|alongside|towards|facing|with|after|left of|right of|to the left of|to the right of";
+    let people = talk
+        .boxes
+        .values()
+        .filter(|b| b.class == Class::Pedestrian)
+        .count();
+    if people == 0 {
+        return tokens;
+    }
+    let (pronouns, whom): (&[&str], _) = match people {
+        1 => (&["him", "her"], "the pedestrian"),
+        _ => (&["them"], "the pedestrians"),
+    };
+    let person = |t: &Token| matches!(look_up(&t.text), Some(Sense::Noun(n, _)) if matches!(n.classes[0], Class::Pedestrian | Class::Bicycle | Class::Motorcycle));
+    let mut out = rewritten(&tokens, |i, out| {
+        is(tokens.get(i), pronouns).then_some(())?;
+        // ("her car" is hers)
+        tokens
+            .get(i + 1)
+            .is_none_or(|t| t.kind != TokenKind::Word || is(Some(t), &["and", "on", "in", "too"]))
+            .then_some(())?;
+        let by = (1..=4.min(i)).any(|k| begins(&tokens[i - k..i], BY) == Some(k));
+        let many = out.iter().filter(|t| person(t)).count();
+        let new = is(
+            out.first(),
+            &[
+                "a", "an", "another", "put", "add", "place", "park", "set", "one", "two", "three", "their",
+                "his", "her",
+            ],
+        );
+        let named = many > usize::from(new);
+        (by && !named).then(|| {
+            if is(out.last(), &["with"]) {
+                out.pop();
+                out.extend(led("next to", &tokens[i], &[]));
+            }
+            out.extend(led(whom, &tokens[i], &[]));
+            i + 1
+        })
+    });
+    // "their teacher stands with them": somebody new
+    if out != tokens && is(out.first(), &["their", "his", "her"]) && out.get(1).is_some_and(person) {
+        let new = led("add a", &out[0], &[]);
+        out.splice(..1, new);
+    }
+    out
 }
 
 impl Left {

@@ -23,6 +23,7 @@ mod forms;
 mod frame;
 mod gapped;
 mod gaps;
+mod gaze;
 mod gifts;
 mod group_sizes;
 mod happier;
@@ -30,6 +31,7 @@ mod headway;
 mod idioms;
 mod joined_by;
 mod kept;
+mod lane_of;
 mod left;
 mod likewise;
 mod limits;
@@ -64,6 +66,7 @@ mod skies;
 mod small_turns;
 mod some_of;
 mod spaces;
+mod speakers;
 mod splits;
 mod spoken;
 mod steps;
@@ -245,16 +248,19 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = speakers::plain(testimony::plain(body.to_vec()), talk);
+    let out = owned::plain(remarks::reported(out), talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
     let out = mistaken::plain(recounted::plain(out, talk), talk);
     let out = joined_by::plain(told_again::plain(out, talk), talk);
     let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);
+    let out = left::only_person(gaze::plain(spoken::coming(out, talk), talk), talk);
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
-    let out = notes::plain(seconds::plain(vacated::plain(out, talk), talk), talk);
+    let out = seconds::plain(vacated::plain(out, talk), talk);
+    let out = notes::plain(lane_of::plain(out, talk), talk);
     let out = of_several::front_and_rear(spoken::engine(spoken::little_ones(out, talk), talk), talk);
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
@@ -330,9 +336,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         let mut clause = clause.to_vec();
         let bare = is(clause.first(), &parting::WHOLE)
             && first_noun(&clause).is_some_and(|n| n.0 < 4 && is_place(&clause[n.1..]))
-            && !clause
-                .iter()
-                .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false));
+            && !parting::has_verb(&clause);
         if let (true, Some(verb)) = (bare, &lead) {
             clause.insert(0, words::word(text(verb), &clause[0]));
         }
@@ -347,7 +351,19 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
             .filter(|v| {
                 matches!(
                     text(v),
-                    "put" | "move" | "place" | "set" | "bring" | "shift" | "send"
+                    "put"
+                        | "move"
+                        | "place"
+                        | "set"
+                        | "bring"
+                        | "shift"
+                        | "send"
+                        | "position"
+                        | "reposition"
+                        | "relocate"
+                        | "transfer"
+                        | "park"
+                        | "stand"
                 )
             })
             .or(told);

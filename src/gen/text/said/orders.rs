@@ -388,7 +388,7 @@ pub(super) fn imperative(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>>
         p.perfect = false;
     }
     if let Some(p) = said.first_mut() {
-        let park = matches!(text(first), "park" | "stand");
+        let park = matches!(text(first), "park" | "stand" | "leave");
         let mut whole = if park {
             vec![words::word(
                 if text(first) == "park" {

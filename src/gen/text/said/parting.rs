@@ -234,7 +234,21 @@ pub(super) fn carries(clause: &[Token]) -> bool {
     let (inner, _) = unwrapped(clause);
     is(
         inner.first(),
-        &["put", "move", "place", "set", "bring", "shift", "send"],
+        &[
+            "put",
+            "move",
+            "place",
+            "set",
+            "bring",
+            "shift",
+            "send",
+            "position",
+            "reposition",
+            "relocate",
+            "transfer",
+            "park",
+            "stand",
+        ],
     ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
 }
 
@@ -294,6 +308,13 @@ fn opens_order(rest: &[Token]) -> bool {
                 "it", "them", "him", "her",
             ],
         )
+}
+
+/// True if a verb is said of what is named first ("the parked car at the kerb" has none).
+pub(super) fn has_verb(clause: &[Token]) -> bool {
+    let from = first_noun(clause).map_or(0, |n| n.0);
+    let helps = clause.iter().any(|t| HELPERS.contains(&text(t)));
+    helps || clause[from..].iter().any(|t| words::is_finite(text(t), false))
 }
 
 /// True if a clause of its own begins here.
@@ -406,9 +427,7 @@ pub(super) fn opens(rest: &[Token], talk: &Talk<'_>) -> bool {
     if is(near.first(), &WHOLE)
         && first_noun(near).is_some_and(|n| n.0 < 4 && is_place(&near[n.1..]))
         && talk.carried
-        && !near
-            .iter()
-            .any(|t| HELPERS.contains(&text(t)) || words::is_finite(text(t), false))
+        && !has_verb(near)
     {
         return true;
     }

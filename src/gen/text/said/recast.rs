@@ -7,7 +7,10 @@ use super::Talk;
 use super::causing::{caused, caused_later, let_be, wished_beside};
 use super::limits::{for_each, group_cut, half_of, no_more_than, not_those, now_there, sent, so_many_not};
 use super::steps::{another_so_far, far_times, pushed_away, to_so_far};
-use super::strips::{cleared_of, everyone_there, off_site, off_with, other_strip, own_side, place_first};
+use super::strips::{
+    changed_to, cleared_of, everyone_there, off_site, off_with, other_strip, own_side, place_first,
+    stopped_at,
+};
 use super::topics::{gapped, of_group, topic};
 use super::words::{find, first_noun, has_noun, is, is_place, led, number, text, trimmed};
 
@@ -72,7 +75,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = for_each(out, talk);
     let out = sent(out, talk);
     let out = no_more_than(out, talk);
-    let out = off_with(off_site(out));
+    let out = off_with(off_site(stopped_at(changed_to(out))));
     let out = cleared_of(out);
     let out = own_side(out);
     super::which::any_so_many(not_those(out, talk), talk)

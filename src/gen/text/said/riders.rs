@@ -8,9 +8,10 @@ use crate::scene::Class;
 
 /// A sentence in plain words.
 pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
-    mounts(climbs_out(mounted(put_on(tokens))))
+    mounts(climbs_out(drives_in(rides_own(mounted(put_on(tokens))))))
 }
 
+/// The two-wheeler that this word names.
 fn two_wheels(t: &Token) -> bool {
     matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() == 1 && matches!(n.classes[0], Class::Bicycle | Class::Motorcycle))
 }
@@ -71,6 +72,98 @@ fn mounted(tokens: Vec<Token>) -> Vec<Token> {
         out.extend_from_slice(&tokens[i + n..i + n + b]);
         Some(i + n + b)
     })
+}
+
+/// True for somebody who is not in the scene yet, named up to here.
+fn somebody(who: &[Token]) -> bool {
+    match who {
+        [one] => is(Some(one), &["somebody", "someone"]),
+        [first, ..] => is(Some(first), &["my", "our", "a", "an", "another", "some"])
+            && first_noun(who).is_some_and(|x| {
+                let whose = leads(&who[x.1..], &["of mine", "of ours", "of his", "of hers"]).unwrap_or(0);
+                x.0 < 4 && x.1 + whose == who.len()
+            })
+            && who[1..].iter().all(
+                |t| !matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes[0] != Class::Pedestrian),
+            ),
+        [] => false,
+    }
+}
+
+/// "my little brother rides his bike in our lane": a cyclist does.
+fn rides_own(tokens: Vec<Token>) -> Vec<Token> {
+    const RIDES: &[&str] = &[
+        "rides",
+        "is riding",
+        "rode",
+        "was riding",
+        "comes on",
+        "is on",
+        "cycles on",
+        "pedals",
+        "drives",
+    ];
+    let found = (1..tokens.len().min(6)).find_map(|i| {
+        let n = leads(&tokens[i..], RIDES).filter(|_| somebody(&tokens[..i]))?;
+        let own = is(tokens.get(i + n), &["his", "her", "their", "a", "an", "my"]);
+        let what = tokens.get(i + n + 1..)?;
+        let (_, b) = first_noun(what).filter(|x| own && x.0 < 3 && two_wheels(&what[x.1 - 1]))?;
+        Some((i + n + 1, i + n + 1 + b))
+    });
+    match found {
+        Some((a, b)) => {
+            let rides = led("rides", &tokens[0], &[&tokens[b..]]);
+            led("a", &tokens[0], &[&tokens[a..b], &rides])
+        }
+        None => tokens,
+    }
+}
+
+/// "somebody drives after us in a car": a car does.
+fn drives_in(tokens: Vec<Token>) -> Vec<Token> {
+    const DRIVES: &[&str] = &[
+        "drives",
+        "is driving",
+        "drove",
+        "comes",
+        "is coming",
+        "came",
+        "follows",
+        "is following",
+        "waits",
+        "is waiting",
+        "rides",
+        "is riding",
+        "sits",
+        "is sitting",
+        "stands",
+        "is standing",
+        "approaches",
+        "is approaching",
+    ];
+    let found = (1..tokens.len().min(6)).find_map(|i| {
+        let n = leads(&tokens[i..], DRIVES).filter(|_| somebody(&tokens[..i]))?;
+        let at = (i + n..tokens.len().min(i + n + 7)).find_map(|k| {
+            is(tokens.get(k), &["in", "on", "with"]).then_some(())?;
+            let what = tokens.get(k + 2..)?;
+            let own = is(tokens.get(k + 1), &["a", "an", "his", "her", "their"]);
+            let (_, b) = first_noun(what).filter(|x| own && x.0 < 3)?;
+            let drives = matches!(look_up(text(&what[b - 1])), Some(Sense::Noun(n, _)) if n.classes[0].is_vehicle())
+                || two_wheels(&what[b - 1]);
+            drives.then_some((k, k + 2, k + 2 + b))
+        })?;
+        // (no other clause in between)
+        (i..at.0)
+            .all(|k| tokens[k].kind == super::super::tokens::TokenKind::Word && !is(tokens.get(k), &["and"]))
+            .then_some((i, at))
+    });
+    match found {
+        Some((i, (k, a, b))) => {
+            let does = [&tokens[i..k], &tokens[b..]].concat();
+            led("a", &tokens[0], &[&tokens[a..b], &does])
+        }
+        None => tokens,
+    }
 }
 
 const OUT: &[&str] = &[

@@ -24,7 +24,7 @@ pub fn plain(tokens: Vec<Token>) -> Vec<Token> {
     let out = cut_from(only_wanted(out));
     let out = one_stays(fewer(besides(out)));
     let out = keeps_beside(too_many(stationed(out)));
-    uses(&distance_between(&into_there(&out)))
+    let_use(&uses(&distance_between(&into_there(&out))))
 }
 
 /// "cut the green car from the scene": remove it.
@@ -261,6 +261,55 @@ fn uses(tokens: &[Token]) -> Vec<Token> {
         ));
         Some(i + n)
     })
+}
+
+/// "let the bus use the left lane and the car ours": move each there.
+fn let_use(tokens: &[Token]) -> Vec<Token> {
+    let lets = is(tokens.first(), &["let", "have", "make"])
+        && is(tokens.get(1), &["the", "both", "all", "that", "my"]);
+    let used =
+        first_noun(tokens).filter(|x| lets && x.0 < 5 && is(tokens.get(x.1), &["use", "take", "have"]));
+    let Some((_, b)) = used else {
+        return tokens.to_vec();
+    };
+    let strip = |t: &Token| {
+        is(
+            Some(t),
+            &[
+                "lane", "sidewalk", "pavement", "roadside", "kerb", "curb", "footpath",
+            ],
+        )
+    };
+    let end = (b..tokens.len().min(b + 6)).find(|k| strip(&tokens[*k]));
+    let Some(end) = end.filter(|_| is(tokens.get(b + 1), &["the", "my", "our"])) else {
+        return tokens.to_vec();
+    };
+    let mut out = led(
+        "move",
+        &tokens[0],
+        &[&tokens[1..b], &led("to", &tokens[b], &[&tokens[b + 1..=end]])],
+    );
+    let rest = &tokens[end + 1..];
+    // the other one has its own
+    let next = &rest[usize::from(is(rest.first(), &["and"]))..];
+    let other =
+        first_noun(next).filter(|x| next.len() < rest.len() && x.0 < 4 && is(next.first(), &["the", "that"]));
+    match other {
+        Some((_, e)) if is(next.get(e), &["ours", "mine", "the", "my", "our"]) => {
+            out.extend(led(
+                "and move",
+                &rest[0],
+                &[&next[..e], &led("to", &rest[0], &[])],
+            ));
+            if is(next.get(e), &["ours", "mine"]) {
+                out.extend(led("our", &next[e], &[&tokens[end..=end], &next[e + 1..]]));
+            } else {
+                out.extend_from_slice(&next[e..]);
+            }
+        }
+        _ => out.extend_from_slice(rest),
+    }
+    out
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::rewritten;
+use super::super::wording::{begins, rewritten};
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{self, find, is, is_place, led, text};
+use super::words::{self, find, is, is_place, led, number, text};
 
 /// "the one behind me", "what's behind me" as "the object behind me".
 pub(super) fn with_ones(body: &[Token]) -> Vec<Token> {
@@ -202,4 +202,117 @@ pub(super) fn without_feet(body: &[Token]) -> Vec<Token> {
     let mut out = body.to_vec();
     out.drain(i..i + n);
     out
+}
+
+/// Words for where somebody comes from, goes to and stands, where two or three mean one: "coming the other way" is towards us,
+/// "is to stand" is "should stand".
+pub(super) fn coming(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const COMES: &str = "coming|come|comes|came|heading|approaching";
+    const OTHER_WAY: &str = "the other way|the opposite way|from the other way|from the opposite way|the other direction|the opposite direction|from the other direction|from the opposite direction|in the other direction|in the opposite direction|from the opposite side|from the other side";
+    const AT: &str = "straight at us|straight at me|right at us|right at me|directly at us|directly at me|at us|at me|head on at us|head on at me";
+    const DRIVES: &str = "coming|come|comes|came|drives|drive|driving|drove|rides|ride|riding|rode|heads|heading|headed|races|racing|raced|runs|running|ran";
+    let out = rewritten(&tokens, |i, out| {
+        let go = begins(&tokens[i..], COMES).and_then(|n| Some(n + begins(&tokens[i + n..], OTHER_WAY)?));
+        let at = begins(&tokens[i..], DRIVES).and_then(|n| Some(n + begins(&tokens[i + n..], AT)?));
+        let n = go.or(at)?;
+        out.push(tokens[i].clone());
+        out.extend(led("towards us", &tokens[i], &[]));
+        Some(i + n)
+    });
+    let out = rewritten(&out, |i, new| {
+        // "a lorry is to stand there" ("what I want is to remove it" is a wish)
+        let to = is(out.get(i), &["is", "are"]) && is(out.get(i + 1), &["to"]) && !new.is_empty();
+        let verb = out.get(i + 2).filter(|_| to)?;
+        let does = is(
+            Some(verb),
+            &["stand", "be", "drive", "walk", "park", "move", "come", "have"],
+        ) || words::is_finite(text(verb), true) && !super::super::rephrase::is_verb(verb);
+        let whom = is(
+            out.get(i + 3),
+            &["the", "both", "all", "every", "my", "it", "them", "him", "her"],
+        );
+        let wishes = &[
+            "what",
+            "thing",
+            "idea",
+            "plan",
+            "aim",
+            "goal",
+            "task",
+            "wish",
+            "intention",
+        ];
+        (does && !whom && !new.iter().any(|t| is(Some(t), wishes))).then(|| {
+            new.extend(led("should", &out[i], &[]));
+            i + 2
+        })
+    });
+    let out = rewritten(&out, |i, new| {
+        const ON_TOP: &str = "right on top of|on top of|smack in the middle of|bang in the middle of|slap in the middle of|right in the middle of";
+        let n = begins(&out[i..], ON_TOP)?;
+        let the = n + usize::from(is(out.get(i + n), &["the", "our", "my"]));
+        let place = words::longest(out.get(i + the..)?).is_some_and(|s| matches!(s.0, Sense::Place(..)));
+        place.then(|| {
+            new.extend(led("on", &out[i], &[]));
+            i + n
+        })
+    });
+    let out = rewritten(&out, |i, new| {
+        // "a scooter takes up one of the empty bays"
+        const TAKES: &str = "takes up|takes|has taken|occupies|fills|uses|now takes up|now occupies|stands in|sits in|pulls into|has pulled into|parks in|is parked in";
+        const FREE: &str = "one of the empty|one of the free|one of the vacant|one of the vacated|a free|a vacant|an empty|the empty|the free|the vacant|the freed";
+        const BAY: &str = "bay|bays|parking bay|parking bays|space|spaces|parking space|parking spaces|spot|spots|parking spot|parking spots|slot|slots|parking slot|parking slots";
+        let takes = begins(&out[i..], TAKES)?;
+        let free = i + takes + begins(&out[i + takes..], FREE)?;
+        let n = begins(&out[free..], BAY)?;
+        new.extend(led("is parked in the car park", &out[i], &[]));
+        Some(free + n)
+    });
+    some_stay(laid_out(into_one(out)), talk)
+}
+
+/// "cones should be set out in our lane": how they come there is not told twice.
+fn laid_out(tokens: Vec<Token>) -> Vec<Token> {
+    const OUT: &str = "set out|set up|put up|put down|put out|laid out|laid down|set down|placed|lined up|positioned|erected|deployed|stationed|installed|arranged";
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], OUT).filter(|_| is(out.last(), &["be", "been"]))?;
+        // (only who is new is put up anywhere)
+        let new = number(tokens.first()?).is_some() || is(tokens.first(), &["a", "an", "some", "more"]);
+        (new && is_place(tokens.get(i + n..)?)).then_some(i + n)
+    })
+}
+
+/// "change the car in a motorcycle": into one.
+fn into_one(mut tokens: Vec<Token>) -> Vec<Token> {
+    if !is(tokens.first(), &["change", "turn", "convert", "transform"]) {
+        return tokens;
+    }
+    for i in 2..tokens.len() {
+        let thing = is(tokens.get(i), &["in"])
+            && is(tokens.get(i + 1), &["a", "an"])
+            && words::noun_at(&tokens[i - 1..i]).is_some()
+            && words::first_noun(&tokens[i + 1..]).is_some_and(|x| x.0 < 3);
+        if thing {
+            tokens[i].text = "into".into();
+        }
+    }
+    tokens
+}
+
+/// "only one of the two stays on the left; the other one crosses": nobody goes away.
+fn some_stay(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let some = is(tokens.first(), &["only", "just"])
+        && tokens.get(1).is_some_and(|t| number(t).is_some())
+        && is(tokens.get(2), &["of"]);
+    let stays = tokens
+        .iter()
+        .any(|t| is(Some(t), &["stays", "stay", "remains", "remain", "keeps", "keep"]));
+    if some
+        && stays
+        && (talk.others || words::find(&tokens, &["the other", "the others", "the rest"]).is_some())
+    {
+        tokens[1..].to_vec()
+    } else {
+        tokens
+    }
 }

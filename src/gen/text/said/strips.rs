@@ -42,6 +42,71 @@ pub(super) fn off_with(tokens: Vec<Token>) -> Vec<Token> {
     led("remove all", &tokens[0], &[&who, &place])
 }
 
+/// "change the cyclist to the opposite lane": move him there.
+pub(super) fn changed_to(mut tokens: Vec<Token>) -> Vec<Token> {
+    let known = is(
+        tokens.get(1),
+        &[
+            "the", "both", "all", "that", "every", "my", "it", "him", "her", "them",
+        ],
+    );
+    let changes = known && is(tokens.first(), &["change", "switch", "alter", "adjust"]);
+    let end = match is(tokens.get(1), &["it", "him", "her", "them"]) {
+        true => Some(2),
+        false => first_noun(&tokens).filter(|x| x.0 < 5).map(|x| x.1),
+    };
+    let Some(to) = end.filter(|b| changes && is(tokens.get(*b), &["to", "into", "onto", "over"])) else {
+        return tokens;
+    };
+    let to = to + usize::from(is(tokens.get(to), &["over"]) && is(tokens.get(to + 1), &["to", "into"]));
+    let named = (to + 1..tokens.len().min(to + 4)).find_map(|k| {
+        super::words::longest(&tokens[k..]).filter(|s| matches!(s.0, Sense::Place(..) | Sense::Noun(..)))
+    });
+    if matches!(named, Some((Sense::Place(..), _))) {
+        tokens[0].text = "move".into();
+    }
+    tokens
+}
+
+/// "stop the truck on the crossing so that it blocks it", "bring the bus to a halt at the kerb": it stands there.
+pub(super) fn stopped_at(tokens: Vec<Token>) -> Vec<Token> {
+    const HALT: &[&str] = &["to a halt", "to a stop", "to a standstill", "to rest"];
+    let brings = is(tokens.first(), &["bring"]);
+    let known = is(tokens.get(1), &["the", "both", "that", "my"]);
+    if !known || !brings && !is(tokens.first(), &["stop", "halt"]) {
+        return tokens;
+    }
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 5) else {
+        return tokens;
+    };
+    let halt = leads(&tokens[b..], HALT);
+    let from = b + halt.unwrap_or(0);
+    let end = find(&tokens, &["so that", "so as to", "such that"]).map_or(tokens.len(), |x| x.0);
+    let place = tokens.get(from..end).unwrap_or_default();
+    let plain = brings == halt.is_some()
+        && is_place(place)
+        && !is(place.first(), &["from", "to", "until", "by"])
+        && !place
+            .iter()
+            .any(|t| matches!(t.kind, TokenKind::Comma) || is(Some(t), &["and"]));
+    // (what it is for says the same, if it only blocks)
+    let blocks = end == tokens.len()
+        || tokens[end..]
+            .iter()
+            .any(|t| is(Some(t), &["blocks", "obstructs", "block", "obstruct", "stands"]));
+    if !plain || !blocks {
+        return tokens;
+    }
+    let rest = match tokens[end..]
+        .iter()
+        .position(|t| t.kind == TokenKind::Comma || text(t) == "and")
+    {
+        Some(k) => &tokens[end + k..],
+        None => &[],
+    };
+    [&tokens[1..b], &led("stands", &tokens[0], &[place, rest])].concat()
+}
+
 /// "get all three pedestrians off the site": they go.
 pub(super) fn off_site(tokens: Vec<Token>) -> Vec<Token> {
     const SITES: &[&str] = &[

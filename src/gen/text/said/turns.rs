@@ -117,9 +117,13 @@ fn on_each(tokens: Vec<Token>) -> Vec<Token> {
     let close = trimmed(&tokens[b..i]);
     // "four cones, two on each side": two of them and two of them
     let share = match close {
-        [n] => number(n).filter(|_| number(&tokens[from]).is_some()),
+        [n] => number(n),
+        // ("one car on each side", which of them was put in before)
+        [n, noun] if super::words::noun_at(std::slice::from_ref(noun)).is_some() => number(n),
         _ => None,
     };
+    let share = share.filter(|_| number(&tokens[from]).is_some());
+    let close = if share.is_some() { &close[..1] } else { close };
     let np = match share {
         Some(1) => [
             close,

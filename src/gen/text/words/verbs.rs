@@ -87,7 +87,7 @@ pub const DOING: &[(ObjectState, &str)] = &[
         "move|drive/drove/driven|ride/rode/ridden|roll|travel|cruise|coast|glide|drift|trundle|rumble|thunder|roar|hurtle|barrel|speed/sped|race|zoom|whizz|whiz|zip|dart|dash|\
          hurry|rush|run/ran/run|sprint|jog|walk|stroll|amble|saunter|stride/strode|march|plod|trudge|shuffle|wander|meander|roam|hike|limp|hobble|waddle|toddle|tiptoe|pace|\
          wheel|pedal|cycle|bike|scoot|skate|motor|chug|putter|potter|dawdle|crawl|creep/crept|inch|edge|nose|squeeze|proceed|advance|progress|head|steer|sail|fly/flew/flown|bounce|\
-         weave/wove/woven|swerve|veer|zigzag|wobble|accelerate|brake|slow down|slow|reverse|back up|back out|overtake/overtook/overtaken|undertake|pass|go/went/gone|come/came/come|come up|\
+         weave/wove/woven|swerve|veer|swing/swung|zigzag|wobble|accelerate|brake|slow down|slow|reverse|back up|back out|overtake/overtook/overtaken|undertake|pass|go/went/gone|come/came/come|come up|\
          go by|turn|turn left|turn right|turn off|turn in|merge|filter|pull out|pull away|pull over|pull in|pull off|set off|drive off|drive away|ride off|ride away|walk off|walk away|\
          roll past|speed past/sped past|\
          approach|near|arrive|enter|leave/left|exit|emerge|appear|close in|catch up|cut in|barge in|circulate|circle|trot|bolt|scurry|scamper|rattle|clatter|lumber|slide/slid|skid|flow|stream|parade|commute|canter|step|step out|play|frolic|skip|hop|jump|stagger|lurch|wind/wound|snake|thread|make its way/made|make his way/made|make her way/made|make their way/made",
