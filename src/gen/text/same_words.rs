@@ -80,7 +80,7 @@ const AHEAD_OF_US: &str = "in front of our car|in front of my car|in front of ou
 const BEHIND: &str = "in back of|to the rear of|in the rear of|on the rear side of|to the rear side of|at the rear side of|at the back side of|rearward of|rearwards of|\
     in rear of|aft of|on the back side of";
 const IN_FRONT: &str = "forward of|on the front side of|at the front side of|to the front side of";
-const AHEAD: &str = "up ahead|up the road|up the street|down the road|down the street|out front|in front|to the front|up front|in front of here";
+const AHEAD: &str = "up ahead|up the road|up the street|down the road|down the street|out front|to the front|up front|in front of here";
 
 /// What only says that a length is no exact one, or is.
 const ABOUT: &str = "about|approximately|roughly|around|circa|ca|some|a good|nearly|almost|exactly|precisely|more or less|something like|say|approx|around about";
@@ -92,7 +92,7 @@ const SEVERAL: &[(&str, &str)] = &[
     ("four", "a quartet of|a foursome of"),
 ];
 /// What groups so many without saying more: "a bunch of three cyclists", "three pieces of fencing".
-const GROUP_OF: &str = "a bunch of|a group of|a set of|a handful of|a total of|a cluster of|a pack of|a gang of|a party of";
+const GROUP_OF: &str = "a bunch of|a group of|a set of|a handful of|a cluster of|a pack of|a gang of|a party of";
 const NUMBERS: [&str; 11] = [
     "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
 ];
@@ -165,7 +165,7 @@ fn sides(tokens: &[Token]) -> Vec<Token> {
     let pointed_at = |i: usize| {
         tokens[i..]
             .iter()
-            .take_while(|t| t.kind != TokenKind::Stop)
+            .take(16)
             .any(|t| matches!(t.text.as_str(), "it" | "its"))
     };
     rewritten(tokens, |i, out| {
@@ -319,7 +319,7 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
             return Some(i + n);
         } else if let Some(n) = begins(rest, MOVE).filter(|n| before(*n, &known)) {
             ("move", n)
-        } else if let Some(n) = begins(rest, TURN).filter(|n| before(*n, &known)) {
+        } else if let Some(n) = begins(rest, TURN).filter(|n| before(*n, &known) && !clause().any(|t| t.text == "until")) {
             ("turn", n)
         } else if let Some(n) = begins(rest, WHEEL)
             .filter(|n| before(*n, &known) && clause().any(|t| matches!(t.text.as_str(), "around" | "round")))

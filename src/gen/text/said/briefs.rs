@@ -119,7 +119,8 @@ fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let _ = a;
         strip_of(&tokens[k..k + b], talk)
     });
-    let Some((_, end)) = first_noun(&tokens[..i]) else {
+    let fresh = |from: usize| tokens[..from].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]));
+    let Some((_, end)) = first_noun(&tokens[..i]).filter(|x| fresh(x.0)) else {
         return tokens;
     };
     let Some(words) = side else {
@@ -177,6 +178,9 @@ fn out_and_in(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let rest = trimmed(&new[b..]);
     let verbs = new.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) || is(Some(t), &OUT));
     let there = begins(rest, SAME_SPOT).filter(|n| *n == rest.len());
+    if is(rest.first(), &["on"]) && rest.len() == 1 {
+        return tokens; // "cyclists off, mopeds on"
+    }
     let fresh = counted || talk.fits(&new[..b]) == 0 || there.is_some_and(|n| n > 1);
     if !named || definite || verbs || !fresh || talk.fits(who) == 0 || (rest.is_empty() || there.is_none() && !is_place(rest)) {
         return tokens;
@@ -215,8 +219,8 @@ fn wanted_at(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(m) = (0..rest.len()).find(|i| number(&rest[*i]).is_some() && is_unit(rest.get(i + 1))) else {
         return tokens;
     };
-    // a clause of its own that names another is left alone
-    if first_noun(&rest[..m]).is_some() {
+    // what is done to it is a command of its own: "push it 8 m away"
+    if !rest[..m].iter().all(|t| is(Some(t), WISHES)) {
         return tokens;
     }
     let end = (m + 2..rest.len())
@@ -230,6 +234,10 @@ fn wanted_at(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     [&who[..], &led("should be", &rest[m], &[&rest[m..end], &place]), tail].concat()
 }
+
+const WISHES: &[&str] = &[
+    "i", "id", "we", "wed", "would", "like", "have", "want", "need", "it", "them", "him", "her", "at", "should", "shall", "must", "be", "is", "are", "rather", "prefer", "only", "just", "better", "make", "that", "a", "the", "wants", "wish", "to", "about", "say", "something", "put", "there", "more",
+];
 
 const CLOSER: &[&str] = &[
     "farther off with", "further off with", "farther away with", "further away with", "closer with", "nearer with", "farther with", "further with", "farther back with", "further back with", "back with", "forward with", "farther out with", "further out with", "up with", "closer in with",
@@ -436,7 +444,10 @@ fn instead_first(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return led("replace", &tokens[0], &[&the, old, &led("with", &tokens[0], &[&new[..e]])]);
     }
     // (how several stand is read with them)
-    if is(tail.first(), &["one", "each", "all", "both"]) || tail[0].kind != TokenKind::Word {
+    let told = is_place(tail)
+        || is(tail.first(), &["who", "that", "which", "there", "instead", "parked"])
+        || tail[0].text.ends_with("ing");
+    if !told || is(tail.first(), &["one", "each", "all", "both"]) || new.get(e).is_some_and(|t| t.kind != TokenKind::Word) {
         return tokens;
     }
     let there = leads(tail, &["there", "in its place", "in their place", "instead"]).is_some_and(|m| m == tail.len());
