@@ -157,6 +157,47 @@ const WANTS: &[&str] = &[
     "give me",
     "gimme",
     "no",
+    "id be happier",
+    "id be happy",
+    "id be glad",
+    "id be fine",
+    "id be better off",
+    "i would be happier",
+    "i would be happy",
+    "i would be glad",
+    "i would be fine",
+    "wed be happier",
+    "wed be happy",
+    "wed be fine",
+    "we would be happy",
+    "we would be fine",
+    "im missing",
+    "i am missing",
+    "i miss",
+    "i do not need",
+    "i dont need",
+    "we do not need",
+    "we dont need",
+    "i do not want",
+    "i dont want",
+    "we no longer need",
+    "i no longer need",
+    "i can do without",
+    "i could do without",
+    "my class must see",
+    "i would have expected",
+    "we could use",
+    "i could use",
+    "i wish for",
+    "i prefer",
+    "wed like",
+    "we would like",
+];
+
+/// Commands as nouns.
+const NOMINAL: &[&str] = &[
+    "removal of", "deletion of", "addition of", "insertion of", "relocation of", "replacement of", "transformation of", "conversion of", "rotation of",
+    "lane change of", "lane change for", "increase of", "an increase of", "a decrease of", "decrease of", "reduction of", "a reduction of", "exchange of", "repositioning of", "a move of", "placement of",
 ];
 
 fn is_link(t: &Token) -> bool {
@@ -208,8 +249,27 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let few = find(left, &["too few", "too many", "not enough"]).is_some() && !has_noun(right);
         let plain = !few && !left[only..].iter().any(shares) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
-        (plain && told_apart).then_some((a, b))
+        // "and then", "and also", "and please": nothing but a clause follows
+        let strong = b - a > 1 && sentence[a..b].iter().any(|t| is(Some(t), &["then", "also", "please", "plus"]))
+            || is(sentence.get(a), &["then"]);
+        let follows = strong && !few && a > 1 && (opens(right) || acts(right)) && !right.iter().any(|t| is(Some(t), LOOSE));
+        (plain && told_apart || follows).then_some((a, b))
     })
+}
+
+/// Words that need the clause before in one sentence, whatever joins them.
+const LOOSE: &[&str] = &["respectively", "vice", "former", "latter", "likewise", "alike", "either", "each"];
+
+/// True if something is done here: somewhere a verb, or a command as a noun.
+fn acts(clause: &[Token]) -> bool {
+    let verb = |t: &Token| {
+        let w = text(t);
+        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
+    };
+    let noun = has_noun(clause) || clause.iter().any(|t| is(Some(t), &["it", "them", "him", "her", "he", "she", "they"]));
+    leads(clause, NOMINAL).is_some()
+        || clause.len() > 2 && noun && (clause.iter().any(verb) || clause.first().is_some_and(|t| is_verb(t) && clause.get(1).is_some_and(|n| is_determiner(n) || is(Some(n), &["it", "them", "him", "her"]))))
+        || is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len())
 }
 
 fn shares(t: &Token) -> bool {
@@ -242,7 +302,28 @@ fn stands_alone(clause: &[Token]) -> bool {
     let styles = clause.first().is_some_and(is_verb) && clause.iter().any(sky);
     let neither = is(clause.first(), &["neither"]) && clause.iter().any(|t| HELPERS.contains(&text(t)));
     let wants = leads(clause, WANTS).is_some() && has_noun(clause);
-    orders || wants || styles || neither || place_then_order(clause) || says(clause)
+    orders || wants || styles || neither || place_then_order(clause) || says(clause) || other_clause(clause)
+}
+
+/// Clauses of other kinds: "removal of the bus", "bus stops 15 m ahead", "what stands there should be a truck", "on the left
+/// a van has stopped", "motorcycle gone".
+fn other_clause(clause: &[Token]) -> bool {
+    let says_so = |t: &Token| {
+        let w = text(t);
+        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
+    };
+    let nominal = leads(clause, NOMINAL).is_some() && has_noun(clause);
+    let what = is(clause.first(), &["what", "whatever", "whoever"])
+        && clause.iter().any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
+        && has_noun(clause);
+    let placed = is_place(clause)
+        && (1..clause.len().saturating_sub(2)).any(|k| {
+            is(clause.get(k), &["a", "an", "the", "two", "three", "four"])
+                && first_noun(&clause[k..]).is_some_and(|n| n.0 > 0 && n.0 < 4 && clause.get(k + n.1).is_some_and(says_so))
+        });
+    let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
+    let gone = is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
+    nominal || what || placed || bare || gone
 }
 
 /// "in front of the bus, put a motorcycle", "in place of the truck I would prefer a bus".
@@ -296,7 +377,9 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
     let Some(first) = clause.first() else {
         return false;
     };
-    if !is(Some(first), ORDERS)
+    // (of a word that may be a noun, too, what follows tells)
+    let surely = is_verb(first) && clause.get(1).is_some_and(|t| is(Some(t), &["the", "all", "every", "half", "both"]));
+    if !is(Some(first), ORDERS) && !surely
         || !is_verb(first)
             && !is(
                 Some(first),
@@ -372,6 +455,7 @@ fn opens(clause: &[Token]) -> bool {
         || number_changes
         || wants
         || orders_something(clause)
+        || other_clause(clause) && !sky
         || says(clause) && !sky && find(clause, &["while", "but"]).is_none()
 }
 
