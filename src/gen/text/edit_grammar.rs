@@ -268,7 +268,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
-            tokens: unasked(apart(unasked(as_orders(rejoined(labelled_apart(
+            tokens: unasked(as_orders(apart(unasked(as_orders(rejoined(labelled_apart(
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
                         super::said::whole(super::same_words::commands(&super::common::plain(&tokens(text)))),
@@ -276,7 +276,7 @@ impl<'t> Reader<'t> {
                     ))),
                     true,
                 ),
-            )))))),
+            ))))))),
             at: 0,
             last_noun: None,
             left: Left::default(),

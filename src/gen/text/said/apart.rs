@@ -136,6 +136,15 @@ pub(super) const ORDERS: &[&str] = &[
     "build",
     "create",
     "switch",
+    "shorten",
+    "enlarge",
+    "extend",
+    "sweep",
+    "stop",
+    "trim",
+    "thin",
+    "draw",
+    "use",
 ];
 
 /// How a wish begins.
@@ -234,7 +243,8 @@ pub fn apart(mut tokens: Vec<Token>) -> Vec<Token> {
 /// The first link in a sentence with a clause of its own on both sides: its first token and one past its last.
 fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
     let odd = |t: &Token| matches!(t.kind, TokenKind::Mark | TokenKind::Symbol);
-    if sentence.len() > 60 || sentence.iter().any(odd) {
+    let odd = sentence.iter().any(odd);
+    if sentence.len() > 60 {
         return None;
     }
     (2..sentence.len()).find_map(|a| {
@@ -247,14 +257,32 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let only = 2 * usize::from(is(left.first(), &["only"]) && left.len() > 3 && is(left.get(2), &["of"]));
         // ("two on the zebra are too few, let's have five": of what was named)
         let few = find(left, &["too few", "too many", "not enough"]).is_some() && !has_noun(right);
-        let plain = !few && !left[only..].iter().any(shares) && !right.iter().any(shares);
+        let plain = !odd && !few && !left[only..].iter().any(holds) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
         // "and then", "and also", "and please": nothing but a clause follows
         let strong = b - a > 1 && sentence[a..b].iter().any(|t| is(Some(t), &["then", "also", "please", "plus"]))
             || is(sentence.get(a), &["then"]);
         let follows = strong && !few && a > 1 && (opens(right) || acts(right)) && !right.iter().any(|t| is(Some(t), LOOSE));
-        (plain && told_apart || follows).then_some((a, b))
+        // "the bus shrinks to a car, and I'd be happier with rain": so begins nothing but a clause
+        let and = sentence[a..b].iter().any(|t| is(Some(t), &["and", "then"]));
+        let wish = leads(right, WANTS).is_some() && !is(right.first(), &["no"]);
+        let order = is(right.first(), ORDERS) && right.get(1).is_some_and(is_determiner) && orders_something(right);
+        let begun = and && plain && a > 1 && (wish || order) && !is(left.first(), LEANING) && !(points(left) || points(right));
+        (plain && told_apart || follows || begun).then_some((a, b))
     })
+}
+
+/// A clause that begins so leans on the next.
+const LEANING: &[&str] = &[
+    "when", "if", "once", "after", "before", "while", "without", "instead", "rather", "in", "on", "at", "for", "as", "since", "because", "although", "though", "with", "to", "between",
+];
+
+/// Of the words that join clauses those that do so from the first: "put it where the truck is" is complete.
+fn holds(t: &Token) -> bool {
+    const FREE: &[&str] = &[
+        "where", "instead", "same", "too", "again", "first", "second", "third", "last", "such", "its", "other", "another", "like", "there",
+    ];
+    shares(t) && !is(Some(t), FREE)
 }
 
 /// Words that need the clause before in one sentence, whatever joins them.
@@ -267,7 +295,11 @@ fn acts(clause: &[Token]) -> bool {
         HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
     };
     let noun = has_noun(clause) || clause.iter().any(|t| is(Some(t), &["it", "them", "him", "her", "he", "she", "they"]));
+    let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1)) && has_noun(clause);
     leads(clause, NOMINAL).is_some()
+        || metres
+        || clause.iter().any(|t| text(t) == ">") && has_noun(clause)
+        || is(clause.first(), &["not"]) && has_noun(clause)
         || clause.len() > 2 && noun && (clause.iter().any(verb) || clause.first().is_some_and(|t| is_verb(t) && clause.get(1).is_some_and(|n| is_determiner(n) || is(Some(n), &["it", "them", "him", "her"]))))
         || is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len())
 }
@@ -313,7 +345,8 @@ fn other_clause(clause: &[Token]) -> bool {
         HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
     };
     let nominal = leads(clause, NOMINAL).is_some() && has_noun(clause);
-    let what = is(clause.first(), &["what", "whatever", "whoever"])
+    let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1)) && has_noun(clause);
+    let what = is(clause.first(), &["what", "whats", "whatever", "whoever"])
         && clause.iter().any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
         && has_noun(clause);
     let placed = is_place(clause)
@@ -323,7 +356,7 @@ fn other_clause(clause: &[Token]) -> bool {
         });
     let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
     let gone = is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
-    nominal || what || placed || bare || gone
+    nominal || metres || what || placed || bare || gone
 }
 
 /// "in front of the bus, put a motorcycle", "in place of the truck I would prefer a bus".
@@ -378,7 +411,7 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
         return false;
     };
     // (of a word that may be a noun, too, what follows tells)
-    let surely = is_verb(first) && clause.get(1).is_some_and(|t| is(Some(t), &["the", "all", "every", "half", "both"]));
+    let surely = is_verb(first) && clause.get(1).is_some_and(|t| is(Some(t), &["the", "all", "every", "half", "both", "a", "an", "another"]) || number(t).is_some());
     if !is(Some(first), ORDERS) && !surely
         || !is_verb(first)
             && !is(
@@ -439,6 +472,13 @@ pub(super) fn says(clause: &[Token]) -> bool {
     verb.is_some_and(|k| k + 1 < clause.len() || is_finite(text(&clause[k]), false))
 }
 
+/// "switch the weather to rain", "make it snow".
+fn orders_sky(clause: &[Token]) -> bool {
+    let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
+    let of_it = leads(&clause[1..], &["the weather", "the time", "the sky", "the light", "it to", "the hour", "the season", "the scene", "the clock"]).is_some();
+    is(clause.first(), ORDERS) && of_it && !has_noun(clause) && clause.iter().any(sky)
+}
+
 /// True if a clause of its own begins here and goes on to the end.
 fn opens(clause: &[Token]) -> bool {
     if clause.len() < 2 {
@@ -451,7 +491,10 @@ fn opens(clause: &[Token]) -> bool {
     let sky = clause
         .iter()
         .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
+    let styled = orders_sky(clause);
     absent
+        || styled
+        || place_then_order(clause)
         || number_changes
         || wants
         || orders_something(clause)
