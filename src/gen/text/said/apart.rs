@@ -280,7 +280,7 @@ const LEANING: &[&str] = &[
 /// Of the words that join clauses those that do so from the first: "put it where the truck is" is complete.
 fn holds(t: &Token) -> bool {
     const FREE: &[&str] = &[
-        "where", "instead", "same", "too", "again", "first", "second", "third", "last", "such", "its", "other", "another", "like", "there",
+        "it", "its", "them", "him", "her", "he", "she", "they", "his", "their", "where", "instead", "same", "too", "again", "first", "second", "third", "last", "such", "other", "another", "like", "there",
     ];
     shares(t) && !is(Some(t), FREE)
 }
@@ -295,11 +295,11 @@ fn acts(clause: &[Token]) -> bool {
         HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
     };
     let noun = has_noun(clause) || clause.iter().any(|t| is(Some(t), &["it", "them", "him", "her", "he", "she", "they"]));
-    let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1)) && has_noun(clause);
     leads(clause, NOMINAL).is_some()
-        || metres
+        || metres_for(clause)
         || clause.iter().any(|t| text(t) == ">") && has_noun(clause)
         || is(clause.first(), &["not"]) && has_noun(clause)
+        || super::parting::only_sky(clause)
         || clause.len() > 2 && noun && (clause.iter().any(verb) || clause.first().is_some_and(|t| is_verb(t) && clause.get(1).is_some_and(|n| is_determiner(n) || is(Some(n), &["it", "them", "him", "her"]))))
         || is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len())
 }
@@ -337,6 +337,23 @@ fn stands_alone(clause: &[Token]) -> bool {
     orders || wants || styles || neither || place_then_order(clause) || says(clause) || other_clause(clause)
 }
 
+/// "ten metres further ahead with the bus", "20 m to the truck is too little".
+fn metres_for(clause: &[Token]) -> bool {
+    let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1));
+    let with = find(clause, &["with the", "with both", "for the"]).is_some_and(|x| x.0 < 6);
+    let gap = is(clause.get(2), &["to", "between"]) && clause.iter().any(|t| is(Some(t), &["is", "are", "isnt"]));
+    metres && has_noun(clause) && (with || gap)
+}
+
+/// "truck out, excavator in".
+fn out_first(clause: &[Token]) -> bool {
+    first_noun(clause).is_some_and(|n| {
+        n.0 < 3
+            && is(clause.get(n.1), &["out", "off", "gone", "away"])
+            && clause.get(n.1 + 1).is_some_and(|t| t.kind == TokenKind::Comma)
+    })
+}
+
 /// Clauses of other kinds: "removal of the bus", "bus stops 15 m ahead", "what stands there should be a truck", "on the left
 /// a van has stopped", "motorcycle gone".
 fn other_clause(clause: &[Token]) -> bool {
@@ -345,7 +362,6 @@ fn other_clause(clause: &[Token]) -> bool {
         HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
     };
     let nominal = leads(clause, NOMINAL).is_some() && has_noun(clause);
-    let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1)) && has_noun(clause);
     let what = is(clause.first(), &["what", "whats", "whatever", "whoever"])
         && clause.iter().any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
         && has_noun(clause);
@@ -356,7 +372,7 @@ fn other_clause(clause: &[Token]) -> bool {
         });
     let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
     let gone = is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
-    nominal || metres || what || placed || bare || gone
+    nominal || metres_for(clause) || out_first(clause) || what || placed || bare || gone
 }
 
 /// "in front of the bus, put a motorcycle", "in place of the truck I would prefer a bus".
@@ -465,9 +481,11 @@ pub(super) fn says(clause: &[Token]) -> bool {
     // (its place may stand before the verb)
     let fresh = is(clause.first(), &["a", "an", "some"]) || number(&clause[0]).is_some();
     let near = clause.len().min(b + if fresh { 1 } else { 7 });
+    // ("the two pedestrians get a companion")
+    let several = matches!(look_up(text(&clause[b - 1])), Some(Sense::Noun(_, true)));
     let verb = (b..near).find(|k| {
         let w = text(&clause[*k]);
-        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
+        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, several && *k == b) && !w.ends_with("ed")
     });
     verb.is_some_and(|k| k + 1 < clause.len() || is_finite(text(&clause[k]), false))
 }
