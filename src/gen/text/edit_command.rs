@@ -315,7 +315,9 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             let (r, m) = parse(text, &items[k + 1..]);
             c.by = m.first().cloned();
             // "with a coach 16 m behind me": there, not where the old one stands
-            if let Some(spec) = r.description.foreground.first().filter(|s| verb == Verb::Replace && is_placed(s)) {
+            let same = items[k..].iter().any(|i| i.words == "same" || i.words.contains("same "));
+            let told = verb == Verb::Replace && !same;
+            if let Some(spec) = r.description.foreground.first().filter(|s| told && is_placed(s)) {
                 c.destination = Some(super::edit_grammar::Destination::Place(Box::new(spec.clone())));
                 c.anchors.clone_from(&r.description.foreground);
             }

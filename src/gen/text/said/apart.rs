@@ -136,15 +136,6 @@ pub(super) const ORDERS: &[&str] = &[
     "build",
     "create",
     "switch",
-    "shorten",
-    "enlarge",
-    "extend",
-    "sweep",
-    "stop",
-    "trim",
-    "thin",
-    "draw",
-    "use",
 ];
 
 /// How a wish begins.
@@ -260,9 +251,11 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let plain = !odd && !few && !left[only..].iter().any(holds) && !right.iter().any(shares);
         let told_apart = stands_alone(left) && opens(right) && !(points(left) || points(right));
         // "and then", "and also", "and please": nothing but a clause follows
-        let strong = b - a > 1 && sentence[a..b].iter().any(|t| is(Some(t), &["then", "also", "please", "plus"]))
+        let joins = |words: &[&str]| sentence[a..b].iter().any(|t| is(Some(t), words));
+        let strong = b - a > 1 && (joins(&["then", "also", "plus"]) || joins(&["please"]) && joins(&["and"]))
             || is(sentence.get(a), &["then"]);
-        let follows = strong && !few && a > 1 && (opens(right) || acts(right)) && !right.iter().any(|t| is(Some(t), LOOSE));
+        let there = find(right, &["in that lane", "at that spot", "in that spot", "on that side", "in that place", "at that place"]).is_some();
+        let follows = strong && !there && !few && a > 1 && (opens(right) || acts(right)) && !right.iter().any(|t| is(Some(t), LOOSE));
         // "the bus shrinks to a car, and I'd be happier with rain": so begins nothing but a clause
         let and = sentence[a..b].iter().any(|t| is(Some(t), &["and", "then"]));
         let wish = leads(right, WANTS).is_some() && !is(right.first(), &["no"]);
@@ -329,7 +322,7 @@ fn points(clause: &[Token]) -> bool {
 fn stands_alone(clause: &[Token]) -> bool {
     let polite = clause.iter().take_while(|t| is(Some(t), POLITE)).count();
     let clause = &clause[polite..];
-    let orders = orders_something(clause) || changes_number(clause);
+    let orders = orders_something(clause) || orders_surely(clause) || changes_number(clause);
     let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     let styles = clause.first().is_some_and(is_verb) && clause.iter().any(sky);
     let neither = is(clause.first(), &["neither"]) && clause.iter().any(|t| HELPERS.contains(&text(t)));
@@ -366,8 +359,10 @@ fn other_clause(clause: &[Token]) -> bool {
         && clause.iter().any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
         && has_noun(clause);
     let placed = is_place(clause)
+        && clause.first().is_some_and(|t| number(t).is_none())
         && (1..clause.len().saturating_sub(2)).any(|k| {
-            is(clause.get(k), &["a", "an", "the", "two", "three", "four"])
+            !clause[..k].iter().any(|t| is(Some(t), &["and", "but"]))
+                && is(clause.get(k), &["a", "an", "the", "two", "three", "four"])
                 && first_noun(&clause[k..]).is_some_and(|n| n.0 > 0 && n.0 < 4 && clause.get(k + n.1).is_some_and(says_so))
         });
     let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
@@ -426,9 +421,7 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
     let Some(first) = clause.first() else {
         return false;
     };
-    // (of a word that may be a noun, too, what follows tells)
-    let surely = is_verb(first) && clause.get(1).is_some_and(|t| is(Some(t), &["the", "all", "every", "half", "both", "a", "an", "another"]) || number(t).is_some());
-    if !is(Some(first), ORDERS) && !surely
+    if !is(Some(first), ORDERS)
         || !is_verb(first)
             && !is(
                 Some(first),
@@ -458,6 +451,15 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
     );
     let named = whoever || object.first().is_some_and(is_determiner) || noun_at(object).is_some();
     named && first_noun(object).is_some_and(|n| n.0 < 6) && !is_place(object)
+}
+
+/// The same with any verb, of which what follows tells that it is none of a noun: "sweep two of the cones aside".
+fn orders_surely(clause: &[Token]) -> bool {
+    let verb = clause.first().is_some_and(|t| is_verb(t) || is(Some(t), &["shorten", "enlarge", "extend", "stop", "trim", "use"]));
+    let object = clause.get(1).is_some_and(|t| {
+        is(Some(t), &["the", "all", "every", "half", "both", "a", "an", "another"]) || number(t).is_some()
+    });
+    verb && object && first_noun(&clause[1..]).is_some_and(|n| n.0 < 6)
 }
 
 /// A subject with its verb: "the bus should be yellow", "two pedestrians wait on the left".
@@ -516,6 +518,7 @@ fn opens(clause: &[Token]) -> bool {
         || number_changes
         || wants
         || orders_something(clause)
+        || orders_surely(clause)
         || other_clause(clause) && !sky
         || says(clause) && !sky && find(clause, &["while", "but"]).is_none()
 }
