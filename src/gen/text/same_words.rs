@@ -21,7 +21,17 @@ const THINGS: &[(&str, &str)] = &[
         "cyclist",
         "bicyclist|pedal cyclist|push bike rider|pushbike rider|velocipedist|bike rider|bicycle rider|cycle rider|rider on a bicycle|rider on a bike|person on a bike|\
          person on a bicycle|man on a bike|man on a bicycle|woman on a bike|woman on a bicycle|someone on a bike|someone on a bicycle|\
-         somebody on a bike|somebody on a bicycle|person cycling|person riding a bike|person riding a bicycle",
+         somebody on a bike|somebody on a bicycle|person cycling|man cycling|woman cycling|child cycling|person on a pushbike|person riding a bike|person riding a bicycle",
+    ),
+    (
+        "a cyclist",
+        "somebody cycling|someone cycling|somebody riding a bike|someone riding a bike|somebody riding a bicycle|someone riding a bicycle|somebody riding a pushbike|\
+         somebody on a pushbike|someone on a pushbike|somebody who cycles|someone who cycles|somebody who is cycling|someone who is cycling",
+    ),
+    (
+        "a motorcyclist",
+        "somebody riding a motorbike|someone riding a motorbike|somebody riding a motorcycle|someone riding a motorcycle|somebody riding a scooter|someone riding a scooter|\
+         somebody riding a moped|someone riding a moped",
     ),
     (
         "cyclists",

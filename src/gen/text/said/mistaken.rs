@@ -81,6 +81,12 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// One past what only excuses the slip, and its comma.
 fn excused(tokens: &[Token]) -> usize {
+    // "according to the witness it was ..."
+    if leads(tokens, &["according to"]).is_some()
+        && let Some(k) = (3..tokens.len().min(8)).find(|k| is(tokens.get(*k), &["it", "that", "this", "what"]))
+    {
+        return k;
+    }
     let n = leads(tokens, &SORRY).unwrap_or(0);
     match tokens.get(n) {
         Some(t) if n > 0 && t.kind == TokenKind::Comma => n + 1,

@@ -11,6 +11,7 @@ mod asked;
 mod bare;
 mod briefs;
 mod causing;
+mod clipped;
 mod colours;
 mod company;
 mod corrected;
@@ -25,6 +26,7 @@ mod gapped;
 mod gaps;
 mod gifts;
 mod group_sizes;
+mod halves;
 mod happier;
 mod headway;
 mod idioms;
@@ -246,6 +248,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = clipped::plain(out, talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);

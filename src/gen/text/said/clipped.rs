@@ -1,0 +1,273 @@
+//! Notes that name something known and where it shall be, without a verb: "truck at 18 m rather than at 30", "motorcycle: same
+//! lane, but 12 m in front of us", "motorcycle much closer, 10 metres", "kids on the left sidewalk, all four"; and groups that part.
+
+use super::super::lexicon::{Sense, look_up};
+use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
+use super::Talk;
+use super::briefs::strip_of;
+use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed, unit_at};
+
+/// A sentence (without its stop) in plainer words.
+pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let out = no_but(fronted(there_instead(for_whom(tokens))), talk);
+    let out = parted(picked_first(out), talk);
+    noted(&out, talk).unwrap_or(out)
+}
+
+/// Where a noun ends that names what is there, alone or with what describes it, and with its article.
+fn known(tokens: &[Token], talk: &Talk<'_>) -> Option<(Vec<Token>, usize)> {
+    let (a, b) = first_noun(tokens).filter(|n| n.0 < 4)?;
+    let the = usize::from(is(tokens.first(), &["the", "both", "all", "that", "those"]));
+    let described = tokens[the.min(a)..a].iter().all(|t| {
+        matches!(
+            look_up(text(t)),
+            Some(Sense::Color(_) | Sense::State(_, false) | Sense::Size(_) | Sense::Attribute(_))
+        ) || the > 0 && (is(Some(t), &["the"]) || number(t).is_some())
+    });
+    let many = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
+    let np = if the > 0 { tokens[..b].to_vec() } else { led("the", &tokens[0], &[&tokens[..b]]) };
+    let fits = talk.fits(&np);
+    (described && (fits == 1 || many && fits > 1)).then_some((np, b))
+}
+
+fn measure(tokens: &[Token]) -> Option<usize> {
+    number(tokens.first()?)?;
+    Some(1 + unit_at(&tokens[1..])?)
+}
+
+const NOT_THERE: &[&str] = &["instead of", "rather than", "not", "and not", "in place of", "as opposed to"];
+const DEGREE: &[&str] = &[
+    "much", "a lot", "a little", "a bit", "slightly", "somewhat", "far", "way", "considerably", "even", "quite a bit", "a good deal", "a tad", "a touch",
+];
+const NEARER: &[&str] = &[
+    "closer", "nearer", "further away", "farther away", "further off", "farther off", "further", "farther", "closer up", "closer in", "further out", "farther out",
+    "closer to us", "nearer to us", "closer to me", "nearer to me", "further away from us", "farther away from us", "further from us", "farther from us",
+];
+const SAME: &[&str] = &["same lane", "same distance", "same side", "same sidewalk", "same spot", "same edge", "same position", "same place"];
+const ALL_OF: &[&str] = &["both", "all", "both of them", "all of them", "every one of them", "the whole group", "the lot", "the lot of them"];
+
+/// What is noted of something known, as what it should be.
+fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let (np, b) = known(tokens, talk)?;
+    let rest = &tokens[b..];
+    if rest.iter().any(|t| super::lists::HELPERS.contains(&text(t)) || is_finite(text(t), false)) {
+        return None;
+    }
+    let to = |place: &[Token]| Some([&np[..], &led("should be", &tokens[0], &[place])].concat());
+    // "motorcycle: same lane, but 12 m in front of us"
+    if let Some(n) = rest.first().filter(|t| text(t) == ":").and_then(|_| leads(&rest[1..], SAME)) {
+        let place = trimmed(&rest[1 + n..]);
+        let place = &place[leads(place, &["only", "just", "but only", "but just"]).unwrap_or(0)..];
+        let strip = strip_of(&np, talk).filter(|_| is(rest.get(2), &["lane", "side", "sidewalk", "edge"]));
+        // (a goal of its own is no distance)
+        let far = measure(place).is_some();
+        if !is_place(place) || has_noun(place) || place.iter().any(|t| t.kind == TokenKind::Comma) {
+            return None;
+        }
+        let away = if measure(place) == Some(place.len()) { led("away", &place[0], &[]) } else { Vec::new() };
+        return match strip {
+            Some(strip) if far => to(&[&led(strip, &place[0], &[]), place, &away].concat()),
+            _ => to(&[place, &away].concat()),
+        };
+    }
+    // "motorcycle much closer, 10 metres"
+    let degree = leads(rest, DEGREE).unwrap_or(0);
+    if let Some(n) = leads(&rest[degree..], NEARER) {
+        let tail = trimmed(&rest[degree + n..]);
+        let tail = &tail[leads(tail, &["at", "to", "say", "to about", ":"]).unwrap_or(0)..];
+        let m = measure(tail)?;
+        return match tail.get(m) {
+            None => to(&[tail, &led("away", &tail[0], &[])].concat()),
+            Some(_) if is_place(&tail[m..]) || is(tail.get(m), &["away", "off", "ahead", "behind"]) => to(tail),
+            Some(_) => None,
+        };
+    }
+    // "truck at 18 m rather than at 30", "... on the right edge instead of the left"
+    let not = (2..rest.len()).find_map(|k| leads(&rest[k..], NOT_THERE).map(|n| (k, k + n)));
+    if let Some((k, from)) = not {
+        let place = trimmed(&rest[..k]);
+        let old = &rest[from..];
+        let old = &old[usize::from(is(old.first(), &["at", "to", "on", "in"]))..];
+        let far = number(old.first()?).is_some() && (old.len() == 1 || measure(old) == Some(old.len()));
+        let side = leads(old, &["the left", "the right", "left", "right"]).is_some_and(|n| n + 1 >= old.len());
+        let at = usize::from(is(place.first(), &["at", "to"]));
+        let m = measure(&place[at..]);
+        if !(far && m.is_some() || side && is_place(place)) || has_noun(place) || place.iter().any(|t| t.kind != TokenKind::Word && number(t).is_none()) {
+            return None;
+        }
+        let Some(m) = m else { return to(place) };
+        let after = &place[at + m..];
+        let after = &after[usize::from(is(after.first(), &["and"]))..];
+        let away = if after.is_empty() { led("away", &place[0], &[]) } else { Vec::new() };
+        return to(&[&place[at..at + m], &away, after].concat());
+    }
+    // "kids on the left sidewalk, all four"
+    let comma = rest.iter().rposition(|t| t.kind == TokenKind::Comma)?;
+    let last = &rest[comma + 1..];
+    let all = leads(last, ALL_OF) == Some(last.len())
+        || last.len() > 1 && is(last.first(), &["all"]) && number(&last[1]).is_some() && (last.len() == 2 || leads(&last[2..], &["of them"]) == Some(last.len() - 2));
+    let place = &rest[..comma];
+    (all && talk.fits(&np) > 1 && is_place(place) && !has_noun(place) && !place.iter().any(|t| t.kind == TokenKind::Comma)).then_some(())?;
+    to(place)
+}
+
+/// "have a road roller there instead of the excavator": that is where.
+fn there_instead(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, _| {
+        let here = i > 1 && is(tokens.get(i), &["there", "here"]) && super::words::noun_at(&tokens[i - 1..i]).is_some();
+        let instead = here && leads(&tokens[i + 1..], &["instead of", "rather than", "in place of", "in lieu of", "than"]).is_some();
+        instead.then_some(i + 1)
+    })
+}
+
+/// "for my learners I would rather have ...": what for changes nothing.
+fn for_whom(tokens: Vec<Token>) -> Vec<Token> {
+    let n = leads(&tokens, &["for my", "for our", "for the", "for this", "for these", "for a", "for"]);
+    let Some(n) = n.filter(|n| tokens.len() > n + 4) else { return tokens };
+    // (what the scene can hold, or a time of day, is more than that)
+    let end = (n + 1..n + 4).find(|k| tokens[*k].kind == TokenKind::Comma || leads(&tokens[*k..], &["i", "we", "id", "wed", "could", "can", "let us", "lets", "please"]).is_some());
+    match end {
+        Some(k) if tokens[n..k].iter().all(|t| t.kind == TokenKind::Word && look_up(text(t)).is_none()) => {
+            tokens[k + usize::from(tokens[k].kind == TokenKind::Comma)..].to_vec()
+        }
+        _ => tokens,
+    }
+}
+
+const STEAD: &[&str] = &[
+    "in its stead", "in their stead", "in its place", "in their place", "instead", "there", "there instead", "in its spot", "in his place", "in his stead", "in her place", "in her stead", "in the same place", "in the same spot",
+];
+
+/// "no motorcycle, but two bicycles in its stead": these for that.
+fn no_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, &["no", "not the", "no more"]) else { return tokens };
+    let Some((_, b)) = first_noun(&tokens[n..]).filter(|x| x.0 < 3) else {
+        return tokens;
+    };
+    let (old, rest) = (&tokens[n..n + b], &tokens[n + b..]);
+    let new = trimmed(rest);
+    let linked = rest.len() > new.len();
+    let Some((a, e)) = first_noun(new).filter(|x| x.0 < 4 && x.0 > 0) else {
+        return tokens;
+    };
+    let counted = new[..a].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]));
+    let there = leads(&new[e..], STEAD).is_some_and(|m| m == new.len() - e) || rest.last().is_some_and(|t| text(t) == "instead") && e == new.len();
+    if !(linked && counted && there && talk.fits(&led("the", &tokens[0], &[old])) > 0) {
+        return tokens;
+    }
+    let many = matches!(look_up(text(&old[b - 1])), Some(Sense::Noun(_, true)));
+    led(if many { "replace all the" } else { "replace the" }, &tokens[0], &[old, &led("with", &new[0], &[&new[..e]])])
+}
+
+const WISHES: &[&str] = &[
+    "i need", "we need", "i want", "we want", "i would like", "id like", "we would like", "add", "put", "place", "there should be", "there must be", "there is", "there shall be", "please add", "please put",
+    "i would like to have", "id like to have", "i want to have", "draw", "park", "there has to be", "there needs to be",
+];
+
+/// "opposite the truck, on the right edge, I need a parked car": where comes last.
+fn fronted(tokens: Vec<Token>) -> Vec<Token> {
+    if !is_place(&tokens) {
+        return tokens;
+    }
+    let commas: Vec<usize> = (0..tokens.len()).filter(|i| tokens[*i].kind == TokenKind::Comma).take(3).collect();
+    let [a, b] = commas[..] else { return tokens };
+    let (one, two, rest) = (&tokens[..a], &tokens[a + 1..b], &tokens[b + 1..]);
+    let Some(n) = leads(rest, WISHES) else { return tokens };
+    let fresh = is(rest.get(n), &["a", "an", "another", "some"]) || rest.get(n).is_some_and(|t| number(t).is_some());
+    let whole = first_noun(&rest[n..]).is_some_and(|x| x.0 < 4 && n + x.1 == rest.len());
+    // (one of them tells beside what, the other where)
+    let place = is_place(two) && !(has_noun(one) && has_noun(two)) && is(two.first(), &["on", "in", "at"]) != is(one.first(), &["on", "in", "at"]);
+    if !(fresh && whole && place) {
+        return tokens;
+    }
+    let (strip, beside) = if has_noun(one) { (two, one) } else { (one, two) };
+    [rest, strip, beside].concat()
+}
+
+const WHATEVER: &[&str] = &[
+    "whatever", "whoever", "everything that", "everything which", "everyone who", "everybody who", "anything that", "anyone who", "anybody who", "all that", "every vehicle that", "all vehicles that", "all people who",
+    "everybody that", "everyone that",
+];
+
+/// "whatever is parked, remove it": remove whatever is parked.
+fn picked_first(tokens: Vec<Token>) -> Vec<Token> {
+    let Some(n) = leads(&tokens, WHATEVER) else { return tokens };
+    let Some(comma) = (n + 1..tokens.len().min(n + 12)).find(|k| tokens[*k].kind == TokenKind::Comma || text(&tokens[*k]) == ":") else {
+        return tokens;
+    };
+    let rest = &tokens[comma + 1..];
+    let rest = &rest[usize::from(is(rest.first(), &["please", "just"]))..];
+    let removes = is(rest.first(), &["remove", "delete", "erase"]) || leads(rest, &["take", "clear"]).is_some();
+    let ends = rest.len() == 2 || leads(rest.get(2..).unwrap_or_default(), &["away", "out", "please", "from the scene"]).is_some_and(|m| m + 2 == rest.len());
+    if !(removes && is(rest.get(1), &["it", "them", "him", "that", "all"]) && ends) {
+        return tokens;
+    }
+    led("remove", &tokens[0], &[&tokens[..comma]])
+}
+
+const PARTS: &[&str] = &[
+    "separate", "split", "split up", "divide", "distribute", "spread", "spread out", "send", "put", "place", "move", "part", "set", "share out", "break up",
+];
+const ON_EACH: &[&str] = &[
+    "one on each sidewalk", "one on each side of the road", "one on each side of the street", "one on each side", "one on either side", "one on either sidewalk", "one each on both sidewalks", "one on each pavement",
+    "one on either side of the road", "one on either side of the street", "one to each side of the road", "one to each sidewalk", "one at each edge of the road", "one on each edge of the road", "one at each kerb",
+];
+
+/// "separate the two pedestrians, one on each sidewalk", "split them up: two on the left sidewalk, one on the right".
+fn parted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(v) = leads(&tokens, PARTS) else { return tokens };
+    let np = &tokens[v..];
+    if !is(np.first(), &["the", "both", "those"]) {
+        return tokens;
+    }
+    let Some((a, b)) = first_noun(np).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let noun = &np[a..b];
+    let parts = usize::from(is(np.get(b), &["up", "out"]));
+    let rest = trimmed(&np[b + parts..]);
+    let rest = &rest[leads(rest, &["to different sides", "to both sides", "onto both sides", "over both sides", "apart"]).unwrap_or(0)..];
+    let rest = trimmed(rest);
+    let many = talk.fits(&np[..b]);
+    let bare = !is(tokens.first(), &["send", "put", "place", "move", "set"]) || np[b..].iter().any(|t| t.kind != TokenKind::Word);
+    let strips = |strip: &str, k: &str, m: &str| {
+        let some = led(&format!("put {k} of the"), &tokens[0], &[noun, &led(&format!("on the left {strip}"), &tokens[0], &[])]);
+        [some, led(&format!("and the other {m} on the right {strip}"), &tokens[0], &[])].concat()
+    };
+    if let Some(n) = leads(rest, ON_EACH).filter(|n| *n == rest.len() && many == 2) {
+        let on_foot = talk.boxes_of(&np[..b]).iter().all(|x| x.class == crate::scene::Class::Pedestrian);
+        let edge = is(rest.get(n - 1), &["kerb"]) || rest[..n].iter().any(|t| text(t) == "edge") || !on_foot;
+        return strips(if edge { "roadside" } else { "sidewalk" }, "one", "one");
+    }
+    // "two on the left sidewalk, one on the right"
+    let sides: Vec<&[Token]> = rest.split(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"])).filter(|p| !p.is_empty()).collect();
+    let [one, two] = sides[..] else { return tokens };
+    let side = |p: &[Token]| -> Option<(i64, bool, Option<String>)> {
+        let n = number(p.first()?)?;
+        let on = leads(&p[1..], &["on the", "to the", "onto the", "at the"])?;
+        let left = is(p.get(1 + on), &["left"]);
+        (left || is(p.get(1 + on), &["right"])).then_some(())?;
+        let strip = p.get(2 + on).map(text).filter(|s| *s != "one").map(str::to_string);
+        (p.len() <= 3 + on && strip.as_deref().is_none_or(|s| matches!(s, "sidewalk" | "roadside" | "edge" | "pavement" | "kerb"))).then(|| (n, left, strip))
+    };
+    let (Some(x), Some(y)) = (side(one), side(two)) else { return tokens };
+    let (Some(strip), true) = (x.2.clone().or(y.2.clone()), bare && x.1 != y.1 && usize::try_from(x.0 + y.0).is_ok_and(|s| s == many)) else {
+        return tokens;
+    };
+    // (who stands on one side already stays)
+    let (left, right) = if x.1 { (x, y) } else { (y, x) };
+    let on = |side: &str| talk.boxes_of(&led("the", &tokens[0], &[noun, &led(&format!("on the {side} {strip}"), &tokens[0], &[])])).len();
+    let move_to = |n: i64, side: &str| led(&format!("move {n} of the"), &tokens[0], &[noun, &led(&format!("to the {side} {strip}"), &tokens[0], &[])]);
+    let numbered = |mut t: Vec<Token>, n: i64| {
+        t[1].kind = TokenKind::Number(n as f64);
+        t
+    };
+    if on("left") == many {
+        numbered(move_to(right.0, "right"), right.0)
+    } else if on("right") == many {
+        numbered(move_to(left.0, "left"), left.0)
+    } else {
+        tokens
+    }
+}
