@@ -206,7 +206,7 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
     let who = match clause.get(does).map(text) {
         Some("cycles" | "cycle" | "bikes" | "pedals" | "cycling" | "biking" | "pedalling") => "remove all cyclists",
         Some("drives" | "drive" | "driving") => "remove all vehicles",
-        Some("rides" | "ride" | "riding") => "remove all two wheelers",
+        Some("rides" | "ride" | "riding") => "remove all bicycles and motorcycles",
         Some("parks" | "park") => "remove all parked vehicles",
         _ => "remove all people",
     };

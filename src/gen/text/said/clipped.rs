@@ -36,6 +36,20 @@ fn measure(tokens: &[Token]) -> Option<usize> {
     Some(1 + unit_at(&tokens[1..])?)
 }
 
+/// On which side of the ego vehicle it is anyhow, where only a distance is told.
+fn away(np: &[Token], at: &Token, talk: &Talk<'_>) -> Vec<Token> {
+    let boxes = talk.boxes_of(np);
+    let beside = boxes.iter().any(|b| b.center_m.x.abs() < b.center_m.y.abs());
+    let side = |ahead: bool| boxes.iter().all(|b| (b.center_m.x > 0.0) == ahead);
+    let words = match () {
+        () if beside => "away",
+        () if side(true) => "ahead of us",
+        () if side(false) => "behind us",
+        () => "away",
+    };
+    led(words, at, &[])
+}
+
 const NOT_THERE: &[&str] = &["instead of", "rather than", "not", "and not", "in place of", "as opposed to"];
 const DEGREE: &[&str] = &[
     "much", "a lot", "a little", "a bit", "slightly", "somewhat", "far", "way", "considerably", "even", "quite a bit", "a good deal", "a tad", "a touch",
@@ -65,7 +79,7 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         if !is_place(place) || has_noun(place) || place.iter().any(|t| t.kind == TokenKind::Comma) {
             return None;
         }
-        let away = if measure(place) == Some(place.len()) { led("away", &place[0], &[]) } else { Vec::new() };
+        let away = if measure(place) == Some(place.len()) { away(&np, &place[0], talk) } else { Vec::new() };
         return match strip {
             Some(strip) if far => to(&[&led(strip, &place[0], &[]), place, &away].concat()),
             _ => to(&[place, &away].concat()),
@@ -78,8 +92,9 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let tail = &tail[leads(tail, &["at", "to", "say", "to about", ":"]).unwrap_or(0)..];
         let m = measure(tail)?;
         return match tail.get(m) {
-            None => to(&[tail, &led("away", &tail[0], &[])].concat()),
-            Some(_) if is_place(&tail[m..]) || is(tail.get(m), &["away", "off", "ahead", "behind"]) => to(tail),
+            None => to(&[tail, &away(&np, &tail[0], talk)].concat()),
+            Some(_) if leads(&tail[m..], &["away", "off"]) == Some(tail.len() - m) => to(&[&tail[..m], &away(&np, &tail[0], talk)].concat()),
+            Some(_) if is_place(&tail[m..]) || is(tail.get(m), &["ahead", "behind"]) => to(tail),
             Some(_) => None,
         };
     }
@@ -99,7 +114,7 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let Some(m) = m else { return to(place) };
         let after = &place[at + m..];
         let after = &after[usize::from(is(after.first(), &["and"]))..];
-        let away = if after.is_empty() { led("away", &place[0], &[]) } else { Vec::new() };
+        let away = if after.is_empty() || is_place(after) && after.len() > 1 { away(&np, &place[0], talk) } else { Vec::new() };
         return to(&[&place[at..at + m], &away, after].concat());
     }
     // "kids on the left sidewalk, all four"
@@ -157,6 +172,10 @@ fn no_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let many = matches!(look_up(text(&old[b - 1])), Some(Sense::Noun(_, true)));
+    if many && is(new.first(), &["a", "an"]) {
+        // (one for all of them)
+        return led("replace all the", &tokens[0], &[old, &led("with one", &new[0], &[&new[1..e]])]);
+    }
     led(if many { "replace all the" } else { "replace the" }, &tokens[0], &[old, &led("with", &new[0], &[&new[..e]])])
 }
 
@@ -231,14 +250,11 @@ fn parted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let rest = trimmed(rest);
     let many = talk.fits(&np[..b]);
     let bare = !is(tokens.first(), &["send", "put", "place", "move", "set"]) || np[b..].iter().any(|t| t.kind != TokenKind::Word);
-    let strips = |strip: &str, k: &str, m: &str| {
-        let some = led(&format!("put {k} of the"), &tokens[0], &[noun, &led(&format!("on the left {strip}"), &tokens[0], &[])]);
-        [some, led(&format!("and the other {m} on the right {strip}"), &tokens[0], &[])].concat()
-    };
     if let Some(n) = leads(rest, ON_EACH).filter(|n| *n == rest.len() && many == 2) {
         let on_foot = talk.boxes_of(&np[..b]).iter().all(|x| x.class == crate::scene::Class::Pedestrian);
         let edge = is(rest.get(n - 1), &["kerb"]) || rest[..n].iter().any(|t| text(t) == "edge") || !on_foot;
-        return strips(if edge { "roadside" } else { "sidewalk" }, "one", "one");
+        let strip = if edge { "roadside" } else { "sidewalk" };
+        return one_each((noun, strip), &tokens[0], talk);
     }
     // "two on the left sidewalk, one on the right"
     let sides: Vec<&[Token]> = rest.split(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"])).filter(|p| !p.is_empty()).collect();
@@ -255,19 +271,31 @@ fn parted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let (Some(strip), true) = (x.2.clone().or(y.2.clone()), bare && x.1 != y.1 && usize::try_from(x.0 + y.0).is_ok_and(|s| s == many)) else {
         return tokens;
     };
-    // (who stands on one side already stays)
-    let (left, right) = if x.1 { (x, y) } else { (y, x) };
-    let on = |side: &str| talk.boxes_of(&led("the", &tokens[0], &[noun, &led(&format!("on the {side} {strip}"), &tokens[0], &[])])).len();
-    let move_to = |n: i64, side: &str| led(&format!("move {n} of the"), &tokens[0], &[noun, &led(&format!("to the {side} {strip}"), &tokens[0], &[])]);
-    let numbered = |mut t: Vec<Token>, n: i64| {
-        t[1].kind = TokenKind::Number(n as f64);
-        t
+    let (left, right) = if x.1 { (x.0, y.0) } else { (y.0, x.0) };
+    apart((noun, &strip), (left, right), &tokens[0], talk).unwrap_or(tokens)
+}
+
+/// Who stands on one side already stays: so many of those on the one side go to the other, if all are there.
+fn apart((noun, strip): (&[Token], &str), (left, right): (i64, i64), at: &Token, talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let on = |side: &str| led(&format!("on the {side} {strip}"), at, &[]);
+    let there = |side: &str| i64::try_from(talk.boxes_of(&led("the", at, &[noun, &on(side)])).len()).unwrap_or(0);
+    let (n, side) = match left + right {
+        all if there("left") == all => (right, "right"),
+        all if there("right") == all => (left, "left"),
+        _ => return None,
     };
-    if on("left") == many {
-        numbered(move_to(right.0, "right"), right.0)
-    } else if on("right") == many {
-        numbered(move_to(left.0, "left"), left.0)
-    } else {
-        tokens
+    let mut out = led("move one of the", at, &[noun, &led(&format!("to the {side} {strip}"), at, &[])]);
+    if n > 1 {
+        out[1].kind = TokenKind::Number(n as f64);
+        out[1].text = n.to_string();
     }
+    Some(out)
+}
+
+/// One of two on each side.
+fn one_each((noun, strip): (&[Token], &str), at: &Token, talk: &Talk<'_>) -> Vec<Token> {
+    apart((noun, strip), (1, 1), at, talk).unwrap_or_else(|| {
+        let one = led("put one of the", at, &[noun, &led(&format!("on the left {strip}"), at, &[])]);
+        [one, led(&format!("and the other one on the right {strip}"), at, &[])].concat()
+    })
 }

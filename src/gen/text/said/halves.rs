@@ -75,6 +75,7 @@ fn too_many(words: &[Token]) -> bool {
 fn has_left(before: &[Token], words: &[Token]) -> bool {
     let taken = before.iter().any(|t| is(Some(t), &["where", "place", "stead"]));
     let itself = words.iter().position(|t| is(Some(t), &["itself", "themselves", "himself", "herself"]));
+    let itself = itself.or_else(|| is(words.first(), &["it", "they", "he", "she", "those"]).then_some(0));
     let goes = itself.is_some_and(|k| {
         let rest = &words[k + 1..];
         k < 5 && leads(rest, &["goes", "go", "leaves", "leave", "is gone", "are gone", "disappears", "disappear", "drives off", "drives away", "moves off", "has left", "have left", "should go", "is removed", "vanishes", "is out"]) == Some(rest.len())
