@@ -126,7 +126,12 @@ fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let the = i + n + a - 1;
         is(tokens.get(the), &["the", "that"]).then(|| strip_of(&tokens[the..i + n + b], talk))?
     });
-    let end = first_noun(&tokens[..i]).map_or(i, |x| x.1);
+    // (of the command that it is told with)
+    let order = (1..i)
+        .rev()
+        .find(|k| is(tokens.get(k - 1), &["and", "then"]) && super::super::rephrase::is_verb(&tokens[*k]))
+        .unwrap_or(0);
+    let end = first_noun(&tokens[order..i]).map_or(i, |x| order + x.1);
     let Some(words) = side else {
         return tokens;
     };

@@ -11,8 +11,27 @@ use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, nu
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = no_but(fronted(there_instead(for_whom(tokens))), talk);
-    let out = parted(picked_first(out), talk);
+    let out = parted(more_of_them(picked_first(out)), talk);
+    let out = same_as(beside_them(out, talk), talk);
+    let out = led_up_to(out, talk);
     noted(&out, talk).unwrap_or(out)
+}
+
+/// "we want to be tailgated: bus at 7 m": the bus that is there.
+fn led_up_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(colon) = (3..tokens.len()).find(|k| text(&tokens[*k]) == ":") else {
+        return tokens;
+    };
+    let (lead, rest) = (&tokens[..colon], &tokens[colon + 1..]);
+    let fresh = lead.iter().any(|t| is(Some(t), &["more", "another", "add", "new", "also", "need"]));
+    let Some((np, b)) = known(rest, talk).filter(|_| !has_noun(lead) && !fresh) else {
+        return tokens;
+    };
+    let far = is(rest.get(b), &["at"]) && measure(&rest[b + 1..]).is_some_and(|m| b + 1 + m == rest.len());
+    if !far || talk.fits(&np) != 1 {
+        return tokens;
+    }
+    [&np[..], &led("should be", &rest[b], &[&rest[b + 1..], &away(&np, &rest[b], talk)])].concat()
 }
 
 /// Where a noun ends that names what is there, alone or with what describes it, and with its article.
@@ -47,7 +66,11 @@ fn away(np: &[Token], at: &Token, talk: &Talk<'_>) -> Vec<Token> {
         () if side(false) => "behind us",
         () => "away",
     };
-    led(words, at, &[])
+    // (and it stays in its lane)
+    let lanes: Vec<_> = boxes.iter().map(|b| super::super::holds::role_of(talk.map, b)).collect();
+    let same = lanes.iter().all(|s| *s == lanes[0] && s.is_some());
+    let strip = strip_of(np, talk).filter(|s| same && words != "away" && s.ends_with("lane")).map_or_else(Vec::new, |s| led(s, at, &[]));
+    [led(words, at, &[]), strip].concat()
 }
 
 const NOT_THERE: &[&str] = &["instead of", "rather than", "not", "and not", "in place of", "as opposed to"];
@@ -81,7 +104,7 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         }
         let away = if measure(place) == Some(place.len()) { away(&np, &place[0], talk) } else { Vec::new() };
         return match strip {
-            Some(strip) if far => to(&[&led(strip, &place[0], &[]), place, &away].concat()),
+            Some(strip) if far && away.is_empty() => to(&[&led(strip, &place[0], &[]), place].concat()),
             _ => to(&[place, &away].concat()),
         };
     }
@@ -114,8 +137,16 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let Some(m) = m else { return to(place) };
         let after = &place[at + m..];
         let after = &after[usize::from(is(after.first(), &["and"]))..];
-        let away = if after.is_empty() || is_place(after) && after.len() > 1 { away(&np, &place[0], talk) } else { Vec::new() };
+        let away = if after.is_empty() { away(&np, &place[0], talk) } else { Vec::new() };
         return to(&[&place[at..at + m], &away, after].concat());
+    }
+    // "cones on the left instead, along the left edge of the road": the last of them is meant
+    let instead = (1..rest.len()).find(|k| is(rest.get(*k), &["instead"]) && !is(rest.get(k + 1), &["of"]));
+    if let Some(k) = instead {
+        let (place, late) = (trimmed(&rest[..k]), trimmed(&rest[k + 1..]));
+        let place = if late.is_empty() { place } else { late };
+        let plain = is_place(place) && !has_noun(rest) && !place.iter().any(|t| t.kind == TokenKind::Comma);
+        return if plain && !is(rest.first(), &[":"]) { to(place) } else { None };
     }
     // "kids on the left sidewalk, all four"
     let comma = rest.iter().rposition(|t| t.kind == TokenKind::Comma)?;
@@ -223,6 +254,58 @@ fn picked_first(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     led("remove", &tokens[0], &[&tokens[..comma]])
+}
+
+/// "two more vans, both in the left lane": they are to come.
+fn more_of_them(tokens: Vec<Token>) -> Vec<Token> {
+    let counted = tokens.first().is_some_and(|t| number(t).is_some()) && is(tokens.get(1), &["more"]);
+    let noun = counted.then(|| first_noun(&tokens[2..])).flatten().filter(|x| x.0 < 3);
+    let Some((_, b)) = noun else { return tokens };
+    let rest = &tokens[2 + b..];
+    let verb = rest.iter().any(|t| super::lists::HELPERS.contains(&text(t)) || is_finite(text(t), true) || is(Some(t), &["than", "please", "instead"]));
+    let each = rest.iter().position(|t| t.kind == TokenKind::Comma).is_some_and(|k| is(rest.get(k + 1), &["both", "all", "one", "each", "two"]));
+    if verb || !each {
+        return tokens;
+    }
+    led("add", &tokens[0], &[&tokens])
+}
+
+/// "put one more child beside the two": beside the two children.
+fn beside_them(mut tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(the) = tokens.len().checked_sub(2).filter(|k| is(tokens.get(*k), &["the"]) && *k > 2) else {
+        return tokens;
+    };
+    let many = number(&tokens[the + 1]).filter(|n| *n > 1);
+    let beside = ["beside", "to", "with", "near", "behind", "by"].contains(&text(&tokens[the - 1]));
+    let noun = first_noun(&tokens[..the]).map(|(a, b)| tokens[a..b].to_vec());
+    let (Some(n), Some(noun), true) = (many, noun, beside) else { return tokens };
+    let Some(Sense::Noun(known, _)) = noun.last().and_then(|t| look_up(text(t))) else {
+        return tokens;
+    };
+    let same = talk.boxes.values().filter(|b| known.classes.contains(&b.class)).count();
+    if i64::try_from(same).is_ok_and(|s| s == n) {
+        let name = super::super::lexicon::plural(&super::topics::singular_of(&noun).iter().map(text).collect::<Vec<_>>().join(" "));
+        let at = tokens[the + 1].clone();
+        tokens.extend(led(&name, &at, &[]));
+    }
+    tokens
+}
+
+/// "on the same sidewalk as the man": on the one where he stands.
+fn same_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (1..tokens.len()).find_map(|i| {
+        let n = leads(&tokens[i..], &["on the same", "in the same", "at the same", "to the same"])?;
+        let strip = is(tokens.get(i + n), &["sidewalk", "pavement", "edge", "roadside", "kerb", "curb", "lane", "shoulder"]);
+        let as_np = i + n + 1 + leads(tokens.get(i + n + 1..)?, &["as", "as that of", "of the road as", "of the street as"])?;
+        let (_, b) = first_noun(&tokens[as_np..]).filter(|x| x.0 < 4)?;
+        let np = &tokens[as_np..as_np + b];
+        (strip && is(np.first(), &["the", "that", "both"])).then_some(())?;
+        Some((i, as_np + b, strip_of(np, talk)?))
+    });
+    match found {
+        Some((i, end, strip)) => [&tokens[..i], &led(strip, &tokens[i], &[]), &tokens[end..]].concat(),
+        None => tokens,
+    }
 }
 
 const PARTS: &[&str] = &[

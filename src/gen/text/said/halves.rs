@@ -7,6 +7,7 @@ use super::words::{first_noun, has_noun, is, is_place, leads, led, number, text,
 
 /// A text whose halves are one.
 pub fn joined(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = using(uncaptioned(tokens));
     let mut parts: Vec<Vec<Token>> = Vec::new();
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         let mut rest = sentence;
@@ -40,6 +41,36 @@ pub fn joined(tokens: Vec<Token>) -> Vec<Token> {
         i += 1;
     }
     out
+}
+
+/// "officer's correction: the lorry stood there": whose words they are says nothing of the scene.
+fn uncaptioned(tokens: Vec<Token>) -> Vec<Token> {
+    const SAID: [&str; 22] = [
+        "correction", "remark", "comment", "request", "wish", "statement", "version", "note", "amendment", "suggestion", "demand", "feedback", "idea", "order", "task", "instruction", "proposal", "opinion", "finding", "addition", "question", "update",
+    ];
+    let Some(colon) = (2..tokens.len().min(6)).find(|k| text(&tokens[*k]) == ":") else {
+        return tokens;
+    };
+    let words = &tokens[..colon];
+    let whose = words.iter().any(|t| text(t).ends_with("'s") || text(t).ends_with("s'")) || is(words.first(), &["my", "our", "one", "another"]);
+    if is(words.last(), &SAID) && (whose || has_noun(words)) && words.iter().all(|t| t.kind == TokenKind::Word && number(t).is_none_or(|n| n == 1)) {
+        return tokens[colon + 1..].to_vec();
+    }
+    tokens
+}
+
+/// "have started to use the crossing": they should be on it.
+fn using(tokens: Vec<Token>) -> Vec<Token> {
+    const USE: &str = "have started to use|has started to use|have begun to use|has begun to use|are using|is using|are now using|is now using|start to use|starts to use|begin to use|begins to use|should use|should be using|are making use of|\
+        is making use of|make use of|now use|now uses";
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let n = super::super::wording::begins(&tokens[i..], USE)?;
+        let at = i + n + usize::from(is(tokens.get(i + n), &["the", "this", "that"]));
+        is(tokens.get(at), &["crossing", "zebra", "crosswalk", "sidewalk", "pavement"]).then(|| {
+            out.extend(led("should be on", &tokens[i], &[]));
+            i + n
+        })
+    })
 }
 
 fn body(part: &[Token]) -> &[Token] {
@@ -188,13 +219,21 @@ fn added(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     // a place of its own is where it is: "put one behind us"
     let own = is(tail.first(), &["on", "in", "at", "behind", "beside", "to"]);
     let side = if own { &[][..] } else { place };
+    // (what comes towards us is ahead)
+    let tail: Vec<Token> = super::super::wording::rewritten(tail, |i, out| {
+        let far = oncoming && is(tail.get(i), &["away", "off"]);
+        far.then(|| {
+            out.extend(led("ahead", &tail[i], &[]));
+            i + 1
+        })
+    });
     let article = &new[..a];
     let ahead = if oncoming { led("oncoming", &new[a], &[]) } else { Vec::new() };
     let article = match article {
         [t] if oncoming && text(t) == "a" => led("an", t, &[]),
         _ => article.to_vec(),
     };
-    Some([&led("add", &second[0], &[&article, &ahead, &new[a..b]]), side, tail].concat())
+    Some([&led("add", &second[0], &[&article, &ahead, &new[a..b]]), side, &tail].concat())
 }
 
 /// "fill it up a bit", "top the cones up".

@@ -55,6 +55,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .or_else(|| denied_last(rest, talk))
         .or_else(|| told_of_place(rest, talk))
         .or_else(|| belongs_there(rest, talk))
+        .or_else(|| rides_other(rest, talk))
         .unwrap_or(tokens)
 }
 
@@ -169,7 +170,8 @@ fn denied_first(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             "it wasnt",
             "that was not",
         ],
-    )?;
+    )
+    .or_else(|| whose(tokens))?;
     let old = &tokens[n..];
     let (_, b) = kind(old)?;
     // "it is not a car that follows us but a bus"
@@ -205,6 +207,14 @@ fn denied_first(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         &new[..d],
         talk,
     )
+}
+
+/// "the suspect's vehicle was not": one past it; whose it was tells no place.
+fn whose(tokens: &[Token]) -> Option<usize> {
+    let (k, n) = find(tokens, &["was not", "wasnt", "is not", "isnt"]).filter(|x| (2..6).contains(&x.0))?;
+    let thing = is(tokens.get(k - 1), &["vehicle", "thing", "object"]);
+    let of = text(&tokens[k - 2]).ends_with("'s") || text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]);
+    (thing && of && is(tokens.get(k + n), &["a", "an"])).then_some(k + n)
 }
 
 /// Where something is, of "follows us", "drives behind us", "behind us"; nothing of nothing.
@@ -369,6 +379,23 @@ fn new_there(tokens: &[Token]) -> Option<&[Token]> {
     let n = leads(&tokens[b..], &BELONGS)?;
     let late = trimmed(&tokens[b + n..]);
     (leads(late, &THERE) == Some(late.len()) && !late.is_empty()).then_some(&tokens[..b])
+}
+
+/// "instead of on a bicycle, he is on a moped", "he rides a moped rather than a bicycle".
+fn rides_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const INSTEAD: [&str; 3] = ["instead of", "rather than", "and not"];
+    let (i, n) = find(tokens, &INSTEAD)?;
+    let on = |t: &[Token]| leads(t, &["being on", "sitting on", "riding", "riding on", "on", "driving"]).unwrap_or(0);
+    let (old, he) = if i == 0 {
+        let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma)?;
+        (&tokens[n..comma], &tokens[comma + 1..])
+    } else {
+        (&tokens[i + n..], trimmed(&tokens[..i]))
+    };
+    let old = &old[on(old)..];
+    is(he.first(), &["he", "she", "they"]).then_some(())?;
+    let rides = 1 + leads(&he[1..], &["is on", "is riding", "rides", "sits on", "is sitting on", "should be on", "should ride", "should be riding", "has", "is now on", "is now riding", "uses", "is driving", "drives"])?;
+    exchange(old, &[], &he[rides..], talk).filter(|_| is(old.first(), &["a", "an"]))
 }
 
 /// "the car was a mistake; a bus belongs there".
