@@ -65,6 +65,9 @@ pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
         }
         return Some(command("remove", first, &[rest]));
     }
+    // ("there must be at least twelve")
+    let least = begins_with(rest, &["at", "least"]) || begins_with(rest, &["at", "minimum"]);
+    let rest = if least && existential && should { &rest[2..] } else { rest };
     // The article belongs to what is wished for.
     let total = clause[..k].iter().any(|t| text(t) == "total");
     if (existential && should || total) && number(&rest[0]).is_some() {

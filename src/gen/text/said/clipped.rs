@@ -6,14 +6,15 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::Talk;
 use super::briefs::strip_of;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed, unit_at};
+use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed, unit_at};
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = no_but(fronted(there_instead(for_whom(tokens))), talk);
     let out = parted(more_of_them(picked_first(out)), talk);
     let out = same_as(beside_them(out, talk), talk);
-    let out = led_up_to(out, talk);
+    let out = grown(stopped_following(led_up_to(out, talk), talk), talk);
+    let out = other_kind(so_many_here(place_before(out)), talk);
     noted(&out, talk).unwrap_or(out)
 }
 
@@ -306,6 +307,117 @@ fn same_as(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         Some((i, end, strip)) => [&tokens[..i], &led(strip, &tokens[i], &[]), &tokens[end..]].concat(),
         None => tokens,
     }
+}
+
+/// "the motorcyclist has given up following us": he is gone.
+fn stopped_following(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const NO_MORE: &[&str] = &[
+        "has given up following", "has stopped following", "gave up following", "stopped following", "has quit following", "no longer follows", "is no longer following", "does not follow", "doesnt follow", "is not following", "isnt following",
+        "has stopped tailing", "no longer tails", "have stopped following", "no longer follow", "are no longer following", "has stopped chasing",
+    ];
+    let found = find(&tokens, NO_MORE).filter(|x| is(tokens.get(x.0 + x.1), &["us", "me"]));
+    let Some((k, n)) = found else { return tokens };
+    let rest = trimmed(&tokens[k + n + 1..]);
+    let still = rest.is_empty() || leads(rest, &["any more", "anymore", "any longer", "at all"]) == Some(rest.len());
+    if !still || first_noun(&tokens[..k]).is_none_or(|x| x.1 != k || x.0 > 3) || talk.fits(&tokens[..k]) == 0 {
+        return tokens;
+    }
+    led("remove", &tokens[0], &[&tokens[..k]])
+}
+
+/// "the pair on the sidewalk should become a trio", "the two people become four": so many in all.
+fn grown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const BECOME: &[&str] = &["should become", "becomes", "become", "must become", "should grow to", "grows to", "grow to", "has become", "have become", "should grow into", "turns into", "turn into", "should be turned into", "has grown to", "have grown to"];
+    const GROUPS: [(&str, i64); 6] = [("pair", 2), ("couple", 2), ("duo", 2), ("trio", 3), ("quartet", 4), ("foursome", 4)];
+    let Some((k, n)) = find(&tokens, BECOME).filter(|x| x.0 > 1 && is(tokens.first(), &["the", "those", "both", "these"])) else {
+        return tokens;
+    };
+    let new = trimmed(&tokens[k + n..]);
+    let new = &new[leads(new, &["a group of", "a", "a crowd of", "a queue of", "a row of"]).unwrap_or(0)..];
+    let [last] = new else { return tokens };
+    let many = number(last).or_else(|| GROUPS.iter().find(|g| g.0 == text(last)).map(|g| g.1));
+    let np = &tokens[1..k];
+    let Some((a, b)) = first_noun(np).filter(|x| x.0 < 3 && (x.1 == np.len() || is_place(&np[x.1..]))) else {
+        return tokens;
+    };
+    let whole = is(np.get(a), &["pair", "couple", "duo", "trio", "quartet", "foursome", "group"]);
+    let who = if whole { led("people", &tokens[0], &[]) } else { np[a..b].to_vec() };
+    let place = &np[b..];
+    let Some(many) = many.filter(|m| *m > 1 && talk.fits(&led("the", &tokens[0], &[&who, place])) > 0) else {
+        return tokens;
+    };
+    let mut out = led("keep exactly", &tokens[0], &[new, &who, place]);
+    out[2].kind = TokenKind::Number(many as f64);
+    out[2].text = many.to_string();
+    out
+}
+
+/// "in our lane there should be a bus ahead of us, not a car": said of what is there.
+fn place_before(tokens: Vec<Token>) -> Vec<Token> {
+    let lane = leads(&tokens, &["in our lane", "in my lane", "on our side", "in the left lane", "in the right lane", "in the oncoming lane", "behind us", "ahead of us", "in front of us"]);
+    let Some(n) = lane else { return tokens };
+    let rest = trimmed(&tokens[n..]);
+    let there = leads(rest, &["there should be", "there must be", "there has to be", "there ought to be", "there should have been", "i want", "i need", "we need"]).is_some();
+    let not = (4..rest.len()).any(|k| rest[k].kind == TokenKind::Comma && leads(&rest[k + 1..], &["not a", "not an", "and not a", "and not an"]).is_some());
+    let placed = first_noun(rest).is_some_and(|x| is_place(&rest[x.1..]));
+    if !(there && not) {
+        return tokens;
+    }
+    if placed {
+        return rest.to_vec();
+    }
+    let Some((_, b)) = first_noun(rest) else { return tokens };
+    [&rest[..b], &tokens[..n], &rest[b..]].concat()
+}
+
+/// "at least twelve cars must be parked here": so many in all.
+fn so_many_here(tokens: Vec<Token>) -> Vec<Token> {
+    let n = leads(&tokens, &["at least", "exactly", "no fewer than", "not fewer than", "a total of"]).unwrap_or(0);
+    let Some(many) = tokens.get(n).filter(|t| number(t).is_some_and(|m| m > 1)) else {
+        return tokens;
+    };
+    let np = &tokens[n + 1..];
+    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 3) else {
+        return tokens;
+    };
+    let rest = &np[b..];
+    let Some(m) = leads(rest, &["must be", "should be", "have to be", "need to be", "ought to be", "shall be", "are to be", "must stand", "should stand"]) else {
+        return tokens;
+    };
+    let state = &rest[m..];
+    let parked = leads(state, &["parked"]).unwrap_or(0);
+    let here = leads(&state[parked..], &["here", "there", "in here", "in the scene", "in the picture", "in total", "in all", "altogether"]) == Some(state.len() - parked);
+    if is(np.first(), &["more", "other", "of"]) || !(here && state.len() > parked) {
+        return tokens;
+    }
+    led("there should be exactly", &tokens[0], &[std::slice::from_ref(many), &state[..parked], &np[..b]])
+}
+
+/// "the bus takes up too much space, take a minivan instead": that for this.
+fn other_kind(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(comma) = (3..tokens.len()).find(|k| matches!(tokens[*k].kind, TokenKind::Comma | TokenKind::Mark)) else {
+        return tokens;
+    };
+    let (lead, rest) = (&tokens[..comma], &tokens[comma + 1..]);
+    let too = lead.iter().any(|t| is(Some(t), &["too", "not", "doesnt", "isnt", "wrong"]));
+    let Some((_, b)) = first_noun(lead).filter(|x| x.0 < 4 && too && is(lead.first(), &["the", "that", "this"])) else {
+        return tokens;
+    };
+    let rest = &rest[leads(rest, &["so", "please", "better", "so please", "rather"]).unwrap_or(0)..];
+    let Some(n) = leads(rest, &["use", "take", "choose", "pick", "try", "have", "give me", "put", "lets have", "let us have", "lets use", "let us use", "show", "i want", "id like", "i would like"]) else {
+        return tokens;
+    };
+    let new = &rest[n..];
+    let Some((_, e)) = first_noun(new).filter(|x| x.0 < 4 && is(new.first(), &["a", "an"])) else {
+        return tokens;
+    };
+    let instead = leads(&new[e..], STEAD) == Some(new.len() - e);
+    let uses = e == new.len() && is(rest.first(), &["use", "take", "choose", "pick", "try"]);
+    // ("the bus is not alone, take a car" is another matter)
+    if !(instead || uses && lead.iter().any(|t| text(t) == "too")) || talk.fits(&lead[..b]) != 1 {
+        return tokens;
+    }
+    led("replace", &tokens[0], &[&lead[..b], &led("with", &new[0], &[&new[..e]])])
 }
 
 const PARTS: &[&str] = &[

@@ -7,7 +7,7 @@ use super::words::{first_noun, has_noun, is, is_place, leads, led, number, text,
 
 /// A text whose halves are one.
 pub fn joined(tokens: Vec<Token>) -> Vec<Token> {
-    let tokens = using(uncaptioned(tokens));
+    let tokens = nothing_there(using(uncaptioned(tokens)));
     let mut parts: Vec<Vec<Token>> = Vec::new();
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
         let mut rest = sentence;
@@ -73,6 +73,26 @@ fn using(tokens: Vec<Token>) -> Vec<Token> {
     })
 }
 
+/// "I want to see nothing in front of us, everything behind may stay": nothing in front of us.
+fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
+    const WANT: &str = "i want to see|we want to see|i want to have|we want to have|i would like to see|id like to see|i wish to see|i would like to have|id like to have|i want|we want|there should be|there must be";
+    let Some(n) = super::super::wording::begins(&tokens, WANT).filter(|n| is(tokens.get(*n), &["nothing", "nobody", "noone"])) else {
+        return tokens;
+    };
+    let rest = &tokens[n + 1..];
+    let us = leads(rest, &["in front of us", "behind us", "ahead of us", "in front of me", "behind me", "ahead of me", "ahead", "in front", "behind"]);
+    let Some(m) = us else { return tokens };
+    let late = trimmed(&rest[m..]);
+    let stays = is(late.first(), &["everything", "all", "whatever", "the", "what"])
+        && (1..late.len()).any(|k| leads(&late[k..], &["may stay", "can stay", "should stay", "stays", "may remain", "can remain", "remains", "is fine", "is ok", "may stay as it is", "stays as it is"]).is_some_and(|x| {
+            k + x == late.len() || late[k + x].kind == TokenKind::Stop
+        }));
+    if !(late.is_empty() || stays) {
+        return tokens;
+    }
+    led("remove everything", &tokens[0], &[&rest[..m]])
+}
+
 fn body(part: &[Token]) -> &[Token] {
     match part.split_last() {
         Some((t, rest)) if matches!(t.kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark) => rest,
@@ -89,6 +109,22 @@ fn one_of(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
         .or_else(|| shown(first, second))
         .or_else(|| added(first, second))
         .or_else(|| filled(first, second))
+        .or_else(|| complained(first, second))
+}
+
+/// "the truck is too long; take a van instead": one sentence.
+fn complained(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
+    let too = first.iter().any(|t| text(t) == "too") && first_noun(first).is_some_and(|x| x.0 < 3) && is(first.first(), &["the", "that", "this"]);
+    let second = trimmed(second);
+    let n = leads(second, &["use", "take", "choose", "pick", "try"]).filter(|_| too && first.len() < 12)?;
+    is(second.get(n), &["a", "an"]).then_some(())?;
+    // (as they were, with a comma for the stop)
+    let comma = Token {
+        kind: TokenKind::Comma,
+        ..super::words::word(",", &second[0])
+    };
+    let instead = if is(second.last(), &["instead"]) { Vec::new() } else { led("instead", &second[0], &[]) };
+    Some([first, &[comma], second, &instead].concat())
 }
 
 /// "three are too many", said beside how many there shall be.
