@@ -10,7 +10,7 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = no_but(fronted(there_instead(for_whom(tokens))), talk);
+    let out = no_but(fronted(there_instead(for_whom(super::mistaken::whose(tokens)))), talk);
     let out = parted(more_of_them(picked_first(out)), talk);
     let out = same_as(beside_them(out, talk), talk);
     let out = grown(stopped_following(led_up_to(out, talk), talk), talk);
@@ -337,12 +337,20 @@ fn grown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let [last] = new else { return tokens };
     let many = number(last).or_else(|| GROUPS.iter().find(|g| g.0 == text(last)).map(|g| g.1));
     let np = &tokens[1..k];
-    let Some((a, b)) = first_noun(np).filter(|x| x.0 < 3 && (x.1 == np.len() || is_place(&np[x.1..]))) else {
-        return tokens;
+    // ("the pair on the sidewalk" are people)
+    let group = is(np.first(), &["pair", "couple", "duo", "trio", "quartet", "foursome", "group"]);
+    let (who, place) = if group {
+        let of = leads(&np[1..], &["of people", "of pedestrians"]).unwrap_or(0);
+        (led("people", &tokens[0], &[]), &np[1 + of..])
+    } else {
+        match first_noun(np).filter(|x| x.0 < 3) {
+            Some((a, b)) => (np[a..b].to_vec(), &np[b..]),
+            None => return tokens,
+        }
     };
-    let whole = is(np.get(a), &["pair", "couple", "duo", "trio", "quartet", "foursome", "group"]);
-    let who = if whole { led("people", &tokens[0], &[]) } else { np[a..b].to_vec() };
-    let place = &np[b..];
+    if !(place.is_empty() || is_place(place)) {
+        return tokens;
+    }
     let Some(many) = many.filter(|m| *m > 1 && talk.fits(&led("the", &tokens[0], &[&who, place])) > 0) else {
         return tokens;
     };

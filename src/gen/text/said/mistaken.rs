@@ -20,7 +20,7 @@ static MEANT: List = LazyLock::new(|| {
     it was supposed to be|it was meant to be|it should be|it should have been|it has to be|it must be|\
     that was supposed to be|that should be|that should have been|this should be|this was meant to be|\
     it is supposed to be|it ought to be|it is meant to be|i was thinking of|i was talking about|it is|\
-    its|that is|thats|i want|i need|we need|there should be|there should have been|it was"
+    its|that is|thats|use|please use|better use|let us use|lets use|take|i want|i need|we need|there should be|there should have been|it was"
         .split('|')
         .collect()
 });
@@ -170,8 +170,7 @@ fn denied_first(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             "it wasnt",
             "that was not",
         ],
-    )
-    .or_else(|| whose(tokens))?;
+    )?;
     let old = &tokens[n..];
     let (_, b) = kind(old)?;
     // "it is not a car that follows us but a bus"
@@ -207,14 +206,6 @@ fn denied_first(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         &new[..d],
         talk,
     )
-}
-
-/// "the suspect's vehicle was not": one past it; whose it was tells no place.
-fn whose(tokens: &[Token]) -> Option<usize> {
-    let (k, n) = find(tokens, &["was not", "wasnt", "is not", "isnt"]).filter(|x| (2..6).contains(&x.0))?;
-    let thing = is(tokens.get(k - 1), &["vehicle", "thing", "object"]);
-    let of = text(&tokens[k - 2]).ends_with("'s") || text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]);
-    (thing && of && is(tokens.get(k + n), &["a", "an"])).then_some(k + n)
 }
 
 /// Where something is, of "follows us", "drives behind us", "behind us"; nothing of nothing.
@@ -404,4 +395,17 @@ fn belongs_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let new = new_there(tokens.get(n..)?)?;
     let np = &tokens[..end];
     (talk.fits(np) > 0).then(|| led("replace", &tokens[0], &[np, &led("with", &tokens[0], &[new])]))
+}
+
+/// "the suspect's vehicle was not a bus but a lorry": whose it was tells no place.
+pub(super) fn whose(tokens: Vec<Token>) -> Vec<Token> {
+    let found = find(&tokens, &["was not a", "wasnt a", "is not a", "isnt a", "was not an", "was no", "is no"]).filter(|x| (2..6).contains(&x.0));
+    let Some((k, n)) = found else { return tokens };
+    let thing = is(tokens.get(k - 1), &["vehicle", "thing", "object"]);
+    let of = text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]) || k == 2 && is(tokens.first(), &["the", "that"]);
+    let but = tokens[k + n..].iter().take(6).any(|t| is(Some(t), &["but"]));
+    if !(thing && of && but) {
+        return tokens;
+    }
+    led("it was not a", &tokens[0], &[&tokens[k + n..]])
 }
