@@ -399,12 +399,15 @@ fn belongs_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 
 /// "the suspect's vehicle was not a bus but a lorry": whose it was tells no place.
 pub(super) fn whose(tokens: Vec<Token>) -> Vec<Token> {
-    let found = find(&tokens, &["was not a", "wasnt a", "is not a", "isnt a", "was not an", "was no", "is no"]).filter(|x| (2..6).contains(&x.0));
+    let found = find(&tokens, &["was not a", "wasnt a", "is not a", "isnt a", "was not an", "was no", "is no"]).filter(|x| (2..8).contains(&x.0));
     let Some((k, n)) = found else { return tokens };
-    let thing = is(tokens.get(k - 1), &["vehicle", "thing", "object"]);
+    let things = ["vehicle", "thing", "object"];
+    let thing = is(tokens.get(k - 1), &things);
+    // ("the vehicle of the suspect")
+    let owned = k > 3 && is(tokens.get(1), &things) && is(tokens.get(2), &["of"]);
     let of = text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]) || k == 2 && is(tokens.first(), &["the", "that"]);
     let but = tokens[k + n..].iter().take(6).any(|t| is(Some(t), &["but"]));
-    if !(thing && of && but) {
+    if !(thing && of || owned) || !but {
         return tokens;
     }
     led("it was not a", &tokens[0], &[&tokens[k + n..]])
