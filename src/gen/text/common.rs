@@ -455,7 +455,7 @@ mod tests {
         );
         assert_eq!(
             said("a bus and, if it's not too much trouble, a lorry"),
-            "a bus and a lorry"
+            "a bus and a truck"
         );
         assert_eq!(said("no more and no fewer than two cars"), "exactly two cars");
         assert_eq!(said("on both the sides"), "on both sides");

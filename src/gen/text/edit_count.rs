@@ -364,7 +364,8 @@ fn side_by_side(words: &str) -> bool {
 /// "by a single truck": one for all of them.
 fn said_one(words: &str) -> bool {
     let words = words.to_lowercase();
-    ["single", "just one", "only one", " one "]
+    // ("no cyclists, but a scooter": for all of them; "a scooter rides where the cyclists are")
+    ["single", "just one", "only one", " one ", ", but a ", " where the "]
         .iter()
         .any(|w| words.contains(w))
 }

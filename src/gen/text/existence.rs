@@ -65,6 +65,9 @@ pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
         }
         return Some(command("remove", first, &[rest]));
     }
+    // ("there must be at least twelve")
+    let least = begins_with(rest, &["at", "least"]) || begins_with(rest, &["at", "minimum"]);
+    let rest = if least && existential && should { &rest[2..] } else { rest };
     // The article belongs to what is wished for.
     let total = clause[..k].iter().any(|t| text(t) == "total");
     if (existential && should || total) && number(&rest[0]).is_some() {
@@ -135,6 +138,12 @@ pub fn sent_off(clause: &[Token]) -> Option<Vec<Token>> {
 
 /// "nobody should be on the crossing"
 pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
+    // "there is nobody on the right sidewalk": nobody there
+    let there = begins_with(clause, &["there", "is"]) || begins_with(clause, &["there", "are"]);
+    let clause = match clause.get(2..) {
+        Some(rest) if there && rest.iter().any(|t| matches!(text(t), "on" | "in" | "at" | "behind")) => rest,
+        _ => clause,
+    };
     let first = clause.first()?;
     let n = match text(first) {
         "nobody" | "noone" => 1,
@@ -196,9 +205,11 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         .position(|t| matches!(text(t), "any" | "anymore" | "here") || t.kind == TokenKind::Comma)
         .unwrap_or(clause.len());
     // "nobody cycles here any more": who cycles goes
-    let who = match clause.get(n).map(text) {
-        Some("cycles" | "cycle" | "bikes" | "pedals") => "remove all cyclists",
-        Some("drives" | "drive") => "remove all vehicles",
+    // ("nobody is riding behind us any more", too)
+    let who = match clause.get(does).map(text) {
+        Some("cycles" | "cycle" | "bikes" | "pedals" | "cycling" | "biking" | "pedalling") => "remove all cyclists",
+        Some("drives" | "drive" | "driving") => "remove all vehicles",
+        Some("rides" | "ride" | "riding") => "remove all bicycles and motorcycles",
         Some("parks" | "park") => "remove all parked vehicles",
         _ => "remove all people",
     };
@@ -206,7 +217,7 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
         return Some(command(
             who,
             first,
-            &[clause.get(n + 1..clause_end).unwrap_or(&[])],
+            &[clause.get(does + 1..clause_end).unwrap_or(&[])],
         ));
     }
     let rest: Vec<Token> = clause[n..clause_end.max(n)]

@@ -249,7 +249,9 @@ pub fn called<'b>(fit: Vec<&'b SceneBox>, m: &Mention) -> Vec<&'b SceneBox> {
 pub fn plainly(fit: Vec<SceneBox>, m: &Mention) -> Vec<SceneBox> {
     let n = m.spec.count.n as usize;
     let all = m.plural && m.uncounted || m.pick.is_some_and(|p| p != Pick::More);
-    if all || fit.len() <= n || !is_generic(singular(&m.spec.noun)) {
+    // ("the vehicle" may be a van as well as a car)
+    let any = m.classes.len() > 1 && m.spec.class != crate::scene::Class::Pedestrian;
+    if all || any || fit.len() <= n || !is_generic(singular(&m.spec.noun)) {
         return fit;
     }
     let plain: Vec<SceneBox> = fit.iter().copied().filter(|b| b.label.name.is_empty()).collect();

@@ -20,7 +20,17 @@ const THINGS: &[(&str, &str)] = &[
         "cyclist",
         "bicyclist|pedal cyclist|push bike rider|pushbike rider|velocipedist|bike rider|bicycle rider|cycle rider|rider on a bicycle|rider on a bike|person on a bike|\
          person on a bicycle|man on a bike|man on a bicycle|woman on a bike|woman on a bicycle|someone on a bike|someone on a bicycle|\
-         somebody on a bike|somebody on a bicycle|person cycling|person riding a bike|person riding a bicycle",
+         somebody on a bike|somebody on a bicycle|person cycling|man cycling|woman cycling|child cycling|person on a pushbike|person riding a bike|person riding a bicycle",
+    ),
+    (
+        "a cyclist",
+        "somebody cycling|someone cycling|somebody riding a bike|someone riding a bike|somebody riding a bicycle|someone riding a bicycle|somebody riding a pushbike|\
+         somebody on a pushbike|someone on a pushbike|somebody who cycles|someone who cycles|somebody who is cycling|someone who is cycling",
+    ),
+    (
+        "a motorcyclist",
+        "somebody riding a motorbike|someone riding a motorbike|somebody riding a motorcycle|someone riding a motorcycle|somebody riding a scooter|someone riding a scooter|\
+         somebody riding a moped|someone riding a moped",
     ),
     (
         "cyclists",
@@ -128,6 +138,25 @@ fn before_a_thing(tokens: &[Token], i: usize) -> bool {
     })
 }
 
+/// "an oncoming bus 28 m away": what comes towards us is ahead of us.
+fn comes_from_there(tokens: &[Token], i: usize) -> bool {
+    if !matches!(tokens[i].text.as_str(), "away" | "off") || !after_length(tokens, i) {
+        return false;
+    }
+    let ends = tokens
+        .get(i + 1)
+        .is_none_or(|t| t.kind != TokenKind::Word || matches!(t.text.as_str(), "and" | "from" | "in"));
+    let from_us = tokens.get(i + 1).is_none_or(|t| t.text != "from");
+    let clause = tokens[..i].iter().rposition(|t| t.kind == TokenKind::Stop || t.text == "and").map_or(0, |k| k + 1);
+    let said = &tokens[clause..i];
+    let comes = (0..said.len()).any(|k| {
+        begins(&said[k..], "coming towards us|coming towards me|comes towards us|comes towards me|coming toward us").is_some()
+            || said[k].text == "oncoming" && said.get(k + 1).is_some_and(|t| t.text != "lane" && t.text != "traffic")
+    });
+    let step = said.iter().any(|t| matches!(t.text.as_str(), "move" | "push" | "shift" | "send" | "bring" | "drive" | "by" | "further" | "farther"));
+    ends && from_us && comes && !step
+}
+
 /// A text in which each thing, side and number has one name.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = rewritten(tokens, |i, out| {
@@ -180,6 +209,8 @@ fn sides(tokens: &[Token]) -> Vec<Token> {
             ("in front of", n)
         } else if before_a_thing(tokens, i) {
             ("in front of", 1)
+        } else if comes_from_there(tokens, i) {
+            ("ahead", 1)
         } else {
             let n = begins(rest, AHEAD)?;
             let goes_on = tokens

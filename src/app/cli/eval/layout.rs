@@ -71,6 +71,8 @@ const SETS: &[(&str, &str)] = sets![
     "causes_s.jsonl",
     "strangers_31.jsonl",
     "causes_u.jsonl",
+    "strangers_32.jsonl",
+    "causes_w.jsonl",
     "exam_9.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",

@@ -106,7 +106,8 @@ fn opposite_named(tokens: Vec<Token>) -> Vec<Token> {
 }
 
 const SAME_SIDE: &str = "on the same side of the street|on the same side of the road|at the same side of the street|at the same side of the road|on that side of the street|\
-    on that side of the road|on the same side of the carriageway|on the same side as it|at the same edge of the road|on the same edge of the road";
+    on that side of the road|on the same side of the carriageway|on the same side as it|at the same edge of the road|on the same edge of the road|at the same edge|on the same edge|at the same kerb|on the same kerb|\
+    at the same curb|on the same roadside|at the same roadside|on the same shoulder";
 
 /// "close to the trailer, on the same side of the street": on the side where the trailer stands.
 fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
@@ -119,10 +120,19 @@ fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let _ = a;
         strip_of(&tokens[k..k + b], talk)
     });
-    let fresh = |from: usize| tokens[..from].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]));
-    let Some((_, end)) = first_noun(&tokens[..i]).filter(|x| fresh(x.0)) else {
-        return tokens;
-    };
+    // "it is parked at the same edge, in front of the police car"
+    let side = side.or_else(|| {
+        let (a, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 > 0 && x.0 < 6)?;
+        let the = i + n + a - 1;
+        is(tokens.get(the), &["the", "that"]).then(|| strip_of(&tokens[the..i + n + b], talk))?
+    });
+    // (of the command that it is told with)
+    let order = (1..i)
+        .rev()
+        .find(|k| is(tokens.get(k - 1), &["and", "then"]) && super::super::rephrase::is_verb(&tokens[*k]))
+        .unwrap_or(0);
+    let fresh = |from: usize| tokens[order..from].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]));
+    let end = first_noun(&tokens[order..i]).filter(|x| fresh(order + x.0)).map_or(i, |x| order + x.1);
     let Some(words) = side else {
         return tokens;
     };
@@ -268,13 +278,23 @@ fn nothing_but(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let keeps = is(last.first(), &["just", "only"]) && is(last.get(1), &["the", "my", "that", "both"]);
-    let none = |p: &&&[Token]| is(p.first(), &["no", "nobody", "nothing", "noone"]) && p.len() < 7;
+    let none = |p: &&&[Token]| is(p.first(), &["no", "nobody", "nothing", "noone", "neither"]) && p.len() < 8;
+    // ("it is night, and neither cars nor people are left, just the motorcycle")
+    let sky = before.iter().take_while(|p| super::parting::only_sky(p) && !has_noun(p)).count();
+    let (sky, before) = before.split_at(sky);
     let some = before.iter().filter(none).count();
     let bare = first_noun(last).is_some_and(|x| x.1 == last.len()) && talk.fits(&last[1..]) > 0;
     if !(keeps && bare && some > 0 && some == before.len() || keeps && bare && before.is_empty() && tokens.len() < 6) {
         return tokens;
     }
-    led("remove everything except", &last[0], &[&last[1..]])
+    let gone = led("remove everything except", &last[0], &[&last[1..]]);
+    match sky.last() {
+        Some(_) => {
+            let words: Vec<&[Token]> = sky.to_vec();
+            [words.concat(), led("and", &last[0], &[&gone])].concat()
+        }
+        None => gone,
+    }
 }
 
 /// "I'd like heavy rain and the motorbike gone": the sky, and who goes.
@@ -456,7 +476,8 @@ fn instead_first(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 /// Sentences of which one only makes sense with the next, or none of whose parts stands alone: before they are parted.
-pub fn whole(mut tokens: Vec<Token>) -> Vec<Token> {
+pub fn whole(tokens: Vec<Token>) -> Vec<Token> {
+    let mut tokens = super::halves::joined(tokens);
     // "the red car is too far out; 10 m in front of me would do"
     for i in 3..tokens.len().saturating_sub(2) {
         let complaint = tokens[i].kind == TokenKind::Stop && TOO.iter().any(|t| {

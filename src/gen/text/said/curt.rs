@@ -237,8 +237,14 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
     while let Some((_, first)) = lead.split_last().filter(|x| is(Some(x.0), &["well", "as", "too", "also", "please"])) {
         lead = first;
     }
+    let from_front = ["from the front", "coming towards us", "coming the other way", "in the other direction", "from ahead", "from the other direction"]
+        .iter()
+        .find_map(|p| lead.len().checked_sub(p.split(' ').count()).filter(|k| *k > 0 && leads(&lead[*k..], &[*p]).is_some()));
+    if let Some(k) = from_front {
+        lead = &lead[..k];
+    }
     // "some oncoming traffic: one tanker, one car": oncoming, all of them
-    let oncoming = lead.len() > 1 && is(lead.get(lead.len() - 2), &["oncoming"]);
+    let oncoming = from_front.is_some() || lead.len() > 1 && is(lead.get(lead.len() - 2), &["oncoming"]);
     let wide = |t: &Token| matches!(look_up(text(t)), Some(Sense::Noun(n, _)) if n.classes.len() > 3);
     let general = is(
         lead.last(),
@@ -282,6 +288,8 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
             "we",
             "i",
             "there",
+            "traffic",
+            "oncoming",
         ],
     );
     let fresh = rest
@@ -302,7 +310,10 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
         out.extend(led("oncoming", &rest[i], &[&rest[i..=i]]));
         Some(i + 1)
     });
-    led("add", &tokens[0], &[&rest])
+    // (what comes towards us is ahead)
+    let far = oncoming && rest.len() > 2 && super::words::is_unit(rest.last()) && number(&rest[rest.len() - 2]).is_some();
+    let ahead = if far { led("ahead", &tokens[0], &[]) } else { Vec::new() };
+    led("add", &tokens[0], &[&rest, &ahead])
 }
 
 /// "lorry -> trailer, same position": what takes a place is there anyhow.

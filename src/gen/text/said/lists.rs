@@ -75,7 +75,7 @@ lists! {
         switched for|switched to|switched with|made into|upgraded to|downgraded to|succeeded by|turned out to be|turns out to be|\
         make way for|makes way for|makes room for|make room for|give place to|in fact";
     /// Who is one of two.
-    MATES = "mate|mates|colleague|colleagues|companion|companions|partner|friend|friends|buddy|buddies|fellow|fellows|twin|pal|neighbour|\
+    MATES = "mate|mates|helper|helpers|assistant|assistants|workmate|workmates|colleague|colleagues|companion|companions|partner|friend|friends|buddy|buddies|fellow|fellows|twin|pal|neighbour|\
         neighbor|coworker|workmate|workmates|comrade|comrades|counterpart";
     /// Words of `acts.rs`.
     STAYS = "stay|stays put|stay put|stands still|stand still|remains put|stays|stayed|remain|remains|remained|keep still|left as|left alone|left where|untouched|unchanged|kept|\

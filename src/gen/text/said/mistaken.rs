@@ -20,7 +20,7 @@ static MEANT: List = LazyLock::new(|| {
     it was supposed to be|it was meant to be|it should be|it should have been|it has to be|it must be|\
     that was supposed to be|that should be|that should have been|this should be|this was meant to be|\
     it is supposed to be|it ought to be|it is meant to be|i was thinking of|i was talking about|it is|\
-    its|that is|thats|i want|i need|we need|there should be|there should have been|it was"
+    its|that is|thats|use|please use|better use|let us use|lets use|take|i want|i need|we need|there should be|there should have been|it was"
         .split('|')
         .collect()
 });
@@ -55,6 +55,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .or_else(|| denied_last(rest, talk))
         .or_else(|| told_of_place(rest, talk))
         .or_else(|| belongs_there(rest, talk))
+        .or_else(|| rides_other(rest, talk))
         .unwrap_or(tokens)
 }
 
@@ -81,6 +82,12 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 
 /// One past what only excuses the slip, and its comma.
 fn excused(tokens: &[Token]) -> usize {
+    // "according to the witness it was ..."
+    if leads(tokens, &["according to"]).is_some()
+        && let Some(k) = (3..tokens.len().min(8)).find(|k| is(tokens.get(*k), &["it", "that", "this", "what"]))
+    {
+        return k;
+    }
     let n = leads(tokens, &SORRY).unwrap_or(0);
     match tokens.get(n) {
         Some(t) if n > 0 && t.kind == TokenKind::Comma => n + 1,
@@ -365,10 +372,43 @@ fn new_there(tokens: &[Token]) -> Option<&[Token]> {
     (leads(late, &THERE) == Some(late.len()) && !late.is_empty()).then_some(&tokens[..b])
 }
 
+/// "instead of on a bicycle, he is on a moped", "he rides a moped rather than a bicycle".
+fn rides_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const INSTEAD: [&str; 3] = ["instead of", "rather than", "and not"];
+    let (i, n) = find(tokens, &INSTEAD)?;
+    let on = |t: &[Token]| leads(t, &["being on", "sitting on", "riding", "riding on", "on", "driving"]).unwrap_or(0);
+    let (old, he) = if i == 0 {
+        let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma)?;
+        (&tokens[n..comma], &tokens[comma + 1..])
+    } else {
+        (&tokens[i + n..], trimmed(&tokens[..i]))
+    };
+    let old = &old[on(old)..];
+    is(he.first(), &["he", "she", "they"]).then_some(())?;
+    let rides = 1 + leads(&he[1..], &["is on", "is riding", "rides", "sits on", "is sitting on", "should be on", "should ride", "should be riding", "has", "is now on", "is now riding", "uses", "is driving", "drives"])?;
+    exchange(old, &[], &he[rides..], talk).filter(|_| is(old.first(), &["a", "an"]))
+}
+
 /// "the car was a mistake; a bus belongs there".
 fn belongs_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let (end, n) = mistake(tokens)?;
     let new = new_there(tokens.get(n..)?)?;
     let np = &tokens[..end];
     (talk.fits(np) > 0).then(|| led("replace", &tokens[0], &[np, &led("with", &tokens[0], &[new])]))
+}
+
+/// "the suspect's vehicle was not a bus but a lorry": whose it was tells no place.
+pub(super) fn whose(tokens: Vec<Token>) -> Vec<Token> {
+    let found = find(&tokens, &["was not a", "wasnt a", "is not a", "isnt a", "was not an", "was no", "is no"]).filter(|x| (2..8).contains(&x.0));
+    let Some((k, n)) = found else { return tokens };
+    let things = ["vehicle", "thing", "object"];
+    let thing = is(tokens.get(k - 1), &things);
+    // ("the vehicle of the suspect")
+    let owned = k > 3 && is(tokens.get(1), &things) && is(tokens.get(2), &["of"]);
+    let of = text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]) || k == 2 && is(tokens.first(), &["the", "that"]);
+    let but = tokens[k + n..].iter().take(6).any(|t| is(Some(t), &["but"]));
+    if !(thing && of || owned) || !but {
+        return tokens;
+    }
+    led("it was not a", &tokens[0], &[&tokens[k + n..]])
 }

@@ -11,6 +11,7 @@ mod asked;
 mod bare;
 mod briefs;
 mod causing;
+mod clipped;
 mod colours;
 mod company;
 mod corrected;
@@ -26,6 +27,7 @@ mod gaps;
 mod gaze;
 mod gifts;
 mod group_sizes;
+mod halves;
 mod happier;
 mod headway;
 mod idioms;
@@ -250,6 +252,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
     let out = owned::plain(remarks::reported(out), talk);
+    let out = clipped::plain(out, talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);

@@ -148,15 +148,25 @@ fn not_this_but(tokens: Vec<Token>) -> Vec<Token> {
     let did = denied
         .first()
         .is_some_and(|t| super::words::is_finite(text(t), true));
-    if !(does && place && did)
+    // ("is not coming towards us but riding ahead of us")
+    let doing = |t: Option<&Token>| t.is_some_and(|t| text(t).ends_with("ing"));
+    let ing = doing(rest.first()) && doing(denied.first());
+    if !(place && (does && did || ing))
         || has_noun(denied)
         || denied.iter().any(|t| t.kind == TokenKind::Stop)
         || a > 3
     {
         return tokens;
     }
-    let helper = led("should", &tokens[not], &[]);
-    [&tokens[..b], &helper, rest].concat()
+    let helper = led(if ing { "should be" } else { "should" }, &tokens[not], &[]);
+    let comes = is(denied.first(), &["come", "coming", "approach", "approaching", "face", "facing"]);
+    let ahead = (1..rest.len()).find_map(|k| leads(&rest[k..], &["ahead of us", "in front of us", "ahead of me", "in front of me", "ahead"]).map(|n| k + n));
+    let lane = rest.iter().any(|t| is(Some(t), &["lane", "direction", "side", "towards"]));
+    // (who rides ahead of us does not come towards us any more)
+    match ahead.filter(|_| comes && !lane) {
+        Some(end) => [&tokens[..b], &helper, &rest[..end], &led("in our direction", &tokens[not], &[]), &rest[end..]].concat(),
+        None => [&tokens[..b], &helper, rest].concat(),
+    }
 }
 
 /// "what bothers me is the motorcycle": the motorcycle.

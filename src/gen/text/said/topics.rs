@@ -82,7 +82,7 @@ pub(super) fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let ends = rest.len() == 1;
     let gone =
-        is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0"]) || number(first) == Some(0);
+        is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0", "zero", "nobody", "removed", "deleted"]) || number(first) == Some(0);
     if ends && gone {
         return led("remove all", &tokens[0], &[&the]);
     }

@@ -74,7 +74,7 @@ pub const NOUNS: &[Noun] = &[
     noun(&[Car], "suv|jeep|s u v|compact suv|crossover suv|sports utility vehicle|sport ute|four wheel drive car|4 x 4|all terrain car|off road vehicle|offroad vehicle|off road car|4wd|hummer|g wagon|landcruiser|land cruiser|pathfinder|station utility|land rover|range rover|crossover|four by four|off roader|four wheel drive|offroader|sport utility vehicle").sized(4.8, 2.0, 1.85),
     noun(
         &[Car],
-        "van|minivan|mini mpv|transporter van|tradesmans van|plumbers van|electricians van|bakery van|laundry van|florists van|parcel delivery van|courier vehicle|delivery vehicle|parcel carrier|dormobile|combi van|combi|kombi|vw camper|camping van|camper bus|rescue van|paramedic van|patrol van|prison van|police transporter|minivan taxi|van taxi|shuttle van|window van|panelled van|light commercial vehicle|lcv|commercial van|ice van|catering van|rental van|hire van|cash in transit van|news van|tv van|broadcast van|sprinter van|ford transit|transit connect|caddy|kangoo|vivaro|ducato|ambulence|ambulance car|emergency ambulance|medical van|rescue vehicle|ambulance van|police van|transit|box van|bread van|milk float|minibus taxi|vw bus|security van|luton|courier van|parcel van|high roof van|people mover|ice cream truck van|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
+        "van|ice cream van|minivan|mini mpv|transporter van|tradesmans van|plumbers van|electricians van|bakery van|laundry van|florists van|parcel delivery van|courier vehicle|delivery vehicle|parcel carrier|dormobile|combi van|combi|kombi|vw camper|camping van|camper bus|rescue van|paramedic van|patrol van|prison van|police transporter|minivan taxi|van taxi|shuttle van|window van|panelled van|light commercial vehicle|lcv|commercial van|ice van|catering van|rental van|hire van|cash in transit van|news van|tv van|broadcast van|sprinter van|ford transit|transit connect|caddy|kangoo|vivaro|ducato|ambulence|ambulance car|emergency ambulance|medical van|rescue vehicle|ambulance van|police van|transit|box van|bread van|milk float|minibus taxi|vw bus|security van|luton|courier van|parcel van|high roof van|people mover|ice cream truck van|mini van|people carrier|mpv|panel van|cargo van|transit van|passenger van|campervan|camper van|camper|\
          delivery van|postal van|mail van|work van|builders van|transporter|sprinter",
     )
     .sized(5.4, 2.1, 2.4),
@@ -85,7 +85,7 @@ pub const NOUNS: &[Noun] = &[
          tipper lorry|garbage truck|refuse truck|trash truck|bin lorry|dustcart|rubbish truck|recycling truck|garbage lorry|tow truck|\
          breakdown truck|recovery truck|wrecker|flatbed|flatbed truck|tanker|tanker truck|fuel truck|petrol tanker|oil tanker|\
          fire engine|fire truck|firetruck|fire appliance|cement truck|concrete truck|cement mixer|concrete mixer|mixer truck|juggernaut|\
-         tractor trailer|motorhome|motor home|rv|recreational vehicle|food truck|ice cream van|cargo truck|freight truck|\
+         tractor trailer|motorhome|motor home|rv|recreational vehicle|food truck|cargo truck|freight truck|\
          haulage truck|logging truck|mail truck|ups truck|dhl truck|fedex truck|parcel truck|snow plough|snowplow|snow plow|gritter|\
          street sweeper|road sweeper|transport truck|luton van|wheeler|tonner|milk lorry|coal lorry|removal truck|trucl|lorrie/lorries",
     ),
