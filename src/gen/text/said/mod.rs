@@ -6,6 +6,7 @@
 mod acts;
 mod apart;
 mod arrivals;
+mod as_now;
 mod asides;
 mod asked;
 mod bare;
@@ -25,6 +26,7 @@ mod gapped;
 mod gaps;
 mod gifts;
 mod group_sizes;
+mod halves;
 mod happier;
 mod headway;
 mod idioms;
@@ -246,6 +248,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = as_now::plain(halves::plain(out, talk), talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
@@ -280,7 +283,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
-    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(tokens))))
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(halves::joined(tokens)))))
 }
 
 /// Reads a sentence with its stop.

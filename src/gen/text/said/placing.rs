@@ -56,13 +56,14 @@ fn opens_with(tokens: &[Token], i: usize, verbs: &[&str]) -> Option<usize> {
 fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
         let from = i + opens_with(&tokens, i, SHOWS)?;
-        let end = known(&tokens, from)?;
+        let it = is(tokens.get(from), &["it", "him", "her", "them"]);
+        let end = if it { from + 1 } else { known(&tokens, from)? };
         let state = usize::from(matches!(
             tokens.get(end..).and_then(longest),
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        let sure = talk.tells(&tokens[from..end]);
+        let sure = it || talk.tells(&tokens[from..end]);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {
