@@ -255,7 +255,7 @@ fn numbers(tokens: &[Token]) -> Vec<Token> {
 /// What takes things away, before what is taken away.
 const REMOVE: &str = "delete|erase|eliminate|get rid of|do away with|dispose of|dispense with|take away|take out|clear away|discard|scrap|ditch|banish|cancel|withdraw|\
     strip out|pull out|wipe out|throw out|kick out|chuck out|toss out|cut out|cut|lose|kill|bin|nix|purge|axe|dump|eradicate|exclude|drop out|edit out|rub out|\
-    rule out|weed out|pluck out|yank out|rip out|oust|expel|evict|obliterate|annihilate|zap|trash|junk|unload|tow away|haul away|cart away|whisk away|wipe away|sweep away";
+    rule out|weed out|pluck out|yank out|rip out|oust|expel|evict|obliterate|annihilate|zap|trash|junk|unload|tow away|haul away|cart away|whisk away|wipe away|sweep away|yeet|nuke|strike out|scratch|ax|vaporize|vaporise|chop out|boot out|strike|zap away";
 /// What brings a new thing.
 const ADD: &str = "insert|introduce|spawn|throw in|stick in|drop in|put in|bring in|toss in|chuck in|slot in|include|generate|supply|conjure up|create|plonk|plop|pop in|inject|plonk down";
 const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|re position|re locate";

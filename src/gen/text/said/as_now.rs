@@ -4,6 +4,7 @@
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::begins;
 use super::Talk;
+use super::gifts::begins_at;
 use super::headway::is_mark;
 use super::lists::HELPERS;
 use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed};
@@ -12,7 +13,9 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = compared(tokens, talk);
     let out = in_place_of(out, talk);
-    same_with(still_there(out, talk))
+    let opens = (0..out.len()).filter(|i| begins_at(&out, *i));
+    let found = opens.into_iter().find_map(|i| still_there(&out[i..], talk).map(|new| [&out[..i], &new[..]].concat()));
+    so_many_left(same_with(found.unwrap_or(out)), talk)
 }
 
 const WISHES: &str = "there should be|there must be|there must come|there should come|there shall be|there shall come|there have to be|there are|i want|i need|we need|we want|\
@@ -82,7 +85,7 @@ fn compared(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "three cyclists in place of one, all of them behind us": three in all, where one is.
 fn in_place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let lead = lead_of(&tokens);
-    let Some((i, n)) = find(&tokens, &["in place of", "instead of", "rather than"]).filter(|x| x.0 > lead + 1) else {
+    let Some((i, n)) = find(&tokens, &["in place of", "instead of", "rather than", "where there is", "where there are", "where now there is", "where now there are", "where we have", "where there was", "where there were", "where i see"]).filter(|x| x.0 > lead + 1) else {
         return tokens;
     };
     let only = begins(&tokens[i + n..], "the|just|only|just the|only the|just this|this|merely").unwrap_or(0);
@@ -91,7 +94,7 @@ fn in_place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let rest = &tokens[old + 1..];
-    let rest = if is(rest.first(), &["only"]) { &rest[1..] } else { rest };
+    let rest = &rest[begins(rest, "only now|only|now|at the moment|at present|today|so far|right now|currently").unwrap_or(0)..];
     let np = &tokens[lead + 1..i];
     let Some((_, b)) = first_noun(np).filter(|x| x.0 < 3) else {
         return tokens;
@@ -100,9 +103,10 @@ fn in_place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let comma = usize::from(rest.first().is_some_and(is_mark));
     let all = comma + begins(&rest[comma..], "all of them|all|both|both of them|each|each of them|they should all be|all three|all four").unwrap_or(0);
     let late = &rest[all..];
-    let place = if late.is_empty() { &np[b..] } else { late };
+    let place = if late.is_empty() { np.get(b..).filter(|p| is_place(p)).unwrap_or(&[]) } else { late };
     let here = place.is_empty() || is_place(place) && !has_noun(place);
-    let plain = (np[b..].is_empty() || is_place(&np[b..])) && (late.is_empty() || np[b..].is_empty());
+    let queued = leads(&np[b..], &["nose to tail", "in a row", "one behind the other", "one after the other", "in a line", "in line", "in a queue"]) == Some(np.len() - b);
+    let plain = (np[b..].is_empty() || queued || is_place(&np[b..])) && (late.is_empty() || np[b..].is_empty());
     let the = |parts: &[&[Token]]| talk.fits(&led("the", &tokens[lead], parts)) as i64;
     if !(here && plain) || the(&[&np[..b]]) != now && the(&[&np[..b], place]) != now {
         return tokens;
@@ -118,8 +122,8 @@ const THERE: &[&str] = &[
 ];
 
 /// "besides the pickup just one of the cars is still there": the other cars go.
-fn still_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let spared = leads(&tokens, BESIDES).and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 4)?.1)));
+fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let spared = leads(tokens, BESIDES).and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 4)?.1)));
     let (spared, from) = match spared {
         Some((n, b)) => (Some(&tokens[n..n + b]), n + b),
         None => (None, 0),
@@ -127,15 +131,15 @@ fn still_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let comma = from + usize::from(spared.is_some() && tokens.get(from).is_some_and(is_mark));
     let there = begins(&tokens[comma..], "there is|there are|i see|we see").unwrap_or(0);
     let Some(only) = begins(&tokens[comma + there..], "just|only|merely|no more than").map(|n| comma + there + n) else {
-        return tokens;
+        return None;
     };
     let Some(n) = count(tokens.get(only)).filter(|_| there == 0) else {
-        return tokens;
+        return None;
     };
     let np = &tokens[only + 1..];
     let of = begins(np, "of the|of those|of these").unwrap_or(0);
     let Some((_, b)) = first_noun(&np[of..]).filter(|x| x.0 < 3) else {
-        return tokens;
+        return None;
     };
     let noun = &np[of..of + b];
     let late = &np[of + b..];
@@ -147,9 +151,30 @@ fn still_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     });
     let more = boxes.len() as i64 > n;
     if leads(late, THERE) != Some(late.len()) || !apart || !more {
-        return tokens;
+        return None;
     }
-    led("keep only", &tokens[0], &[&tokens[only..=only], &led("of", &tokens[only], &[&the])])
+    Some(led("keep only", &tokens[0], &[&tokens[only..=only], &led("of", &tokens[only], &[&the])]))
+}
+
+/// "two cones left, one worker": so many of those that are there.
+fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let mut listed = false;
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let n = count(tokens.get(i)).filter(|_| begins_at(&tokens, i))?;
+        let (_, b) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 2)?;
+        let noun = &tokens[i + 1..=i + b];
+        let end = i + 1 + b;
+        let left = usize::from(is(tokens.get(end), &["left", "remaining"]));
+        let closes = tokens.get(end + left).is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
+        // ("... left, one worker": the others of a list, too)
+        let the = led("the", &tokens[i], &[noun]);
+        if !closes || !(left > 0 || listed) || talk.fits(&the) as i64 <= n {
+            return None;
+        }
+        listed = true;
+        out.extend(led("keep only", &tokens[i], &[&tokens[i..=i], &led("of", &tokens[i], &[&the])]));
+        Some(end + left)
+    })
 }
 
 const SAME: &str = "same|the same|exactly the same|just the same|again the same|once more the same|once again the same";

@@ -12,7 +12,7 @@ use super::words::{first_noun, has_noun, is, is_place, leads, led, noun_at, numb
 
 /// A sentence (without its stop) as what it asks for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = without_fix(our_car(and_with(tokens), talk));
+    let out = without_fix(our_car(side_named(and_with(tokens)), talk));
     let out = not_come(not_yet(out, talk), talk);
     let out = moved_where(complained(out, talk), talk);
     exchanged(out, talk)
@@ -36,6 +36,69 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
         from = i + 1;
     }
     tokens
+}
+
+/// "Only the woman stays. Delete the man.": of the two.
+pub fn of_two(tokens: Vec<Token>) -> Vec<Token> {
+    use super::super::lexicon::{Sense, look_up};
+    const STAYS: &str = "stays|remains|is left|should stay|is to stay|may stay|can stay|should remain|stay|remain|are left|should be left|is staying";
+    const GOES: &str = "goes|go|must go|is gone|are gone|leaves|disappears|should go|can go|has to go|is out|disappear|leave|may go";
+    let parts: Vec<(usize, usize)> = {
+        let mut from = 0;
+        let mut out = Vec::new();
+        for i in 0..=tokens.len() {
+            let link = tokens.get(i).is_none_or(|t| is_mark(t) || is(Some(t), &["and", "so"]));
+            if link {
+                out.push((from, i));
+                from = i + 1;
+            }
+        }
+        out
+    };
+    let class = |t: &[Token]| {
+        let (a, b) = first_noun(t).filter(|x| x.0 < 4)?;
+        match look_up(text(&t[b - 1])) {
+            Some(Sense::Noun(noun, _)) => Some((noun.classes[0], a, b)),
+            _ => None,
+        }
+    };
+    let only = |p: &[Token]| {
+        let n = begins(p, "only|just")?;
+        let (c, _, b) = class(&p[n..]).filter(|_| is(p.get(n), &["the"]))?;
+        let late = &p[n + b..];
+        (begins(late, STAYS) == Some(late.len())).then_some(c)
+    };
+    let gone = |p: &[Token]| {
+        let n = usize::from(removes(p.first()));
+        let (c, _, b) = class(&p[n..]).filter(|_| is(p.get(n), &["the"]))?;
+        let late = &p[n + b..];
+        (late.is_empty() && n > 0 || begins(late, GOES) == Some(late.len()) && n == 0).then_some(c)
+    };
+    for pair in parts.windows(2) {
+        let (a, b) = (&tokens[pair[0].0..pair[0].1], &tokens[pair[1].0..pair[1].1]);
+        let same = |x: Option<_>, y: Option<_>| x.is_some() && x == y;
+        if same(only(a), gone(b)) {
+            return [&tokens[..pair[0].0], &tokens[pair[1].0..]].concat();
+        }
+        if same(gone(a), only(b)) {
+            return [&tokens[..pair[0].1], &tokens[pair[1].1..]].concat();
+        }
+    }
+    tokens
+}
+
+const OUR_SIDE: &str = "on our side of the street|on our side of the road|on our side|on my side of the street|on my side of the road|on my side|on the other side of the street|\
+    on the other side of the road|on the other side|on the far side|on the opposite side|on the opposite side of the road|on the opposite side of the street|on the near side";
+
+/// "on our side of the street, on the right sidewalk": there.
+fn side_named(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, _| {
+        let n = i + begins(&tokens[i..], OUR_SIDE)?;
+        let comma = tokens.get(n).is_some_and(is_mark);
+        let strip = begins(&tokens[(n + 1).min(tokens.len())..], "on the right sidewalk|on the left sidewalk|on the right roadside|on the left roadside|at the right roadside|\
+            at the left roadside|on the right side of the road|on the left side of the road|on the right|on the left|in the oncoming lane|in our lane");
+        (comma && strip.is_some()).then_some(n + 1)
+    })
 }
 
 /// "remove the truck and with its trailer too", once "do away with" is "remove".

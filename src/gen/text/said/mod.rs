@@ -4,6 +4,7 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod actors;
 mod apart;
 mod arrivals;
 mod as_now;
@@ -248,6 +249,11 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = owned::plain(remarks::reported(testimony::plain(body.to_vec())), talk);
+    let out = actors::unseen(out);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
+    let out = actors::plain(out, talk);
     let out = as_now::plain(halves::plain(out, talk), talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
@@ -283,7 +289,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
-    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(halves::joined(tokens)))))
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(halves::joined(halves::of_two(tokens))))))
 }
 
 /// Reads a sentence with its stop.

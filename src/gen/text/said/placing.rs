@@ -33,10 +33,22 @@ const WHOLE: &[&str] = &[
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = still_so(tokens, talk);
+    let out = still_so(in_ours(tokens), talk);
     let out = shown(seen(out, talk), talk);
     let out = lifted(thrown(out, talk));
     past(until(out, talk), talk)
+}
+
+/// "it left its lane: show it in ours": in our lane.
+fn in_ours(tokens: Vec<Token>) -> Vec<Token> {
+    let lane = tokens.iter().position(|t| is(Some(t), &["lane", "lanes"]));
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let ours = is(tokens.get(i), &["ours", "mine"]) && is(out.last(), &["in", "into", "on", "onto"]);
+        (ours && lane.is_some_and(|l| l < i)).then(|| {
+            out.extend(led("our lane", &tokens[i], &[]));
+            i + 1
+        })
+    })
 }
 
 /// Where the words end that name something known, which begin at `from`.

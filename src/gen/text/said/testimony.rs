@@ -157,7 +157,7 @@ fn in_report(tokens: &[Token], i: usize) -> Option<usize> {
         "report", "notes", "statement", "file", "log", "protocol", "drawing", "sketch", "record", "records", "diary", "notebook",
         "minutes", "plan", "brief", "specification", "spec", "photo", "photos", "footage", "recording", "video", "testimony",
         "description", "account", "memory", "paper", "papers", "documents", "document", "documentation", "table", "sheet", "email",
-        "case file", "logbook", "reconstruction", "original", "version", "script", "storyboard", "files",
+        "case file", "logbook", "tyre marks", "tire marks", "skid marks", "marks", "traces", "tracks", "debris", "damage", "scratches", "reconstruction", "original", "version", "script", "storyboard", "files",
     ];
     const BY: &[&str] = &["in", "on", "according to", "per", "as per", "going by", "judging by", "by", "to go by", "from", "following", "as stated in", "as written in", "in accordance with"];
     let mut k = i + leads(&tokens[i..], BY).filter(|_| opens(tokens, i))?;
@@ -196,6 +196,11 @@ fn shown_that(tokens: &[Token], i: usize) -> Option<usize> {
         "log",
         "measurement",
         "measurements",
+        "consultation",
+        "poll",
+        "study",
+        "workshop",
+        "meeting",
         "data",
         "court",
         "hearing",

@@ -169,9 +169,6 @@ fn pointed(body: &[Token], room: Room) -> Option<usize> {
     })
 }
 
-const GIVES: &str = "give me|give us|let me have|let us have|lets have|let me see|i want|we want|id like|i would like|i need|we need|show me|show us|we would like|i would like to have|\
-    i would like to see|get me|bring me|id like to have|id like to see";
-
 /// What comes to where another was, after a clause that left room.
 pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     if talk.room == Room::None {
@@ -186,7 +183,6 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     {
         body = trimmed(&body[..body.len() - 1]);
     }
-    let body = &body[begins(body, GIVES).unwrap_or(0)..];
     let i = pointed(body, talk.room)?;
     let head = trimmed(&body[..i]);
     let (a, b) = first_noun(head)?;
