@@ -294,7 +294,10 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         }
         let starts = i == 0
             || matches!(tokens[i - 1].kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark)
-            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "kindly" | "just" | "so" | "now" | "also" | "but");
+            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "kindly" | "just" | "so" | "now" | "also" | "but")
+            // "can you ditch the van", "I want you to ditch it"
+            || tokens[i - 1].text == "you" && i > 1 && matches!(tokens[i - 2].text.as_str(), "can" | "could" | "would" | "will" | "lets")
+            || tokens[i - 1].text == "to" && i > 1 && matches!(tokens[i - 2].text.as_str(), "you" | "want" | "like" | "need" | "us" | "have");
         if !starts || tokens[i].kind != TokenKind::Word {
             return None;
         }

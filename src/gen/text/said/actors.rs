@@ -20,7 +20,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     come_there(with_the_others(instead_there(out, talk), talk))
 }
 
-const THEY: &str = "school|residents|neighbours|neighbors|council|city|mayor|committee|client|customer|boss|producer|director|planners|people here|parents|the public|citizens|locals|\
+const THEY: &str = "school|residents|neighbours|neighbors|council|city|mayor|committee|client|customer|boss|producer|director|planners|people here|parents|public|citizens|locals|\
     ministry|town|municipality|authority|authorities|insurance|court|judge|prosecutor|prosecution|defence|reviewer|reviewers|team|crew chief|inspector|police|traffic police|fire brigade|\
     shopkeepers|cyclists association|operator|ops|stakeholders|brief|script|plan|spec|specification|scenario|test plan|ticket|requirement|requirements|regulations|law|rules|storyboard|\
     customers|clients|planning department|planning office|department|management|examiner|instructor|professor|supervisor|lead|art director|editor|everybody|everyone";
@@ -37,6 +37,10 @@ fn they_want(tokens: Vec<Token>) -> Vec<Token> {
     };
     let np = &tokens[n..];
     let new = is(np.first(), &["a", "an", "another", "some", "more"]) || np.first().is_some_and(|t| number(t).is_some());
+    // "my boss wants blue sky and sunshine"
+    if !new && !has_noun(np) && super::parting::only_sky(np) {
+        return led("make it", &tokens[0], &[np]);
+    }
     if new && first_noun(np).is_some_and(|x| x.0 < 5) {
         return led("i want", &tokens[0], &[np]);
     }
@@ -181,6 +185,22 @@ fn instead_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "two more people, both on the left sidewalk with the old man": he is there already.
 fn with_the_others(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    // "two more people turned up, both on the right sidewalk": there
+    let late = (3..tokens.len()).find(|k| is_mark(&tokens[k - 1]) && leads(&tokens[*k..], &["both", "all", "both of them", "all of them"]).is_some());
+    if let Some(k) = late
+        && tokens.first().is_some_and(|t| number(t).is_some_and(|n| n > 1))
+        && is(tokens.get(1), &["more", "further", "additional", "other", "new"])
+        && is(tokens.get(k - 2), &["arrived", "come", "up", "appeared", "forward", "joined", "along", "came", "shown"])
+    {
+        let n = k + leads(&tokens[k..], &["both", "all", "both of them", "all of them"]).unwrap_or(1);
+        let place = &tokens[n..];
+        let with = place.iter().position(|t| is(Some(t), &["with"])).unwrap_or(place.len());
+        let named = first_noun(&tokens[..k]).filter(|x| x.0 < 4);
+        let known = with == place.len() || talk.fits(&place[with + 1..]) > 0;
+        if let Some((_, b)) = named.filter(|_| is_place(place) && known && !has_noun(&place[..with])) {
+            return led("add", &tokens[0], &[&tokens[..b], &place[..with]]);
+        }
+    }
     let Some(k) = (4..tokens.len()).find(|k| is(tokens.get(*k), &["with"]) && is(tokens.get(k + 1), &["the"])) else {
         return tokens;
     };

@@ -1,6 +1,7 @@
 //! How many there should be, told by how many there are now: "eight parked cars, twice as many as now", "three cyclists in place of
 //! one", "besides the pickup just one of the cars is still there", "same drive with a single car behind us".
 
+use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::begins;
 use super::Talk;
@@ -28,6 +29,17 @@ fn lead_of(tokens: &[Token]) -> usize {
         n += k;
     }
     n
+}
+
+/// "the cars" of "car" and "cars".
+fn all_of(noun: &[Token]) -> Vec<Token> {
+    let mut out = led("the", &noun[0], &[noun]);
+    if let Some(last) = out.last_mut()
+        && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
+    {
+        last.text = super::super::lexicon::plural(&last.text);
+    }
+    out
 }
 
 fn count(t: Option<&Token>) -> Option<i64> {
@@ -143,7 +155,7 @@ fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     };
     let noun = &np[of..of + b];
     let late = &np[of + b..];
-    let the = led("the", &tokens[only], &[noun]);
+    let the = all_of(noun);
     let boxes = talk.boxes_of(&the);
     let apart = spared.is_none_or(|s| {
         let others = talk.boxes_of(s);
@@ -167,7 +179,7 @@ fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let left = usize::from(is(tokens.get(end), &["left", "remaining"]));
         let closes = tokens.get(end + left).is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
         // ("... left, one worker": the others of a list, too)
-        let the = led("the", &tokens[i], &[noun]);
+        let the = all_of(noun);
         if !closes || !(left > 0 || listed) || talk.fits(&the) as i64 <= n {
             return None;
         }
@@ -178,7 +190,8 @@ fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 const SAME: &str = "same|the same|exactly the same|just the same|again the same|once more the same|once again the same";
-const THING: [&str; 22] = [
+const THING: [&str; 33] = [
+    "intersection", "junction", "crossing", "roundabout", "highway", "motorway", "bend", "curve", "lot", "crossroads", "freeway",
     "scene", "thing", "drive", "picture", "situation", "place", "street", "road", "setting", "ride", "again", "scenario", "layout", "shot", "view", "spot", "image", "trip", "case", "moment",
     "constellation", "set",
 ];

@@ -12,6 +12,7 @@ use super::words::{first_noun, has_noun, is, is_place, leads, led, noun_at, numb
 
 /// A sentence (without its stop) as what it asks for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let tokens = does_sky(tokens);
     let out = without_fix(our_car(side_named(and_with(tokens)), talk));
     let out = not_come(not_yet(out, talk), talk);
     let out = moved_where(complained(out, talk), talk);
@@ -85,6 +86,20 @@ pub fn of_two(tokens: Vec<Token>) -> Vec<Token> {
         }
     }
     tokens
+}
+
+/// "do daytime", "go for a snowy night".
+fn does_sky(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = i + begins(&tokens[i..], "do|go for|go with|try|lets do|lets go for|lets try|let us do").filter(|_| begins_at(&tokens, i))?;
+        let the = usize::from(is(tokens.get(n), &["a", "an", "the", "some"]));
+        let end = (n..tokens.len()).find(|k| is_mark(&tokens[*k])).unwrap_or(tokens.len());
+        let sky = &tokens[n..end];
+        (sky.len() > the && sky.len() < 6 && !has_noun(sky) && super::parting::only_sky(sky)).then(|| {
+            out.extend(led("make it", &tokens[i], &[]));
+            n
+        })
+    })
 }
 
 const OUR_SIDE: &str = "on our side of the street|on our side of the road|on our side|on my side of the street|on my side of the road|on my side|on the other side of the street|\
