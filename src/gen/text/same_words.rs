@@ -133,6 +133,15 @@ fn before_a_thing(tokens: &[Token], i: usize) -> bool {
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = rewritten(tokens, |i, out| {
         let rest = &tokens[i..];
+        // "swap the car 4 a bus"
+        let four = matches!(rest[0].kind, TokenKind::Number(4.0))
+            && rest.get(1).is_some_and(|t| matches!(t.text.as_str(), "a" | "an"))
+            && i > 0
+            && tokens[i - 1].kind == TokenKind::Word;
+        if four {
+            out.push(word("for", &rest[0]));
+            return Some(i + 1);
+        }
         let put = |out: &mut Vec<Token>, words: &str| {
             out.extend(words.split(' ').map(|w| word(w, &tokens[i])));
         };
@@ -272,7 +281,7 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         // "our worker" is in the scene; "our car" is the ego vehicle
         if matches!(tokens[i].text.as_str(), "our" | "my")
             && !(i > 0 && tokens[i - 1].text == "of")
-            && tokens.get(i + 1).is_some_and(|t| !matches!(t.text.as_str(), "driver" | "drivers" | "rider" | "passenger"))
+            && tokens.get(i + 1).is_some_and(|t| !matches!(t.text.as_str(), "driver" | "drivers" | "rider" | "passenger" | "pupil" | "student" | "learner" | "trainee"))
             && let Some((Sense::Noun(noun, _), _)) = tokens.get(i + 1..).and_then(longest)
             && matches!(
                 noun.classes[0],

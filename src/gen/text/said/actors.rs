@@ -17,6 +17,7 @@ use crate::scene::Class;
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = given_there(sent_over(they_want(tokens), talk), talk);
     let out = not_wanted(use_for(out, talk), talk);
+    let out = overtaken_by(out, talk);
     come_there(with_the_others(instead_there(out, talk), talk))
 }
 
@@ -211,6 +212,22 @@ fn with_the_others(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         Some(i) if whole && is_place(&tokens[i + 1..k]) && !has_noun(&tokens[i..k]) && talk.fits(np) > 0 => tokens[..k].to_vec(),
         _ => tokens,
     }
+}
+
+/// "the truck is overtaken by a motorcycle in the left lane": that is new.
+fn overtaken_by(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "that", "my"])) else {
+        return tokens;
+    };
+    let n = leads(&tokens[b..], &["is overtaken by", "is being overtaken by", "gets overtaken by", "is passed by", "is being passed by", "gets passed by", "was overtaken by", "was being overtaken by"]);
+    let Some(np) = n.and_then(|n| tokens.get(b + n..)).filter(|np| is(np.first(), &["a", "an", "another"])) else {
+        return tokens;
+    };
+    let placed = first_noun(np).is_some_and(|x| x.0 < 4 && is_place(&np[x.1..]) && !has_noun(&np[x.1..]));
+    if placed && talk.fits(&tokens[..b]) > 0 {
+        return led("add", &tokens[0], &[np]);
+    }
+    tokens
 }
 
 /// "next to the woman there comes yet a man with a child": add them there.

@@ -12,7 +12,8 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 
 /// A sentence (without its stop) with the number that is meant.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = compared(tokens, talk);
+    let out = nothing_there(enough_with(than_now(tokens), talk));
+    let out = compared(out, talk);
     let out = in_place_of(out, talk);
     let opens = (0..out.len()).filter(|i| begins_at(&out, *i));
     let found = opens.into_iter().find_map(|i| still_there(&out[i..], talk).map(|new| [&out[..i], &new[..]].concat()));
@@ -37,13 +38,69 @@ fn all_of(noun: &[Token]) -> Vec<Token> {
     if let Some(last) = out.last_mut()
         && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
     {
-        last.text = super::super::lexicon::plural(&last.text);
+        let stem = last.text.strip_suffix("man").map(|s| format!("{s}men"));
+        last.text = match last.text.as_str() {
+            "child" => "children".into(),
+            "person" => "people".into(),
+            _ => stem.unwrap_or_else(|| super::super::lexicon::plural(&last.text)),
+        };
     }
     out
 }
 
 fn count(t: Option<&Token>) -> Option<i64> {
     t.filter(|t| !is(Some(t), &["a", "an"])).and_then(number)
+}
+
+/// "10 metres further than now": further.
+fn than_now(tokens: Vec<Token>) -> Vec<Token> {
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], "than now|than it is now|than it is|than before|than at present|than it does now|than he is now|than she is now|than they are now|than at the moment|than currently")?;
+        let way = is(out.last(), &["further", "farther", "closer", "nearer", "away", "back", "forward", "ahead"]);
+        let metres = out.iter().rev().take(4).any(|t| number(t).is_some());
+        (way && metres && tokens.get(i + n).is_none_or(is_mark)).then_some(i + n)
+    })
+}
+
+/// "behind us we have enough with one car", "we can make do with two cones": so many of them stay.
+fn enough_with(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const ENOUGH: &[&str] = &[
+        "we have enough with", "i have enough with", "we have enough of", "we can make do with", "i can make do with", "we can do with", "we can get by with", "we can manage with",
+        "i am content with", "we are content with", "we make do with", "im content with", "i am satisfied with", "we get by with", "i can get by with", "i can manage with",
+        "we will make do with", "lets make do with", "let us make do with", "make do with", "it is enough with", "i am fine with", "im fine with", "i am happy with", "we would manage with",
+    ];
+    let Some((k, n)) = find(&tokens, ENOUGH) else {
+        return tokens;
+    };
+    let only = begins(&tokens[k + n..], "only|just").unwrap_or(0);
+    let single = usize::from(is(tokens.get(k + n + only), &["a"]) && is(tokens.get(k + n + only + 1), &["single"]));
+    let one = led("one", &tokens[k], &[tokens.get(k + n + only + 2..).unwrap_or(&[])]);
+    let np = if single > 0 { &one[..] } else { &tokens[k + n + only..] };
+    let Some((many, (_, b))) = count(np.first()).zip(first_noun(np).filter(|x| x.0 < 4)) else {
+        return tokens;
+    };
+    let (place, late) = (trimmed(&tokens[..k]), trimmed(&np[b..]));
+    let where_at = if place.is_empty() { late } else { place };
+    let plain = where_at.is_empty() || is_place(where_at) && !has_noun(where_at);
+    let the = [&all_of(&np[1..b]), where_at].concat();
+    if !plain || !(place.is_empty() || late.is_empty()) || talk.fits(&the) as i64 <= many {
+        return tokens;
+    }
+    led("keep only", &tokens[0], &[&np[..1], &led("of", &tokens[0], &[&the])])
+}
+
+/// "on the right lane nothing more": what is there goes.
+fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
+    let Some((k, n)) = find(&tokens, &["nothing more", "nothing any more", "nothing anymore", "nothing at all", "nothing"]).filter(|x| x.0 > 1) else {
+        return tokens;
+    };
+    let late = trimmed(&tokens[k + n..]);
+    let polite = late.iter().all(|t| is_mark(t) || is(Some(t), &["thanks", "thank", "you", "please"]));
+    let place = &tokens[..k];
+    if polite && is_place(place) && !has_noun(place) && !place.iter().any(is_mark) {
+        return led("remove everything", &tokens[0], &[place]);
+    }
+    tokens
 }
 
 /// How many there would be, of so many.

@@ -119,7 +119,9 @@ fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let _ = a;
         strip_of(&tokens[k..k + b], talk)
     });
-    let Some((_, end)) = first_noun(&tokens[..i]) else {
+    // ("remove the bus and park two trucks on that side": what comes after "and" is there)
+    let and = (0..i).rev().find(|k| is(tokens.get(*k), &["and"]) && has_noun(&tokens[k + 1..i])).map_or(0, |k| k + 1);
+    let Some((_, end)) = first_noun(&tokens[and..i]).map(|x| (x.0, and + x.1)) else {
         return tokens;
     };
     let Some(words) = side else {
@@ -195,6 +197,7 @@ fn out_and_in(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 const TOO: &[&str] = &[
+    "closer than that", "nearer than that", "farther than that", "further away than that", "farther away than that", "further than that", "not that far", "not so far", "not that close", "not so close",
     "too far", "too far away", "too far off", "too far out", "too far ahead", "too far back", "too far behind", "too close", "too near", "much too close", "much too far", "far too close", "way too close", "way too far", "a bit too close", "a bit too far", "a little too close", "a little too far",
 ];
 

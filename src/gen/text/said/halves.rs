@@ -12,11 +12,37 @@ use super::words::{first_noun, has_noun, is, is_place, leads, led, noun_at, numb
 
 /// A sentence (without its stop) as what it asks for.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let tokens = does_sky(tokens);
+    let tokens = fellow_of(does_sky(tokens));
     let out = without_fix(our_car(side_named(and_with(tokens)), talk));
     let out = not_come(not_yet(out, talk), talk);
     let out = moved_where(complained(out, talk), talk);
-    exchanged(out, talk)
+    turned_to(exchanged(out, talk), talk)
+}
+
+const FACES: &str = "face|faces|is facing|are facing|looks at|look at|is looking at|are looking at|looks towards|look towards|looks toward|points at|point at|points towards|\
+    point towards|is pointed at|looks to|looks straight at|faces towards";
+
+/// "turn the worker until he faces the excavator", "rotate the bus to face us": it should face it.
+fn turned_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let Some(verb) = begins(&tokens, "turn|rotate|spin|swivel|pivot") else {
+        return tokens;
+    };
+    let np = &tokens[verb..];
+    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "both", "all", "that", "those", "these"])) else {
+        return tokens;
+    };
+    let round = b + begins(&np[b..], "around|round|about").unwrap_or(0);
+    let Some(n) = begins(&np[round..], "until|till|so that|so|to|such that|in such a way that").map(|n| round + n) else {
+        return tokens;
+    };
+    let he = n + usize::from(is(np.get(n), &["it", "he", "she", "they"]));
+    let Some(at) = begins(&np[he..], FACES).map(|k| he + k) else {
+        return tokens;
+    };
+    if talk.fits(&np[..b]) == 0 || at == np.len() {
+        return tokens;
+    }
+    [&np[..b], &led("should face", &tokens[0], &[&np[at..]])].concat()
 }
 
 /// "They have not left yet. They are still on the left sidewalk." is one sentence.
@@ -99,6 +125,15 @@ fn does_sky(tokens: Vec<Token>) -> Vec<Token> {
             out.extend(led("make it", &tokens[i], &[]));
             n
         })
+    })
+}
+
+/// "the scooter fellow": the scooter.
+fn fellow_of(tokens: Vec<Token>) -> Vec<Token> {
+    const WHO: [&str; 9] = ["fellow", "guy", "chap", "dude", "bloke", "wala", "wallah", "walla", "lad"];
+    rewritten(&tokens, |i, _| {
+        let who = i > 0 && is(tokens.get(i), &WHO) && noun_at(&tokens[i - 1..]) == Some(1);
+        (who && tokens.get(i + 1).is_none_or(|t| noun_at(std::slice::from_ref(t)).is_none())).then_some(i + 1)
     })
 }
 

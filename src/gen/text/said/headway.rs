@@ -28,7 +28,7 @@ static ANSWER: List = LazyLock::new(|| {
 });
 const GAP: &str = "distance|gap|headway|clearance|spacing|separation|margin|interval|safety distance|following distance|safe distance|minimum distance";
 const ROOM: &str = "distance|gap|headway|clearance|spacing|space|room|air|separation";
-const FROM: &str = "to|from|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
+const FROM: &str = "to|from|with|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
 
 /// Of a thing they say how far it is; of a number, whether it is right.
 const NEAR_FAR: &[&str] = &[
@@ -234,11 +234,32 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 const SHALL: &str = "shall be|should be|is to be|must be|has to be|needs to be|ought to be|shall become|should become|should now be|will be|shall amount to|should read|\
     shall remain|is supposed to be|has to become|must become|must not be less than|should amount to|was|has been|had been";
 
+const MAY_BE: &[&str] = &[
+    "may be", "can be", "could be", "should be", "must be", "has to be", "needs to be", "must become", "may become", "should become", "might be", "ought to be",
+];
+const CHANGED: [&str; 12] = [
+    "smaller", "bigger", "larger", "shorter", "longer", "greater", "wider", "less", "more", "increased", "reduced", "tighter",
+];
+
 /// "the gap to the scooter shall be 20 m, it stays behind us".
 fn gap_shall(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let the = usize::from(is(tokens.first(), &["the", "our", "my", "this"]));
     let gap = the + begins(&tokens[the..], GAP)?;
     let from = gap + begins(&tokens[gap..], FROM)?;
+    // "... may be smaller: 14 m is good"
+    let may = (from + 1..tokens.len().min(from + 6)).find_map(|k| {
+        let n = leads(&tokens[k..], MAY_BE)?;
+        let adj = k + n + leads(&tokens[k + n..], &["a bit", "a little", "somewhat", "much", "slightly"]).unwrap_or(0);
+        is(tokens.get(adj), &CHANGED).then_some((k, adj + 1))
+    });
+    if let Some((k, end)) = may
+        && tokens.get(end).is_some_and(is_mark)
+        && let Some(n) = answer(&tokens[end + 1..])
+    {
+        let after = &tokens[end + 1..];
+        let unit = &after[n + 1..n + 1 + unit_at(&after[n + 1..]).unwrap_or(0)];
+        return keeps(&tokens[from..k], &after[n], unit, talk);
+    }
     let shall = (from + 1..tokens.len().min(from + 6)).find(|k| begins(&tokens[*k..], SHALL).is_some())?;
     let at = shall + begins(&tokens[shall..], SHALL)?;
     let at = at + leads(&tokens[at..], &["at least", "exactly", "only", "about", "just"]).unwrap_or(0);

@@ -286,7 +286,8 @@ fn shown_that(tokens: &[Token], i: usize) -> Option<usize> {
     let more = is(
         tokens.get(k + 2),
         &[
-            "the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two", "three", "it",
+            "the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two", "three", "it", "residents",
+            "people", "parents", "neighbours", "citizens", "locals", "customers",
         ],
     );
     (that && more).then_some(k + 2)
