@@ -71,6 +71,8 @@ const SETS: &[(&str, &str)] = sets![
     "causes_s.jsonl",
     "strangers_31.jsonl",
     "causes_u.jsonl",
+    "strangers_33.jsonl",
+    "causes_x.jsonl",
     "exam_9.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",
