@@ -97,7 +97,8 @@ fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
     let late = trimmed(&tokens[k + n..]);
     let polite = late.iter().all(|t| is_mark(t) || is(Some(t), &["thanks", "thank", "you", "please"]));
     let place = &tokens[..k];
-    if polite && is_place(place) && !has_noun(place) && !place.iter().any(is_mark) {
+    let said = place.iter().any(|t| is_mark(t) || HELPERS.contains(&text(t)) || is(Some(t), &["there", "see", "want"]));
+    if polite && is_place(place) && !has_noun(place) && !said {
         return led("remove everything", &tokens[0], &[place]);
     }
     tokens
