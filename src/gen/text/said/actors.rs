@@ -173,7 +173,6 @@ fn instead_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let at = trimmed(&rest[verb..k]);
-    let at = &at[..at.len()];
     if leads(at, &["there", "here", "in that place", "in that spot", "at that spot"]) == Some(at.len()) {
         return led("replace", &tokens[0], &[old, &led("with", &tokens[0], &[&rest[..b]])]);
     }
@@ -244,7 +243,7 @@ fn come_there(tokens: Vec<Token>) -> Vec<Token> {
     let new = is(np.first(), &["a", "an", "another", "some"]) || np.first().is_some_and(|t| number(t).is_some());
     let place = &tokens[..k];
     let named = first_noun(np).is_some_and(|x| x.0 < 4);
-    if !new || !named || !(place.is_empty() || is_place(place) && is_place(np.get(np.len()..).unwrap_or(&[])) == place.is_empty()) {
+    if !new || !named || !(place.is_empty() || is_place(place)) {
         return tokens;
     }
     led("add", &tokens[0], &[np, place])

@@ -200,17 +200,11 @@ fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     };
     let comma = from + usize::from(spared.is_some() && tokens.get(from).is_some_and(is_mark));
     let there = begins(&tokens[comma..], "there is|there are|i see|we see").unwrap_or(0);
-    let Some(only) = begins(&tokens[comma + there..], "just|only|merely|no more than").map(|n| comma + there + n) else {
-        return None;
-    };
-    let Some(n) = count(tokens.get(only)).filter(|_| there == 0) else {
-        return None;
-    };
+    let only = begins(&tokens[comma + there..], "just|only|merely|no more than").map(|n| comma + there + n)?;
+    let n = count(tokens.get(only)).filter(|_| there == 0)?;
     let np = &tokens[only + 1..];
     let of = begins(np, "of the|of those|of these").unwrap_or(0);
-    let Some((_, b)) = first_noun(&np[of..]).filter(|x| x.0 < 3) else {
-        return None;
-    };
+    let (_, b) = first_noun(&np[of..]).filter(|x| x.0 < 3)?;
     let noun = &np[of..of + b];
     let late = &np[of + b..];
     let the = all_of(noun);
