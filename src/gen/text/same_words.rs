@@ -161,6 +161,15 @@ fn comes_from_there(tokens: &[Token], i: usize) -> bool {
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = rewritten(tokens, |i, out| {
         let rest = &tokens[i..];
+        // "swap the car 4 a bus"
+        let four = matches!(rest[0].kind, TokenKind::Number(4.0))
+            && rest.get(1).is_some_and(|t| matches!(t.text.as_str(), "a" | "an"))
+            && i > 0
+            && tokens[i - 1].kind == TokenKind::Word;
+        if four {
+            out.push(word("for", &rest[0]));
+            return Some(i + 1);
+        }
         let put = |out: &mut Vec<Token>, words: &str| {
             out.extend(words.split(' ').map(|w| word(w, &tokens[i])));
         };
@@ -285,7 +294,7 @@ fn numbers(tokens: &[Token]) -> Vec<Token> {
 /// What takes things away, before what is taken away.
 const REMOVE: &str = "delete|erase|eliminate|get rid of|do away with|dispose of|dispense with|take away|take out|clear away|discard|scrap|ditch|banish|cancel|withdraw|\
     strip out|pull out|wipe out|throw out|kick out|chuck out|toss out|cut out|cut|lose|kill|bin|nix|purge|axe|dump|eradicate|exclude|drop out|edit out|rub out|\
-    rule out|weed out|pluck out|yank out|rip out|oust|expel|evict|obliterate|annihilate|zap|trash|junk|unload|tow away|haul away|cart away|whisk away|wipe away|sweep away";
+    rule out|weed out|pluck out|yank out|rip out|oust|expel|evict|obliterate|annihilate|zap|trash|junk|unload|tow away|haul away|cart away|whisk away|wipe away|sweep away|yeet|nuke|strike out|scratch|ax|vaporize|vaporise|chop out|boot out|strike|zap away";
 /// What brings a new thing.
 const ADD: &str = "insert|introduce|spawn|throw in|stick in|drop in|put in|bring in|toss in|chuck in|slot in|include|generate|supply|conjure up|create|plonk|plop|pop in|inject|plonk down";
 const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|re position|re locate";
@@ -318,7 +327,10 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         }
         let starts = i == 0
             || matches!(tokens[i - 1].kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark)
-            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "kindly" | "just" | "so" | "now" | "also" | "but");
+            || matches!(tokens[i - 1].text.as_str(), "and" | "then" | "please" | "kindly" | "just" | "so" | "now" | "also" | "but")
+            // "can you ditch the van", "I want you to ditch it"
+            || tokens[i - 1].text == "you" && i > 1 && matches!(tokens[i - 2].text.as_str(), "can" | "could" | "would" | "will" | "lets")
+            || tokens[i - 1].text == "to" && i > 1 && matches!(tokens[i - 2].text.as_str(), "you" | "want" | "like" | "need" | "us" | "have");
         if !starts || tokens[i].kind != TokenKind::Word {
             return None;
         }

@@ -73,6 +73,8 @@ const SETS: &[(&str, &str)] = sets![
     "causes_u.jsonl",
     "strangers_32.jsonl",
     "causes_w.jsonl",
+    "strangers_33.jsonl",
+    "causes_x.jsonl",
     "exam_9.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",

@@ -6,7 +6,7 @@ use super::super::tokens::{Span, Token, TokenKind};
 use super::super::wording::begins;
 use super::super::words::verbs::forms;
 use super::apart::{ORDERS, orders_something, says};
-use super::words::{has_noun, is, led, number, text};
+use super::words::{has_noun, is, is_place, led, number, text};
 
 /// Before a command: "remove".
 const TO: &str = "\
@@ -36,7 +36,7 @@ const TO: &str = "\
     firstly|second|secondly|third|thirdly|finally|lastly|last|additionally|furthermore|moreover|oh|oh and|\
     ok so|okay so|first of all|to begin with|to start with|for starters|after that|afterwards|in addition|\
     instead of that|one more thing|another thing|later|meanwhile|actually|on second thought|on second thoughts|\
-    immediately|carefully|somebody|someone|is it possible to|would it be possible to|is it ok to|would it be ok to|\
+    yo|nah|bro|dude|yeah|yep|hmm|uh|um|ey|aye|guys|folks|hey guys|man|boss|immediately|carefully|somebody|someone|is it possible to|would it be possible to|is it ok to|would it be ok to|\
     is there a way to|is there any way to|would you be able to|are you able to|are we able to|i wonder if you could|\
     i was wondering if you could|i was wondering whether you could|i wonder whether you could|could i ask you to|\
     may i ask you to|can i ask you to|id ask you to|i would ask you to|any chance to|is there a chance to|\
@@ -78,13 +78,14 @@ const TOLD: &str = "\
     moreover|furthermore|on second thought|on second thoughts|suddenly|later|afterwards";
 /// Who or what states it.
 const SAYERS: &str = "\
-    witness|witnesses|report|reports|log|statement|police report|accident report|video|footage|recording|data|notes|\
+    witness|witnesses|witness one|witness two|witness three|witness a|witness b|second witness|other witness|report|reports|log|statement|police report|accident report|video|footage|recording|data|notes|\
     sketch|colleague|map|file|record|records|transcript|plaintiff|defendant|claimant|story|page|text|caption|\
     storyboard";
 const SAYS: &str = "\
     says|said|states|stated|claims|claimed|reports|reported|tells us|told us|tells me|told me|confirms|confirmed|\
     insists|writes|wrote|specifies|requires|demands|assumes|shows|maintains|testified|has testified|has stated|\
-    has confirmed|believes|thinks|wants it so|swears|recalls|remembers|explains|explained|adds";
+    has confirmed|believes|thinks|wants it so|swears|recalls|remembers|explains|explained|adds|contradicts that|disagrees|contradicts this|objects|corrects that|\
+    corrects this|differs|sees it differently|corrected that|contradicted that";
 /// What a sentence is for, before a comma: "for the next test".
 const FOR: &[&str] = &["for", "in", "as", "with", "during", "on"];
 const STEPS: &str = "\
@@ -103,7 +104,8 @@ const TAILS: &str = "\
 const BARE_TAILS: &str = "\
     for more realism|for the test|for this test|for the demo|for realism|for variety|for my test|for our test|\
     for the scenario|for the shot|for the scene|for the study|for our study|for my thesis|as agreed|as discussed|\
-    as planned|as requested|as promised|for me please";
+    as planned|as requested|as promised|for me please|tbh|lol|lmao|ngl|imo|imho|haha|bro|dude|innit|to be honest|\
+    if you ask me|my friend|buddy|guys";
 /// How a reason begins that follows a comma.
 const WHY: &str = "\
     because|since it|since that|since this|since we|since i|as it looks|as it makes|as that|as in the real|\
@@ -296,7 +298,10 @@ fn reason_after(rest: &[Token]) -> bool {
         .iter()
         .any(|t| is(Some(t), &["and", "then", "but", "so"]) || t.kind == TokenKind::Comma);
     let measures = rest.iter().any(|t| number(t).is_some());
-    begins(rest, WHY).is_some() && !goes_on && !measures && rest.len() < 14
+    // ("I want it parked on the left": that is where)
+    let placed = begins(rest, "i want it|i need it|i want that|i need that|i like it|i prefer it")
+        .is_some_and(|n| (n..rest.len().min(n + 4)).any(|k| is_place(&rest[k..])));
+    begins(rest, WHY).is_some() && !placed && !goes_on && !measures && rest.len() < 14
 }
 
 #[cfg(test)]

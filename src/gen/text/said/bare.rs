@@ -23,6 +23,13 @@ const NO_NEED: &[&str] = &[
     "no more need",
     "dont need",
     "unneeded",
+    "begone",
+    "be gone",
+    "bye",
+    "bye bye",
+    "adios",
+    "outta here",
+    "out of here",
     "not required",
 ];
 const NOT_GOOD: &[&str] = &[
@@ -95,7 +102,16 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             None => break,
         }
     }
-    arrived(tokens, talk)
+    arrived(with_article(tokens, talk), talk)
+}
+
+/// "man has crossed already": the man, if one is there.
+fn with_article(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let end = bare(&tokens, 0).filter(|end| is(tokens.get(*end), &["has", "had"]));
+    match end {
+        Some(end) if talk.fits(&tokens[..end]) == 1 => led("the", &tokens[0], &[&tokens]),
+        _ => tokens,
+    }
 }
 
 /// The first bare subject with what it lacks.

@@ -17,7 +17,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = farther_with(wanted_at(out, talk), talk);
     let out = nothing_but(out, talk);
     let out = sky_and_gone(in_which_there(out));
-    somebody_of(apposed(out), talk)
+    somebody_of(rider_apposed(apposed(out)), talk)
 }
 
 /// Where the box that these words mean stands, if it is one.
@@ -209,6 +209,7 @@ fn out_and_in(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 const TOO: &[&str] = &[
+    "closer than that", "nearer than that", "farther than that", "further away than that", "farther away than that", "further than that", "not that far", "not so far", "not that close", "not so close",
     "too far", "too far away", "too far off", "too far out", "too far ahead", "too far back", "too far behind", "too close", "too near", "much too close", "much too far", "far too close", "way too close", "way too far", "a bit too close", "a bit too far", "a little too close", "a little too far",
 ];
 
@@ -328,7 +329,7 @@ fn in_which_there(tokens: Vec<Token>) -> Vec<Token> {
     [&led("there should be", &tokens[k], &[&tokens[k + n..]]), place].concat()
 }
 
-const WIDE: &[&str] = &["a two wheeler", "a vehicle", "another vehicle", "one more vehicle", "a person", "someone", "somebody", "a second vehicle", "a road user", "another road user", "something"];
+const WIDE: &[&str] = &["a two wheeler", "a vehicle", "another vehicle", "one more vehicle", "a person", "someone", "somebody", "a second vehicle", "a road user", "another road user", "something", "a witness", "another witness", "one more witness", "a bystander", "another bystander", "one more person", "another person", "a second person", "a passer by", "a passerby", "another passer by", "an onlooker", "a spectator", "a third person", "one person more", "an eyewitness"];
 
 /// "there is a two-wheeler too, a motorbike, parked behind the taxi": the motorbike.
 fn apposed(tokens: Vec<Token>) -> Vec<Token> {
@@ -345,6 +346,24 @@ fn apposed(tokens: Vec<Token>) -> Vec<Token> {
     let end = comma + 1 + b;
     let skip = usize::from(tokens.get(end).is_some_and(|t| t.kind == TokenKind::Comma));
     [&tokens[..k], &tokens[comma + 1..end], &tokens[end + skip..]].concat()
+}
+
+/// "a second cyclist, a boy ahead of us": the boy rides.
+fn rider_apposed(tokens: Vec<Token>) -> Vec<Token> {
+    const RIDER: [&str; 5] = ["cyclist", "motorcyclist", "biker", "rider", "bicyclist"];
+    const PERSON: [&str; 14] = ["boy", "girl", "man", "woman", "lady", "kid", "child", "guy", "teenager", "student", "gentleman", "postman", "youth", "teen"];
+    let found = (1..tokens.len()).find(|k| {
+        let also = usize::from(is(tokens.get(k + 1), &["too", "also"]));
+        is(tokens.get(*k), &RIDER)
+            && tokens.get(k + also + 1).is_some_and(|t| t.kind == TokenKind::Comma)
+            && is(tokens.get(k + also + 2), &["a", "an"])
+    });
+    let Some(k) = found else { return tokens };
+    let from = k + 1 + usize::from(is(tokens.get(k + 1), &["too", "also"]));
+    match (from + 2..tokens.len().min(from + 5)).find(|i| is(tokens.get(*i), &PERSON)) {
+        Some(p) => [&tokens[..=k], &tokens[p + 1..]].concat(),
+        None => tokens,
+    }
 }
 
 const SOMEBODY: &[&str] = &[

@@ -27,7 +27,8 @@ static ANSWER: List = LazyLock::new(|| {
         .collect()
 });
 const GAP: &str = "distance|gap|headway|clearance|spacing|separation|margin|interval|safety distance|following distance|safe distance|minimum distance";
-const FROM: &str = "to|from|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
+const ROOM: &str = "distance|gap|headway|clearance|spacing|space|room|air|separation";
+const FROM: &str = "to|from|with|between us and|between me and|from us to|from me to|towards|between ourselves and|between our car and|behind|ahead of|for";
 
 /// Of a thing they say how far it is; of a number, whether it is right.
 const NEAR_FAR: &[&str] = &[
@@ -100,6 +101,7 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = super::strides::plain(tokens, talk);
     if let Some(new) = too_far(&out, talk)
+        .or_else(|| gap_shall(&out, talk))
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
     {
@@ -229,6 +231,47 @@ fn too_far(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     keeps(&head[..end], &after[n], unit, talk)
 }
 
+const SHALL: &str = "shall be|should be|is to be|must be|has to be|needs to be|ought to be|shall become|should become|should now be|will be|shall amount to|should read|\
+    shall remain|is supposed to be|has to become|must become|must not be less than|should amount to|was|has been|had been";
+
+const MAY_BE: &[&str] = &[
+    "may be", "can be", "could be", "should be", "must be", "has to be", "needs to be", "must become", "may become", "should become", "might be", "ought to be",
+];
+const CHANGED: [&str; 12] = [
+    "smaller", "bigger", "larger", "shorter", "longer", "greater", "wider", "less", "more", "increased", "reduced", "tighter",
+];
+
+/// "the gap to the scooter shall be 20 m, it stays behind us".
+fn gap_shall(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let the = usize::from(is(tokens.first(), &["the", "our", "my", "this"]));
+    let gap = the + begins(&tokens[the..], GAP)?;
+    let from = gap + begins(&tokens[gap..], FROM)?;
+    // "... may be smaller: 14 m is good"
+    let may = (from + 1..tokens.len().min(from + 6)).find_map(|k| {
+        let n = leads(&tokens[k..], MAY_BE)?;
+        let adj = k + n + leads(&tokens[k + n..], &["a bit", "a little", "somewhat", "much", "slightly"]).unwrap_or(0);
+        is(tokens.get(adj), &CHANGED).then_some((k, adj + 1))
+    });
+    if let Some((k, end)) = may
+        && tokens.get(end).is_some_and(is_mark)
+        && let Some(n) = answer(&tokens[end + 1..])
+    {
+        let after = &tokens[end + 1..];
+        let unit = &after[n + 1..n + 1 + unit_at(&after[n + 1..]).unwrap_or(0)];
+        return keeps(&tokens[from..k], &after[n], unit, talk);
+    }
+    let shall = (from + 1..tokens.len().min(from + 6)).find(|k| begins(&tokens[*k..], SHALL).is_some())?;
+    let at = shall + begins(&tokens[shall..], SHALL)?;
+    let at = at + leads(&tokens[at..], &["at least", "exactly", "only", "about", "just"]).unwrap_or(0);
+    let (a, b) = measure(&tokens[at..]).filter(|m| m.0 == 0)?;
+    let rest = super::words::trimmed(&tokens[at + b..]);
+    // (that it stays where it is, is no place of its own)
+    let he = usize::from(is(rest.first(), &["it", "he", "she", "they"]));
+    let stays = leads(&rest[he..], &["stays", "stay", "still", "remains", "remain", "is still", "continues", "keeps driving", "keeps following"]);
+    (rest.is_empty() || stays.is_some() && !has_noun(rest)).then_some(())?;
+    keeps(&tokens[from..shall], &tokens[at + a], &tokens[at + a + 1..at + b], talk)
+}
+
 /// "a distance of 20 m to the bus is what I need", "my pupil should keep a gap of 20 m to the bus".
 fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let gap = (0..tokens.len()).find(|i| begins(&tokens[*i..], GAP).is_some())?;
@@ -313,13 +356,26 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             "make that",
             "i would like",
             "id like",
+            "another",
+            "add another",
+            "leave another",
+            "give me another",
+            "i want another",
+            "we need another",
+            "put",
+            "add",
+            "give us",
         ],
     )
     .unwrap_or(0);
     let (a, b) = measure(&tokens[lead..]).filter(|m| m.0 == 0)?;
     let (a, b) = (a + lead, b + lead);
+    let another = lead > 0 && is(tokens.get(lead - 1), &["another"]);
     let step = is(tokens.get(b), &["less", "more", "fewer"]);
-    let from = b + usize::from(step);
+    let mut from = b + usize::from(step);
+    // "ten metres more distance between us and the car"
+    from += usize::from(is(tokens.get(from), &["of"]));
+    from += begins(&tokens[from..], ROOM).unwrap_or(0);
     let n = begins(&tokens[from..], FROM)
         .filter(|_| !is(tokens.get(from), &["for", "behind", "ahead", "towards"]))?;
     let rest = &tokens[from + n..];
@@ -350,11 +406,11 @@ fn metres_to(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     if !plain || numbers > usize::from(not) {
         return None;
     }
-    if step {
+    if step || another {
         let (_, e) = first_noun(np).filter(|x| x.0 < 4)?;
         let whole = e == np.len() || super::words::is_place(&np[e..]);
         (whole && talk.fits(np) > 0).then_some(())?;
-        let way = if is(tokens.get(b), &["more"]) {
+        let way = if another || is(tokens.get(b), &["more"]) {
             "further away"
         } else {
             "closer"

@@ -46,7 +46,7 @@ lists! {
         pretend|provided|please|pleased|said|says|seems|turns|turned|appears|reported|reports|stated|states|claims|claimed|known|\
         true|fact|case|means|note|make";
     /// Words of `predicate.rs`.
-    GONE = "left out|left off|impounded|confiscated|seized|repossessed|decommissioned|sold|boarded|no longer there|no longer here|not there|gone|missing|away|leave|leaves|left|leaving|depart|departs|departed|departing|\
+    GONE = "gone on strike|gone on break|gone for lunch|gone on holiday|gone on their break|gone on its break|bounced|dipped|scrammed|skedaddled|cleared out|buzzed off|legged it|on break|on their break|on its break|on a break|on their breaks|on lunch break|off duty|on strike|on holiday|off site|off set|left out|left off|impounded|confiscated|seized|repossessed|decommissioned|sold|boarded|no longer there|no longer here|not there|gone|missing|away|leave|leaves|left|leaving|depart|departs|departed|departing|\
         disappear|disappears|disappeared|vanish|vanishes|vanished|drive off|drives off|drove off|driven off|drive away|\
         drives away|drove away|driven away|turned off|turns off|turned the corner|turned around the corner|turned into a side street|driven home|pull away|pulls away|pulled away|pull off|pulls off|pulled off|walk away|walks away|\
         walked away|walk off|walks off|walked off|go away|goes away|went away|go home|goes home|went home|gone home|go|goes|\

@@ -54,6 +54,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     denied_first(rest, talk)
         .or_else(|| denied_last(rest, talk))
         .or_else(|| told_of_place(rest, talk))
+        .or_else(|| it_was_there(rest, talk))
         .or_else(|| belongs_there(rest, talk))
         .or_else(|| rides_other(rest, talk))
         .unwrap_or(tokens)
@@ -327,6 +328,20 @@ fn told_of_place(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let new = trimmed(&old[k..]);
     let (_, d) = kind(new).filter(|x| x.1 == new.len())?;
     exchange(&old[..b], place, &new[..d], talk)
+}
+
+/// "what followed us was a bicycle, not a motorcycle".
+fn it_was_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let n = leads(tokens, &["what", "whatever", "who", "the one that", "the thing that", "the vehicle that", "the one who", "that which"])?;
+    let at = (n + 1..tokens.len().min(n + 8)).find(|k| is(tokens.get(*k), &["is", "was"]) && is(tokens.get(k + 1), &["a", "an"]))?;
+    let verb = tokens.get(n..at)?;
+    let place = stood(verb, !is_place(verb))?;
+    let new = &tokens[at + 1..];
+    let (_, b) = kind(new)?;
+    let not = find(&new[b..], &["not", "and not", "rather than", "instead of"]).filter(|x| x.0 < 2)?;
+    let old = trimmed(&new[b + not.0 + not.1..]);
+    let (_, e) = kind(old).filter(|x| x.1 == old.len())?;
+    exchange(&old[..e], place, &new[..b], talk)
 }
 
 /// "the car was a mistake": the end of what it names, and of the clause.

@@ -4,8 +4,10 @@
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
 mod acts;
+mod actors;
 mod apart;
 mod arrivals;
+mod as_now;
 mod asides;
 mod asked;
 mod bare;
@@ -46,6 +48,7 @@ mod of_several;
 mod offhand;
 mod orders;
 mod owned;
+mod paired;
 mod parting;
 mod passing;
 mod passive;
@@ -253,6 +256,12 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
     let out = owned::plain(remarks::reported(out), talk);
     let out = clipped::plain(out, talk);
+    let out = actors::unseen(out);
+    if out.is_empty() {
+        return stop.to_vec();
+    }
+    let out = actors::plain(out, talk);
+    let out = as_now::plain(paired::plain(out, talk), talk);
     let out = placing::plain(bare::plain(out, talk), talk);
     let out = headway::plain(happier::plain(out, talk), talk);
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
@@ -289,7 +298,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
-    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(tokens))))
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(paired::joined(paired::of_two(tokens))))))
 }
 
 /// Reads a sentence with its stop.

@@ -335,11 +335,19 @@ fn remark_and_where(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..b], &led("should be", &tokens[colon], &[place])].concat()
 }
 
+/// True if a name ends here: what follows is said of it.
+fn is_noun_end(tokens: &[Token]) -> bool {
+    first_noun(tokens).is_some_and(|n| n.1 == tokens.len())
+}
+
 /// "has passed me and the car", "has passed the bus": it is ahead of the one that is farther on.
 fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
-        is(tokens.get(i), &["has", "have"]).then_some(())?;
-        let mut k = i + 1;
+        let has = is(tokens.get(i), &["has", "have"]);
+        // "just overtook us"
+        let past = is(tokens.get(i + usize::from(is(tokens.get(i), &["just", "already"]))), &["overtook", "passed"]);
+        (has || past && is_noun_end(out)).then_some(())?;
+        let mut k = i + usize::from(has);
         while is(
             tokens.get(k),
             &["just", "already", "now", "since", "both", "meanwhile"],
@@ -350,6 +358,7 @@ fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             &tokens[k..],
             &[
                 "passed",
+                "overtook",
                 "overtaken",
                 "gone past",
                 "driven past",

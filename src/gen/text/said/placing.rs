@@ -33,10 +33,22 @@ const WHOLE: &[&str] = &[
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = still_so(tokens, talk);
+    let out = still_so(in_ours(tokens), talk);
     let out = shown(seen(out, talk), talk);
     let out = lifted(thrown(out, talk));
     past(until(out, talk), talk)
+}
+
+/// "it left its lane: show it in ours": in our lane.
+fn in_ours(tokens: Vec<Token>) -> Vec<Token> {
+    let lane = tokens.iter().position(|t| is(Some(t), &["lane", "lanes"]));
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let ours = is(tokens.get(i), &["ours", "mine"]) && is(out.last(), &["in", "into", "on", "onto"]);
+        (ours && lane.is_some_and(|l| l < i)).then(|| {
+            out.extend(led("our lane", &tokens[i], &[]));
+            i + 1
+        })
+    })
 }
 
 /// Where the words end that name something known, which begin at `from`.
@@ -56,13 +68,14 @@ fn opens_with(tokens: &[Token], i: usize, verbs: &[&str]) -> Option<usize> {
 fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
         let from = i + opens_with(&tokens, i, SHOWS)?;
-        let end = known(&tokens, from)?;
+        let it = is(tokens.get(from), &["it", "him", "her", "them"]);
+        let end = if it { from + 1 } else { known(&tokens, from)? };
         let state = usize::from(matches!(
             tokens.get(end..).and_then(longest),
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        let sure = talk.tells(&tokens[from..end]);
+        let sure = it || talk.tells(&tokens[from..end]);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {

@@ -624,11 +624,11 @@ fn left_alone(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "make the car a motorcycle, staying in the left lane", "car -> cyclist, still coming towards us": as before.
 fn still_so(tokens: Vec<Token>) -> Vec<Token> {
-    let becomes = tokens.iter().any(|t| {
+    let becomes = tokens.iter().enumerate().any(|(k, t)| {
         matches!(
             text(t),
-            "make" | "into" | ">" | "replace" | "becomes" | "become" | "turn" | "swap" | "exchange"
-        )
+            "make" | ">" | "replace" | "becomes" | "become" | "turn" | "swap" | "exchange"
+        ) || text(t) == "into" && !super::words::is_goal(&tokens[k..])
     });
     let Some(i) = (3..tokens.len()).find(|i| comma(&tokens[*i])) else {
         return tokens;

@@ -12,7 +12,7 @@ static FINITE: LazyLock<(HashSet<String>, HashSet<String>)> = LazyLock::new(|| {
     let (mut third, mut base) = (HashSet::new(), HashSet::new());
     let more = "keep/kept|cut in|become/became|turn|change|stay|remain|go/went/gone|come/came/come|have/had|\
                 swap|trade|exchange|switch|disappear|vanish|leave/left|make/made|take/took/taken|give/gave/given|\
-                put/put|start|begin/began/begun|park|look|point|block|wait|stop|fall/fell/fallen|reach|join|hang/hung|get/got|drop|shift|move|set/set|lose/lost|belong|return";
+                put/put|start|begin/began/begun|park|look|point|block|wait|stop|fall/fell/fallen|reach|join|hang/hung|get/got|drop|shift|move|bounce|dip|scram|set/set|lose/lost|belong|return";
     let all = DOING
         .iter()
         .map(|d| d.1)
