@@ -10,7 +10,7 @@ use crate::scene::Class;
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = instead_first(to_the_other(sky_last(tokens), talk), talk);
+    let out = instead_first(to_the_other(sky_last(cut_to(tokens)), talk), talk);
     let out = beyond(with_doing(out), talk);
     let out = same_side(opposite_named(not_that(in_other_words(out), talk)), talk);
     let out = out_and_in(pulls_out(out), talk);
@@ -576,4 +576,24 @@ fn not_that(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     [&led("replace the", &tokens[0], &[old, clause])[..], &led("with", &tokens[0], &[&new[..b]])].concat()
+}
+
+/// "cut the queue to a single person", "trim the row of cars down to two cars": so many stay.
+fn cut_to(tokens: Vec<Token>) -> Vec<Token> {
+    const LESS: &[&str] = &["cut", "reduce", "trim", "shorten", "thin", "shrink", "bring", "limit", "pare"];
+    const GROUP: &[&str] = &["queue", "line", "row", "group", "crowd", "bunch", "cluster", "gathering"];
+    if !is(tokens.first(), LESS) || !is(tokens.get(1), &["the", "that", "this"]) || !is(tokens.get(2), GROUP) {
+        return tokens;
+    }
+    let Some((k, n)) = find(&tokens, &["down to", "to"]).filter(|x| x.0 > 2 && x.0 < 8) else {
+        return tokens;
+    };
+    let rest = &tokens[k + n..];
+    let one = leads(rest, &["a single", "just one", "only one", "one single"]);
+    let from = one.or_else(|| rest.first().is_some_and(|t| number(t).is_some()).then_some(1));
+    let Some((from, (_, b))) = from.and_then(|f| Some((f, first_noun(&rest[f..]).filter(|x| x.0 < 3)?))) else {
+        return tokens;
+    };
+    let count = if one.is_some() { led("one", &rest[0], &[]) } else { rest[..1].to_vec() };
+    [&led("keep exactly", &tokens[0], &[&count, &rest[from..from + b]])[..], &rest[from + b..]].concat()
 }

@@ -533,11 +533,12 @@ pub(super) fn made_of(inner: &[Token]) -> Option<Vec<Piece>> {
             "the", "that", "this", "those", "both", "my", "it", "them", "all", "every",
         ],
     );
-    let end = first_noun(old).map_or(1, |x| x.1);
+    let end = first_noun(old).map_or(1, |x| x.1).min(old.len());
     // "out of two of the parked cars": any two of them
     let some = old.first().is_some_and(|t| number(t).is_some())
         && is(old.get(1), &["of"])
-        && is(old.get(2), &["the", "those", "these", "my"]);
+        && is(old.get(2), &["the", "those", "these", "my"])
+        && end > 3;
     let old = match some {
         true => led("any", &old[0], &[&old[..1], &old[3..end]]),
         false => old[..end].to_vec(),
