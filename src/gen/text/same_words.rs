@@ -15,6 +15,8 @@ const THINGS: &[(&str, &str)] = &[
     ("bus", "omnibus|motor coach|motorcoach|motor bus|autobus"),
     ("buses", "omnibuses|motor coaches|motorcoaches|motor buses|autobuses|busses"),
     ("pedestrian", "passer by|passerby|foot passenger|foot traveller|person on foot|somebody on foot|someone on foot"),
+    ("people", "ppl"),
+    ("give me", "gimme"),
     ("pedestrians", "passers by|passersby|foot passengers|persons on foot|people on foot"),
     (
         "cyclist",
@@ -72,7 +74,7 @@ const THINGS: &[(&str, &str)] = &[
 ];
 
 /// Our lane, with the article that goes with it.
-const OUR_LANE: &str = "the ego vehicles lane|the ego cars lane|the egos lane|the ego lane|ego lane|the lane of the ego vehicle|the lane of the ego car|\
+const OUR_LANE: &str = "the ego vehicles lane|the ego vehicle lane|the ego cars lane|the ego car lane|the players lane|the player lane|the egos lane|the ego lane|ego lane|the lane of the ego vehicle|the lane of the ego car|\
     the lane of the ego|the lane of our car|the lane of my car|the lane i drive in|the lane we drive in|the lane that i drive in|the lane that we drive in|\
     the lane im in|the lane i am in|the lane were in|the lane we are in|the lane that we are in|the lane that i am in|the lane i am driving in|\
     the lane im driving in|the lane we are driving in|the lane were driving in|the lane that we are driving in|the lane that i am driving in|\
@@ -80,10 +82,10 @@ const OUR_LANE: &str = "the ego vehicles lane|the ego cars lane|the egos lane|th
     the same lane as us|the same lane as me|the same lane as the ego|the same lane as the ego vehicle|the lane we use|the lane i use|our very lane";
 
 /// Behind us and before us, in which several words stand for one relation to the ego vehicle.
-const BEHIND_US: &str = "in our rear|in my rear|to our rear|to my rear|at our rear|at my rear|at our back|at my back|in our back|in back of us|in back of me|\
+const BEHIND_US: &str = "on the players tail|on the player tail|on the tail of the ego|on our tail|on my tail|behind the player|in our rear|in my rear|to our rear|to my rear|at our rear|at my rear|at our back|at my back|in our back|in back of us|in back of me|\
     to the rear of us|to the rear of me|in the rear of us|at the rear of us|at the back of us|rearward of us|rearwards of us|behind our car|behind my car|\
     behind our vehicle|behind my vehicle|behind the ego vehicle|behind the ego car|behind the ego|behind our own car|behind my own car";
-const AHEAD_OF_US: &str = "in front of our car|in front of my car|in front of our vehicle|in front of my vehicle|in front of the ego vehicle|\
+const AHEAD_OF_US: &str = "in front of the player|ahead of the player|in front of our car|in front of my car|in front of our vehicle|in front of my vehicle|in front of the ego vehicle|\
     in front of the ego car|in front of the ego|ahead of our car|ahead of my car|ahead of our vehicle|ahead of my vehicle|ahead of the ego vehicle|\
     ahead of the ego car|ahead of the ego|forward of us|forward of me|forward of the ego|before us|before me|before the ego|before our car|before my car";
 

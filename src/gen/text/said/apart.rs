@@ -338,6 +338,17 @@ fn metres_for(clause: &[Token]) -> bool {
     metres && has_noun(clause) && (with || gap)
 }
 
+/// "motorcycle 15 metres behind me".
+fn noted(clause: &[Token]) -> bool {
+    first_noun(clause).is_some_and(|n| {
+        n.0 == 0
+            && clause.get(n.1).is_some_and(|t| number(t).is_some())
+            && super::words::is_unit(clause.get(n.1 + 1))
+            && clause.get(n.1 + 2..).is_some_and(is_place)
+            && !has_noun(&clause[n.1..])
+    })
+}
+
 /// "truck out, excavator in".
 fn out_first(clause: &[Token]) -> bool {
     first_noun(clause).is_some_and(|n| {
@@ -367,7 +378,7 @@ fn other_clause(clause: &[Token]) -> bool {
         });
     let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
     let gone = is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
-    nominal || metres_for(clause) || out_first(clause) || what || placed || bare || gone
+    nominal || noted(clause) || metres_for(clause) || out_first(clause) || what || placed || bare || gone
 }
 
 /// "in front of the bus, put a motorcycle", "in place of the truck I would prefer a bus".
@@ -511,7 +522,9 @@ fn opens(clause: &[Token]) -> bool {
     let sky = clause
         .iter()
         .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
-    let styled = orders_sky(clause);
+    // "it is night", "the time is night"
+    let told = leads(clause, &["the time is", "the weather is", "it is", "the sky is", "the hour is"]).is_some() && super::parting::only_sky(clause);
+    let styled = orders_sky(clause) || told;
     absent
         || styled
         || place_then_order(clause)

@@ -131,7 +131,7 @@ lists! {
         take their place|takes his place|takes her place|as a replacement|as replacement|as a substitute|exactly there|\
         right there|where it was|where it stood|where it is|where they were|where they stood|where he was|where she was|\
         where he stood|where she stood|where it has been|where it had been|on the spot|into its place|into the gap|in the gap|\
-        to replace it|to replace them|taken its place|taken their place|taken his place|took its place|took their place|took its spot|took their spot|takes its spot|take its spot|takes over its spot|taken its spot|has its place now|same place|\
+        to replace it|to replace them|taken its place|taken their place|taken his place|took its place|took their place|took its spot|took their spot|takes its spot|take its spot|takes over its spot|take over its spot|take over its position|takes over its position|take over its place|takes over its place|takes its position|take its position|taken over its place|taken its spot|has its place now|same place|\
         same spot|same position|same location";
     /// What follows is where it ends.
     UNTIL = "until it is|until its|until they are|until he is|until she is|until it stands|until it reaches|until hes|until shes|\

@@ -40,6 +40,7 @@ mod left;
 mod likewise;
 mod limits;
 pub(super) mod lists;
+mod loose_ends;
 mod mistaken;
 mod newcomers;
 mod nominal;
@@ -119,6 +120,7 @@ use forms::{
 };
 use frame::unwrapped;
 pub use left::Left;
+pub use loose_ends::cut;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
@@ -255,7 +257,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
     let out = owned::plain(remarks::reported(out), talk);
-    let out = clipped::plain(out, talk);
+    let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);
     if out.is_empty() {
         return stop.to_vec();
