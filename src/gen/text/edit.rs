@@ -410,7 +410,11 @@ impl Editor<'_> {
                 if let Some(ids) = self.targets(c, false) {
                     self.replace_all(&ids, c);
                     let moved = ids.iter().filter(|_| c.destination.is_some());
-                    for id in moved.filter(|id| self.boxes.contains_key(id)).copied().collect::<Vec<_>>() {
+                    for id in moved
+                        .filter(|id| self.boxes.contains_key(id))
+                        .copied()
+                        .collect::<Vec<_>>()
+                    {
                         self.shift(id, c);
                     }
                     done.push("replaced".into());
@@ -481,14 +485,25 @@ impl Editor<'_> {
     fn named_spot(&mut self, c: &Command) {
         let words = super::tokens::tokens(&c.text);
         let text = |i: usize| words.get(i).map_or("", |t| t.text.as_str());
-        let Some(i) = (0..words.len()).find(|i| text(*i) == "where" && matches!(text(i + 1), "the" | "my" | "that")) else {
+        let Some(i) =
+            (0..words.len()).find(|i| text(*i) == "where" && matches!(text(i + 1), "the" | "my" | "that"))
+        else {
             return;
         };
-        let end = (i + 2..words.len()).find(|k| matches!(text(*k), "was" | "were" | "stood" | "is" | "used" | "had" | "sat" | "waited" | "parked" | "drove"));
+        let end = (i + 2..words.len()).find(|k| {
+            matches!(
+                text(*k),
+                "was" | "were" | "stood" | "is" | "used" | "had" | "sat" | "waited" | "parked" | "drove"
+            )
+        });
         let np = &words[i + 1..end.unwrap_or(words.len())];
         let (_, mentions) = super::edit_command::parse(&c.text, &super::tag::tag(np));
         let Some(m) = mentions.first() else { return };
-        let fit: Vec<&SceneBox> = self.all_gone.iter().filter(|b| super::names::may_be(b, m)).collect();
+        let fit: Vec<&SceneBox> = self
+            .all_gone
+            .iter()
+            .filter(|b| super::names::may_be(b, m))
+            .collect();
         let spots: Vec<SceneBox> = super::names::called(fit, m).into_iter().copied().collect();
         if !spots.is_empty() {
             self.gone = spots;

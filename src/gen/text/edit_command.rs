@@ -315,7 +315,9 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
             let (r, m) = parse(text, &items[k + 1..]);
             c.by = m.first().cloned();
             // "with a coach 16 m behind me": there, not where the old one stands
-            let same = items[k..].iter().any(|i| i.words == "same" || i.words.contains("same "));
+            let same = items[k..]
+                .iter()
+                .any(|i| i.words == "same" || i.words.contains("same "));
             let told = verb == Verb::Replace && !same;
             if let Some(spec) = r.description.foreground.first().filter(|s| told && is_placed(s)) {
                 c.destination = Some(super::edit_grammar::Destination::Place(Box::new(spec.clone())));
@@ -386,8 +388,15 @@ fn command(text: &str, tokens: &[Token], verb_words: usize, verb: Option<Verb>) 
 /// True if it is said where it shall be, not only which way it faces.
 fn is_placed(spec: &super::description::ObjectSpec) -> bool {
     use crate::scene::graph::RelationKind as R;
-    let way = |r: R| matches!(r, R::SameDirection | R::OppositeDirection | R::Facing | R::FacingAway);
-    spec.relations.iter().any(|r| !way(r.relation) || r.distance_m.is_some())
+    let way = |r: R| {
+        matches!(
+            r,
+            R::SameDirection | R::OppositeDirection | R::Facing | R::FacingAway
+        )
+    };
+    spec.relations
+        .iter()
+        .any(|r| !way(r.relation) || r.distance_m.is_some())
 }
 
 fn says_something(tokens: &[Token]) -> bool {

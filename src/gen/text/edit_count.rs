@@ -365,9 +365,16 @@ fn side_by_side(words: &str) -> bool {
 fn said_one(words: &str) -> bool {
     let words = words.to_lowercase();
     // ("no cyclists, but a scooter": for all of them; "a scooter rides where the cyclists are")
-    ["single", "just one", "only one", " one ", ", but a ", " where the "]
-        .iter()
-        .any(|w| words.contains(w))
+    [
+        "single",
+        "just one",
+        "only one",
+        " one ",
+        ", but a ",
+        " where the ",
+    ]
+    .iter()
+    .any(|w| words.contains(w))
 }
 
 /// A box of another kind where one stands or stood.

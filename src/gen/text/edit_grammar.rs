@@ -271,7 +271,9 @@ impl<'t> Reader<'t> {
             tokens: unasked(as_orders(apart(unasked(as_orders(rejoined(labelled_apart(
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
-                        super::said::whole(super::said::cut(super::same_words::commands(&super::common::plain(&tokens(text))))),
+                        super::said::whole(super::said::cut(super::same_words::commands(
+                            &super::common::plain(&tokens(text)),
+                        ))),
                         text,
                     ))),
                     true,

@@ -67,7 +67,11 @@ pub fn there(clause: &[Token]) -> Option<Vec<Token>> {
     }
     // ("there must be at least twelve")
     let least = begins_with(rest, &["at", "least"]) || begins_with(rest, &["at", "minimum"]);
-    let rest = if least && existential && should { &rest[2..] } else { rest };
+    let rest = if least && existential && should {
+        &rest[2..]
+    } else {
+        rest
+    };
     // The article belongs to what is wished for.
     let total = clause[..k].iter().any(|t| text(t) == "total");
     if (existential && should || total) && number(&rest[0]).is_some() {
@@ -141,7 +145,14 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
     // "there is nobody on the right sidewalk": nobody there
     let there = begins_with(clause, &["there", "is"]) || begins_with(clause, &["there", "are"]);
     let clause = match clause.get(2..) {
-        Some(rest) if there && rest.iter().any(|t| matches!(text(t), "on" | "in" | "at" | "behind")) => rest,
+        Some(rest)
+            if there
+                && rest
+                    .iter()
+                    .any(|t| matches!(text(t), "on" | "in" | "at" | "behind")) =>
+        {
+            rest
+        }
         _ => clause,
     };
     let first = clause.first()?;
@@ -207,7 +218,9 @@ pub fn nobody(clause: &[Token]) -> Option<Vec<Token>> {
     // "nobody cycles here any more": who cycles goes
     // ("nobody is riding behind us any more", too)
     let who = match clause.get(does).map(text) {
-        Some("cycles" | "cycle" | "bikes" | "pedals" | "cycling" | "biking" | "pedalling") => "remove all cyclists",
+        Some("cycles" | "cycle" | "bikes" | "pedals" | "cycling" | "biking" | "pedalling") => {
+            "remove all cyclists"
+        }
         Some("drives" | "drive" | "driving") => "remove all vehicles",
         Some("rides" | "ride" | "riding") => "remove all bicycles and motorcycles",
         Some("parks" | "park") => "remove all parked vehicles",

@@ -98,9 +98,11 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
 fn room_ahead_m(d: &Description) -> f64 {
     const LEAST_M: f64 = 14.0;
     const MOST_M: f64 = 24.0;
-    let ahead = d.foreground.iter().flat_map(|o| &o.relations).filter(|r| {
-        r.relation == RelationKind::InFrontOf && r.anchor == super::description::Anchor::Ego
-    });
+    let ahead = d
+        .foreground
+        .iter()
+        .flat_map(|o| &o.relations)
+        .filter(|r| r.relation == RelationKind::InFrontOf && r.anchor == super::description::Anchor::Ego);
     let farthest_m = ahead.filter_map(|r| r.distance_m).fold(0.0, f64::max);
     (farthest_m + 4.0).clamp(LEAST_M, MOST_M)
 }

@@ -8,16 +8,37 @@ use super::wording::{begins, rewritten, word};
 
 /// Things: the word that stands for them, and their other names, which say no more. Plurals follow by their own lists.
 const THINGS: &[(&str, &str)] = &[
-    ("car", "automobile|motorcar|motor car|passenger car|private car|passenger automobile|motor automobile"),
-    ("cars", "automobiles|motorcars|motor cars|passenger cars|private cars|passenger automobiles"),
-    ("truck", "lorry|hgv|heavy goods vehicle|goods vehicle|goods lorry|heavy lorry|heavy truck|goods truck"),
-    ("trucks", "lorries|hgvs|heavy goods vehicles|goods vehicles|goods lorries|heavy lorries|heavy trucks"),
+    (
+        "car",
+        "automobile|motorcar|motor car|passenger car|private car|passenger automobile|motor automobile",
+    ),
+    (
+        "cars",
+        "automobiles|motorcars|motor cars|passenger cars|private cars|passenger automobiles",
+    ),
+    (
+        "truck",
+        "lorry|hgv|heavy goods vehicle|goods vehicle|goods lorry|heavy lorry|heavy truck|goods truck",
+    ),
+    (
+        "trucks",
+        "lorries|hgvs|heavy goods vehicles|goods vehicles|goods lorries|heavy lorries|heavy trucks",
+    ),
     ("bus", "omnibus|motor coach|motorcoach|motor bus|autobus"),
-    ("buses", "omnibuses|motor coaches|motorcoaches|motor buses|autobuses|busses"),
-    ("pedestrian", "passer by|passerby|foot passenger|foot traveller|person on foot|somebody on foot|someone on foot"),
+    (
+        "buses",
+        "omnibuses|motor coaches|motorcoaches|motor buses|autobuses|busses",
+    ),
+    (
+        "pedestrian",
+        "passer by|passerby|foot passenger|foot traveller|person on foot|somebody on foot|someone on foot",
+    ),
     ("people", "ppl"),
     ("give me", "gimme"),
-    ("pedestrians", "passers by|passersby|foot passengers|persons on foot|people on foot"),
+    (
+        "pedestrians",
+        "passers by|passersby|foot passengers|persons on foot|people on foot",
+    ),
     (
         "cyclist",
         "bicyclist|pedal cyclist|push bike rider|pushbike rider|velocipedist|bike rider|bicycle rider|cycle rider|rider on a bicycle|rider on a bike|person on a bike|\
@@ -52,7 +73,10 @@ const THINGS: &[(&str, &str)] = &[
         "cones",
         "traffic cones|road cones|safety cones|marker cones|warning cones|traffic pylons|road pylons|safety pylons|pylons|construction cones",
     ),
-    ("barrier", "barricade|road barrier|traffic barrier|crash barrier|safety barrier|traffic barricade|road barricade"),
+    (
+        "barrier",
+        "barricade|road barrier|traffic barrier|crash barrier|safety barrier|traffic barricade|road barricade",
+    ),
     (
         "barriers",
         "barricades|road barriers|traffic barriers|crash barriers|safety barriers|traffic barricades|road barricades",
@@ -62,8 +86,14 @@ const THINGS: &[(&str, &str)] = &[
         "footway|footpath|walkway|pedestrian path|pedestrian walkway|kerbside path|curbside path|walking path|side walk|sideway|pedestrian pavement|\
          pedestrian footpath|foot path|trottoir",
     ),
-    ("sidewalks", "footways|footpaths|walkways|pedestrian paths|pedestrian walkways|side walks|foot paths|pavements"),
-    ("crosswalk", "pedestrian crosswalk|pedestrian zebra|zebra crosswalk|cross walk|zebra stripes|crossing stripes|zebra markings|striped crossing"),
+    (
+        "sidewalks",
+        "footways|footpaths|walkways|pedestrian paths|pedestrian walkways|side walks|foot paths|pavements",
+    ),
+    (
+        "crosswalk",
+        "pedestrian crosswalk|pedestrian zebra|zebra crosswalk|cross walk|zebra stripes|crossing stripes|zebra markings|striped crossing",
+    ),
     (
         "oncoming lane",
         "opposite lane|opposing lane|opposing traffic lane|opposite traffic lane|opposite driving lane|oncoming traffic lane|lane of the oncoming traffic|lane of oncoming traffic|\
@@ -104,7 +134,8 @@ const SEVERAL: &[(&str, &str)] = &[
     ("four", "a quartet of|a foursome of"),
 ];
 /// What groups so many without saying more: "a bunch of three cyclists", "three pieces of fencing".
-const GROUP_OF: &str = "a bunch of|a group of|a set of|a handful of|a cluster of|a pack of|a gang of|a party of";
+const GROUP_OF: &str =
+    "a bunch of|a group of|a set of|a handful of|a cluster of|a pack of|a gang of|a party of";
 const NUMBERS: [&str; 11] = [
     "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
 ];
@@ -115,7 +146,10 @@ fn in_compound(tokens: &[Token], i: usize, n: usize) -> bool {
         let run = &tokens[from..to];
         let words: Vec<&str> = run.iter().map(|t| t.text.as_str()).collect();
         run.iter().all(|t| t.kind == TokenKind::Word)
-            && matches!(look_up(&words.join(" ")), Some(Sense::Noun(..) | Sense::Place(..)))
+            && matches!(
+                look_up(&words.join(" ")),
+                Some(Sense::Noun(..) | Sense::Place(..))
+            )
     };
     let before = (1..=2.min(i)).any(|k| noun(i - k, i + n));
     let after = (1..=2).any(|k| i + n + k <= tokens.len() && noun(i, i + n + k));
@@ -149,13 +183,28 @@ fn comes_from_there(tokens: &[Token], i: usize) -> bool {
         .get(i + 1)
         .is_none_or(|t| t.kind != TokenKind::Word || matches!(t.text.as_str(), "and" | "from" | "in"));
     let from_us = tokens.get(i + 1).is_none_or(|t| t.text != "from");
-    let clause = tokens[..i].iter().rposition(|t| t.kind == TokenKind::Stop || t.text == "and").map_or(0, |k| k + 1);
+    let clause = tokens[..i]
+        .iter()
+        .rposition(|t| t.kind == TokenKind::Stop || t.text == "and")
+        .map_or(0, |k| k + 1);
     let said = &tokens[clause..i];
     let comes = (0..said.len()).any(|k| {
-        begins(&said[k..], "coming towards us|coming towards me|comes towards us|comes towards me|coming toward us").is_some()
-            || said[k].text == "oncoming" && said.get(k + 1).is_some_and(|t| t.text != "lane" && t.text != "traffic")
+        begins(
+            &said[k..],
+            "coming towards us|coming towards me|comes towards us|comes towards me|coming toward us",
+        )
+        .is_some()
+            || said[k].text == "oncoming"
+                && said
+                    .get(k + 1)
+                    .is_some_and(|t| t.text != "lane" && t.text != "traffic")
     });
-    let step = said.iter().any(|t| matches!(t.text.as_str(), "move" | "push" | "shift" | "send" | "bring" | "drive" | "by" | "further" | "farther"));
+    let step = said.iter().any(|t| {
+        matches!(
+            t.text.as_str(),
+            "move" | "push" | "shift" | "send" | "bring" | "drive" | "by" | "further" | "farther"
+        )
+    });
     ends && from_us && comes && !step
 }
 
@@ -188,8 +237,15 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
         for (name, others) in SEVERAL {
             let of_these = i > 0 && matches!(tokens[i - 1].text.as_str(), "the" | "this" | "that");
             let Some(n) = begins(rest, others) else { continue };
-            let own = tokens.get(i + n).is_some_and(|t| t.kind == TokenKind::Word && number(t).is_none());
-            if own && !of_these && tokens.get(i + n).is_some_and(|t| t.text != "the" && t.text != "them") {
+            let own = tokens
+                .get(i + n)
+                .is_some_and(|t| t.kind == TokenKind::Word && number(t).is_none());
+            if own
+                && !of_these
+                && tokens
+                    .get(i + n)
+                    .is_some_and(|t| t.text != "the" && t.text != "them")
+            {
                 put(out, name);
                 return Some(i + n);
             }
@@ -234,9 +290,11 @@ fn sides(tokens: &[Token]) -> Vec<Token> {
         };
         // "the car behind our car's lane": of what is ours something else is meant
         let noun = tokens.get(i + n).is_some_and(|t| {
-            t.kind == TokenKind::Word && matches!(t.text.as_str(), "lane" | "path" | "park" | "length" | "lengths")
+            t.kind == TokenKind::Word
+                && matches!(t.text.as_str(), "lane" | "path" | "park" | "length" | "lengths")
         });
-        let ego = words.ends_with("us") && matches!(tokens[i + n - 1].text.as_str(), "ego" | "car" | "vehicle");
+        let ego =
+            words.ends_with("us") && matches!(tokens[i + n - 1].text.as_str(), "ego" | "car" | "vehicle");
         if noun || (ego && pointed_at(i)) {
             return None;
         }
@@ -249,11 +307,14 @@ fn sides(tokens: &[Token]) -> Vec<Token> {
 fn numbers(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
         if let Some(n) = begins(&tokens[i..], ABOUT) {
-            let length = tokens.get(i + n).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(i + n + 1));
+            let length =
+                tokens.get(i + n).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(i + n + 1));
             return length.then_some(i + n);
         }
         if let Some(n) = begins(&tokens[i..], GROUP_OF) {
-            let many = tokens.get(i + n).is_some_and(|t| number(t).is_some() && t.text != "a" && t.text != "an");
+            let many = tokens
+                .get(i + n)
+                .is_some_and(|t| number(t).is_some() && t.text != "a" && t.text != "an");
             return many.then_some(i + n);
         }
         // "two further cars": two more
@@ -271,18 +332,42 @@ fn numbers(tokens: &[Token]) -> Vec<Token> {
             return None;
         };
         let small = (2.0..=12.0).contains(&v) && v.fract() == 0.0;
-        let plain = |t: Option<&Token>| t.is_none_or(|t| matches!(t.kind, TokenKind::Word | TokenKind::Comma | TokenKind::Stop));
+        let plain = |t: Option<&Token>| {
+            t.is_none_or(|t| matches!(t.kind, TokenKind::Word | TokenKind::Comma | TokenKind::Stop))
+        };
         let before = i.checked_sub(1).map(|k| &tokens[k]);
         let named = before.is_some_and(|t| {
-            matches!(t.text.as_str(), "at" | "model" | "type" | "no" | "number" | "lane" | "box" | "id" | "x" | "clip" | "level" | "version")
+            matches!(
+                t.text.as_str(),
+                "at" | "model"
+                    | "type"
+                    | "no"
+                    | "number"
+                    | "lane"
+                    | "box"
+                    | "id"
+                    | "x"
+                    | "clip"
+                    | "level"
+                    | "version"
+            )
         });
         let of_things = tokens.get(i + 1).is_some_and(|t| {
             t.kind == TokenKind::Word
-                && (matches!(t.text.as_str(), "more" | "other" | "further" | "additional" | "extra" | "of" | "fewer" | "less")
-                    || noun_at(&tokens[i + 1..]).is_some()
-                    || matches!(longest(&tokens[i + 1..]), Some((Sense::State(..) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_), _))))
+                && (matches!(
+                    t.text.as_str(),
+                    "more" | "other" | "further" | "additional" | "extra" | "of" | "fewer" | "less"
+                ) || noun_at(&tokens[i + 1..]).is_some()
+                    || matches!(
+                        longest(&tokens[i + 1..]),
+                        Some((
+                            Sense::State(..) | Sense::Color(_) | Sense::Size(_) | Sense::Attribute(_),
+                            _
+                        ))
+                    ))
         });
-        let counted = before.is_some_and(|t| matches!(t.text.as_str(), "the" | "other" | "these" | "those" | "all"))
+        let counted = before
+            .is_some_and(|t| matches!(t.text.as_str(), "the" | "other" | "these" | "those" | "all"))
             && !is_unit(tokens.get(i + 1));
         if !small || named || !plain(before) || !(of_things || counted) {
             return None;
@@ -300,17 +385,30 @@ const REMOVE: &str = "delete|erase|eliminate|get rid of|do away with|dispose of|
 /// What brings a new thing.
 const ADD: &str = "insert|introduce|spawn|throw in|stick in|drop in|put in|bring in|toss in|chuck in|slot in|include|generate|supply|conjure up|create|plonk|plop|pop in|inject|plonk down";
 const MOVE: &str = "relocate|reposition|displace|transfer|shift|budge|dislocate|re position|re locate";
-const TURN: &str = "rotate|spin|swivel|pivot|reorient|revolve|turn round|turn around|spin round|spin around|twist";
+const TURN: &str =
+    "rotate|spin|swivel|pivot|reorient|revolve|turn round|turn around|spin round|spin around|twist";
 const CLEAR_ROAD: &str = "clear the highway|clear the motorway|clear the freeway|clear the street|clear the autobahn|clear the carriageway|empty the highway|empty the motorway|\
     empty the road|empty the street|clear this road|clear this street|clear the whole road|clear the whole street|clear the entire road";
 const OF_THE_SCENE: &str = "worker|workers|road worker|construction worker|jogger|pedestrian|pedestrians|cones|barriers|excavator|digger|crane|cyclist|roller|bulldozer";
-const SO_MANY: &str = "add|put|place|insert|draw|park|take|move|bring|remove|delete|send|line up|set up|paint|turn";
+const SO_MANY: &str =
+    "add|put|place|insert|draw|park|take|move|bring|remove|delete|send|line up|set up|paint|turn";
 const WHEEL: &str = "wheel|swing";
 const EXCHANGE: &str = "swap|switch|trade|exchange|supplant|supersede|swap out|switch out|change out|trade in|swap over|interchange";
 
 /// A command in its commonest verb: "ditch the van", "spawn a bus", where a clause begins.
 pub fn commands(tokens: &[Token]) -> Vec<Token> {
     rewritten(tokens, |i, out| {
+        // "nobody left on the sidewalk" tells no side
+        let none = matches!(tokens[i].text.as_str(), "nobody" | "nothing" | "noone");
+        if none
+            && tokens.get(i + 1).is_some_and(|t| t.text == "left")
+            && tokens
+                .get(i + 2)
+                .is_some_and(|t| matches!(t.text.as_str(), "on" | "in" | "at" | "there"))
+        {
+            out.push(tokens[i].clone());
+            return Some(i + 2);
+        }
         // "our worker" is in the scene; "our car" is the ego vehicle
         let there = || begins(tokens.get(i + 1..)?, OF_THE_SCENE);
         if tokens[i].text == "our" && !(i > 0 && tokens[i - 1].text == "of") && there().is_some() {
@@ -324,7 +422,11 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         }
         if let Some(n) = begins(&tokens[i..], CLEAR_ROAD) {
             out.extend(["clear", "the", "road"].map(|w| word(w, &tokens[i])));
-            let all = begins(&tokens[i + n..], "completely|entirely|of everything|totally|altogether").unwrap_or(0);
+            let all = begins(
+                &tokens[i + n..],
+                "completely|entirely|of everything|totally|altogether",
+            )
+            .unwrap_or(0);
             return Some(i + n + all);
         }
         let starts = i == 0
@@ -337,9 +439,36 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
             return None;
         }
         let rest = &tokens[i..];
-        let before = |n: usize, list: &[&str]| tokens.get(i + n).is_some_and(|t| list.contains(&t.text.as_str()));
+        let before =
+            |n: usize, list: &[&str]| tokens.get(i + n).is_some_and(|t| list.contains(&t.text.as_str()));
         let counted = |n: usize| tokens.get(i + n).is_some_and(|t| number(t).is_some());
-        let known = ["the", "all", "both", "every", "each", "that", "those", "these", "this", "it", "them", "him", "her", "one", "everything", "everyone", "everybody", "anything", "any", "whatever", "what", "whoever", "half", "my", "our"];
+        let known = [
+            "the",
+            "all",
+            "both",
+            "every",
+            "each",
+            "that",
+            "those",
+            "these",
+            "this",
+            "it",
+            "them",
+            "him",
+            "her",
+            "one",
+            "everything",
+            "everyone",
+            "everybody",
+            "anything",
+            "any",
+            "whatever",
+            "what",
+            "whoever",
+            "half",
+            "my",
+            "our",
+        ];
         let new = ["a", "an", "another", "some", "one", "more"];
         let clause = || rest.iter().take_while(|t| t.kind != TokenKind::Stop);
         // "put exactly two cones there": so many come, whatever is there
@@ -357,14 +486,19 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
             ("remove", n)
         } else if let Some(n) = begins(rest, ADD).filter(|n| before(*n, &new) || counted(*n)) {
             ("add", n)
-        } else if let Some(n) = begins(rest, "keep one more|keep another|keep two more|keep also one|keep also a") {
+        } else if let Some(n) = begins(
+            rest,
+            "keep one more|keep another|keep two more|keep also one|keep also a",
+        ) {
             // (as Indian English has it)
             out.push(word("add", &tokens[i]));
             out.extend(tokens[i + 1..i + n].iter().filter(|t| t.text != "also").cloned());
             return Some(i + n);
         } else if let Some(n) = begins(rest, MOVE).filter(|n| before(*n, &known)) {
             ("move", n)
-        } else if let Some(n) = begins(rest, TURN).filter(|n| before(*n, &known) && !clause().any(|t| t.text == "until")) {
+        } else if let Some(n) =
+            begins(rest, TURN).filter(|n| before(*n, &known) && !clause().any(|t| t.text == "until"))
+        {
             ("turn", n)
         } else if let Some(n) = begins(rest, WHEEL)
             .filter(|n| before(*n, &known) && clause().any(|t| matches!(t.text.as_str(), "around" | "round")))
@@ -373,9 +507,14 @@ pub fn commands(tokens: &[Token]) -> Vec<Token> {
         } else {
             // two known things change places; for something new one goes
             let n = begins(rest, EXCHANGE)?;
-            let by = rest.iter().position(|t| matches!(t.text.as_str(), "with" | "by" | "for" | "against"))?;
-            let fresh = rest.get(by + 1).is_some_and(|t| new.contains(&t.text.as_str()) || number(t).is_some());
-            let plain = rest[..by].iter().all(|t| t.kind == TokenKind::Word) && begins(rest, "substitute").is_none();
+            let by = rest
+                .iter()
+                .position(|t| matches!(t.text.as_str(), "with" | "by" | "for" | "against"))?;
+            let fresh = rest
+                .get(by + 1)
+                .is_some_and(|t| new.contains(&t.text.as_str()) || number(t).is_some());
+            let plain =
+                rest[..by].iter().all(|t| t.kind == TokenKind::Word) && begins(rest, "substitute").is_none();
             if !fresh || !plain || !(before(n, &known) || counted(n)) {
                 return None;
             }

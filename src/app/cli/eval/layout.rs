@@ -76,6 +76,7 @@ const SETS: &[(&str, &str)] = sets![
     "strangers_33.jsonl",
     "causes_x.jsonl",
     "exam_9.jsonl",
+    "exam_10.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",
     "strangers_34.jsonl",

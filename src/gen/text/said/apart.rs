@@ -69,6 +69,9 @@ const SHARED: &[&str] = &[
     "remaining",
     "equally",
     "alike",
+    "copy",
+    "copies",
+    "duplicate",
 ];
 
 /// What a sentence may begin with before its first clause.
@@ -196,8 +199,27 @@ const WANTS: &[&str] = &[
 
 /// Commands as nouns.
 const NOMINAL: &[&str] = &[
-    "removal of", "deletion of", "addition of", "insertion of", "relocation of", "replacement of", "transformation of", "conversion of", "rotation of",
-    "lane change of", "lane change for", "increase of", "an increase of", "a decrease of", "decrease of", "reduction of", "a reduction of", "exchange of", "repositioning of", "a move of", "placement of",
+    "removal of",
+    "deletion of",
+    "addition of",
+    "insertion of",
+    "relocation of",
+    "replacement of",
+    "transformation of",
+    "conversion of",
+    "rotation of",
+    "lane change of",
+    "lane change for",
+    "increase of",
+    "an increase of",
+    "a decrease of",
+    "decrease of",
+    "reduction of",
+    "a reduction of",
+    "exchange of",
+    "repositioning of",
+    "a move of",
+    "placement of",
 ];
 
 fn is_link(t: &Token) -> bool {
@@ -254,32 +276,65 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         let joins = |words: &[&str]| sentence[a..b].iter().any(|t| is(Some(t), words));
         let strong = b - a > 1 && (joins(&["then", "also", "plus"]) || joins(&["please"]) && joins(&["and"]))
             || is(sentence.get(a), &["then"]);
-        let there = find(right, &["in that lane", "at that spot", "in that spot", "on that side", "in that place", "at that place"]).is_some();
-        let follows = strong && !there && !few && a > 1 && (opens(right) || acts(right)) && !right.iter().any(|t| is(Some(t), LOOSE));
+        let there = find(
+            right,
+            &[
+                "in that lane",
+                "at that spot",
+                "in that spot",
+                "on that side",
+                "in that place",
+                "at that place",
+            ],
+        )
+        .is_some();
+        let follows = strong
+            && !there
+            && !few
+            && a > 1
+            && (opens(right) || acts(right))
+            && !right.iter().any(|t| is(Some(t), LOOSE));
         // "the bus shrinks to a car, and I'd be happier with rain": so begins nothing but a clause
         let and = sentence[a..b].iter().any(|t| is(Some(t), &["and", "then"]));
         let wish = leads(right, WANTS).is_some() && !is(right.first(), &["no"]);
-        let order = is(right.first(), ORDERS) && right.get(1).is_some_and(is_determiner) && orders_something(right);
-        let begun = and && plain && a > 1 && (wish || order) && !is(left.first(), LEANING) && !(points(left) || points(right));
+        let order =
+            is(right.first(), ORDERS) && right.get(1).is_some_and(is_determiner) && orders_something(right);
+        let begun = and
+            && plain
+            && a > 1
+            && (wish || order)
+            && !is(left.first(), LEANING)
+            && !(points(left) || points(right));
         (plain && told_apart || follows || begun).then_some((a, b))
     })
 }
 
 /// A clause that begins so leans on the next.
 const LEANING: &[&str] = &[
-    "when", "if", "once", "after", "before", "while", "without", "instead", "rather", "in", "on", "at", "for", "as", "since", "because", "although", "though", "with", "to", "between",
+    "when", "if", "once", "after", "before", "while", "without", "instead", "rather", "in", "on", "at",
+    "for", "as", "since", "because", "although", "though", "with", "to", "between",
 ];
 
 /// Of the words that join clauses those that do so from the first: "put it where the truck is" is complete.
 fn holds(t: &Token) -> bool {
     const FREE: &[&str] = &[
-        "it", "its", "them", "him", "her", "he", "she", "they", "his", "their", "where", "instead", "same", "too", "again", "first", "second", "third", "last", "such", "other", "another", "like", "there",
+        "it", "its", "them", "him", "her", "he", "she", "they", "his", "their", "where", "instead", "same",
+        "too", "again", "first", "second", "third", "last", "such", "other", "another", "like", "there",
     ];
     shares(t) && !is(Some(t), FREE)
 }
 
 /// Words that need the clause before in one sentence, whatever joins them.
-const LOOSE: &[&str] = &["respectively", "vice", "former", "latter", "likewise", "alike", "either", "each"];
+const LOOSE: &[&str] = &[
+    "respectively",
+    "vice",
+    "former",
+    "latter",
+    "likewise",
+    "alike",
+    "either",
+    "each",
+];
 
 /// True if something is done here: somewhere a verb, or a command as a noun.
 fn acts(clause: &[Token]) -> bool {
@@ -287,14 +342,26 @@ fn acts(clause: &[Token]) -> bool {
         let w = text(t);
         HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
     };
-    let noun = has_noun(clause) || clause.iter().any(|t| is(Some(t), &["it", "them", "him", "her", "he", "she", "they"]));
+    let noun = has_noun(clause)
+        || clause
+            .iter()
+            .any(|t| is(Some(t), &["it", "them", "him", "her", "he", "she", "they"]));
     leads(clause, NOMINAL).is_some()
         || metres_for(clause)
         || clause.iter().any(|t| text(t) == ">") && has_noun(clause)
         || is(clause.first(), &["not"]) && has_noun(clause)
         || super::parting::only_sky(clause)
-        || clause.len() > 2 && noun && (clause.iter().any(verb) || clause.first().is_some_and(|t| is_verb(t) && clause.get(1).is_some_and(|n| is_determiner(n) || is(Some(n), &["it", "them", "him", "her"]))))
-        || is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len())
+        || clause.len() > 2
+            && noun
+            && (clause.iter().any(verb)
+                || clause.first().is_some_and(|t| {
+                    is_verb(t)
+                        && clause
+                            .get(1)
+                            .is_some_and(|n| is_determiner(n) || is(Some(n), &["it", "them", "him", "her"]))
+                }))
+        || is(clause.last(), &["gone", "out", "away"])
+            && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len())
 }
 
 fn shares(t: &Token) -> bool {
@@ -334,7 +401,8 @@ fn stands_alone(clause: &[Token]) -> bool {
 fn metres_for(clause: &[Token]) -> bool {
     let metres = clause.first().is_some_and(|t| number(t).is_some()) && super::words::is_unit(clause.get(1));
     let with = find(clause, &["with the", "with both", "for the"]).is_some_and(|x| x.0 < 6);
-    let gap = is(clause.get(2), &["to", "between"]) && clause.iter().any(|t| is(Some(t), &["is", "are", "isnt"]));
+    let gap =
+        is(clause.get(2), &["to", "between"]) && clause.iter().any(|t| is(Some(t), &["is", "are", "isnt"]));
     metres && has_noun(clause) && (with || gap)
 }
 
@@ -367,17 +435,22 @@ fn other_clause(clause: &[Token]) -> bool {
     };
     let nominal = leads(clause, NOMINAL).is_some() && has_noun(clause);
     let what = is(clause.first(), &["what", "whats", "whatever", "whoever"])
-        && clause.iter().any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
+        && clause
+            .iter()
+            .any(|t| is(Some(t), &["should", "must", "was", "is", "ought", "has"]))
         && has_noun(clause);
     let placed = is_place(clause)
         && clause.first().is_some_and(|t| number(t).is_none())
         && (1..clause.len().saturating_sub(2)).any(|k| {
             !clause[..k].iter().any(|t| is(Some(t), &["and", "but"]))
                 && is(clause.get(k), &["a", "an", "the", "two", "three", "four"])
-                && first_noun(&clause[k..]).is_some_and(|n| n.0 > 0 && n.0 < 4 && clause.get(k + n.1).is_some_and(says_so))
+                && first_noun(&clause[k..])
+                    .is_some_and(|n| n.0 > 0 && n.0 < 4 && clause.get(k + n.1).is_some_and(says_so))
         });
-    let bare = first_noun(clause).is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
-    let gone = is(clause.last(), &["gone", "out", "away"]) && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
+    let bare = first_noun(clause)
+        .is_some_and(|n| n.0 == 0 && clause.len() > n.1 + 1 && clause.get(n.1).is_some_and(says_so));
+    let gone = is(clause.last(), &["gone", "out", "away"])
+        && first_noun(clause).is_some_and(|n| n.0 < 3 && n.1 + 1 == clause.len());
     nominal || noted(clause) || metres_for(clause) || out_first(clause) || what || placed || bare || gone
 }
 
@@ -466,9 +539,14 @@ pub(super) fn orders_something(clause: &[Token]) -> bool {
 
 /// The same with any verb, of which what follows tells that it is none of a noun: "sweep two of the cones aside".
 fn orders_surely(clause: &[Token]) -> bool {
-    let verb = clause.first().is_some_and(|t| is_verb(t) || is(Some(t), &["shorten", "enlarge", "extend", "stop", "trim", "use"]));
+    let verb = clause
+        .first()
+        .is_some_and(|t| is_verb(t) || is(Some(t), &["shorten", "enlarge", "extend", "stop", "trim", "use"]));
     let object = clause.get(1).is_some_and(|t| {
-        is(Some(t), &["the", "all", "every", "half", "both", "a", "an", "another"]) || number(t).is_some()
+        is(
+            Some(t),
+            &["the", "all", "every", "half", "both", "a", "an", "another"],
+        ) || number(t).is_some()
     });
     verb && object && first_noun(&clause[1..]).is_some_and(|n| n.0 < 6)
 }
@@ -498,7 +576,11 @@ pub(super) fn says(clause: &[Token]) -> bool {
     let several = matches!(look_up(text(&clause[b - 1])), Some(Sense::Noun(_, true)));
     let verb = (b..near).find(|k| {
         let w = text(&clause[*k]);
-        HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, several && *k == b) && !w.ends_with("ed")
+        HELPERS.contains(&w)
+            || NEGATED.contains(&w)
+            || is_finite(w, several && *k == b)
+                && !w.ends_with("ed")
+                && !matches!(w, "put" | "set" | "kept" | "left" | "cut")
     });
     verb.is_some_and(|k| k + 1 < clause.len() || is_finite(text(&clause[k]), false))
 }
@@ -506,7 +588,21 @@ pub(super) fn says(clause: &[Token]) -> bool {
 /// "switch the weather to rain", "make it snow".
 fn orders_sky(clause: &[Token]) -> bool {
     let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
-    let of_it = leads(&clause[1..], &["the weather", "the time", "the sky", "the light", "it to", "the hour", "the season", "the scene", "the clock"]).is_some();
+    let of_it = leads(
+        &clause[1..],
+        &[
+            "the weather",
+            "the time",
+            "the sky",
+            "the light",
+            "it to",
+            "the hour",
+            "the season",
+            "the scene",
+            "the clock",
+        ],
+    )
+    .is_some();
     is(clause.first(), ORDERS) && of_it && !has_noun(clause) && clause.iter().any(sky)
 }
 
@@ -523,7 +619,18 @@ fn opens(clause: &[Token]) -> bool {
         .iter()
         .any(|t| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_))));
     // "it is night", "the time is night"
-    let told = leads(clause, &["the time is", "the weather is", "it is", "the sky is", "the hour is"]).is_some() && super::parting::only_sky(clause);
+    let told = leads(
+        clause,
+        &[
+            "the time is",
+            "the weather is",
+            "it is",
+            "the sky is",
+            "the hour is",
+        ],
+    )
+    .is_some()
+        && super::parting::only_sky(clause);
     let styled = orders_sky(clause) || told;
     absent
         || styled

@@ -16,7 +16,9 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = compared(out, talk);
     let out = in_place_of(out, talk);
     let opens = (0..out.len()).filter(|i| begins_at(&out, *i));
-    let found = opens.into_iter().find_map(|i| still_there(&out[i..], talk).map(|new| [&out[..i], &new[..]].concat()));
+    let found = opens
+        .into_iter()
+        .find_map(|i| still_there(&out[i..], talk).map(|new| [&out[..i], &new[..]].concat()));
     so_many_left(same_with(found.unwrap_or(out)), talk)
 }
 
@@ -55,8 +57,16 @@ fn count(t: Option<&Token>) -> Option<i64> {
 /// "10 metres further than now": further.
 fn than_now(tokens: Vec<Token>) -> Vec<Token> {
     super::super::wording::rewritten(&tokens, |i, out| {
-        let n = begins(&tokens[i..], "than now|than it is now|than it is|than before|than at present|than it does now|than he is now|than she is now|than they are now|than at the moment|than currently")?;
-        let way = is(out.last(), &["further", "farther", "closer", "nearer", "away", "back", "forward", "ahead"]);
+        let n = begins(
+            &tokens[i..],
+            "than now|than it is now|than it is|than before|than at present|than it does now|than he is now|than she is now|than they are now|than at the moment|than currently",
+        )?;
+        let way = is(
+            out.last(),
+            &[
+                "further", "farther", "closer", "nearer", "away", "back", "forward", "ahead",
+            ],
+        );
         let metres = out.iter().rev().take(4).any(|t| number(t).is_some());
         (way && metres && tokens.get(i + n).is_none_or(is_mark)).then_some(i + n)
     })
@@ -65,17 +75,48 @@ fn than_now(tokens: Vec<Token>) -> Vec<Token> {
 /// "behind us we have enough with one car", "we can make do with two cones": so many of them stay.
 fn enough_with(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const ENOUGH: &[&str] = &[
-        "we have enough with", "i have enough with", "we have enough of", "we can make do with", "i can make do with", "we can do with", "we can get by with", "we can manage with",
-        "i am content with", "we are content with", "we make do with", "im content with", "i am satisfied with", "we get by with", "i can get by with", "i can manage with",
-        "we will make do with", "lets make do with", "let us make do with", "make do with", "it is enough with", "i am fine with", "im fine with", "i am happy with", "we would manage with",
+        "we have enough with",
+        "i have enough with",
+        "we have enough of",
+        "we can make do with",
+        "i can make do with",
+        "we can do with",
+        "we can get by with",
+        "we can manage with",
+        "i am content with",
+        "we are content with",
+        "we make do with",
+        "im content with",
+        "i am satisfied with",
+        "we get by with",
+        "i can get by with",
+        "i can manage with",
+        "we will make do with",
+        "lets make do with",
+        "let us make do with",
+        "make do with",
+        "it is enough with",
+        "i am fine with",
+        "im fine with",
+        "i am happy with",
+        "we would manage with",
     ];
     let Some((k, n)) = find(&tokens, ENOUGH) else {
         return tokens;
     };
     let only = begins(&tokens[k + n..], "only|just").unwrap_or(0);
-    let single = usize::from(is(tokens.get(k + n + only), &["a"]) && is(tokens.get(k + n + only + 1), &["single"]));
-    let one = led("one", &tokens[k], &[tokens.get(k + n + only + 2..).unwrap_or(&[])]);
-    let np = if single > 0 { &one[..] } else { &tokens[k + n + only..] };
+    let single =
+        usize::from(is(tokens.get(k + n + only), &["a"]) && is(tokens.get(k + n + only + 1), &["single"]));
+    let one = led(
+        "one",
+        &tokens[k],
+        &[tokens.get(k + n + only + 2..).unwrap_or(&[])],
+    );
+    let np = if single > 0 {
+        &one[..]
+    } else {
+        &tokens[k + n + only..]
+    };
     let Some((many, (_, b))) = count(np.first()).zip(first_noun(np).filter(|x| x.0 < 4)) else {
         return tokens;
     };
@@ -86,18 +127,36 @@ fn enough_with(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !plain || !(place.is_empty() || late.is_empty()) || talk.fits(&the) as i64 <= many {
         return tokens;
     }
-    led("keep only", &tokens[0], &[&np[..1], &led("of", &tokens[0], &[&the])])
+    led(
+        "keep only",
+        &tokens[0],
+        &[&np[..1], &led("of", &tokens[0], &[&the])],
+    )
 }
 
 /// "on the right lane nothing more": what is there goes.
 fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
-    let Some((k, n)) = find(&tokens, &["nothing more", "nothing any more", "nothing anymore", "nothing at all", "nothing"]).filter(|x| x.0 > 1) else {
+    let Some((k, n)) = find(
+        &tokens,
+        &[
+            "nothing more",
+            "nothing any more",
+            "nothing anymore",
+            "nothing at all",
+            "nothing",
+        ],
+    )
+    .filter(|x| x.0 > 1) else {
         return tokens;
     };
     let late = trimmed(&tokens[k + n..]);
-    let polite = late.iter().all(|t| is_mark(t) || is(Some(t), &["thanks", "thank", "you", "please"]));
+    let polite = late
+        .iter()
+        .all(|t| is_mark(t) || is(Some(t), &["thanks", "thank", "you", "please"]));
     let place = &tokens[..k];
-    let said = place.iter().any(|t| is_mark(t) || HELPERS.contains(&text(t)) || is(Some(t), &["there", "see", "want"]));
+    let said = place
+        .iter()
+        .any(|t| is_mark(t) || HELPERS.contains(&text(t)) || is(Some(t), &["there", "see", "want"]));
     if polite && is_place(place) && !has_noun(place) && !said {
         return led("remove everything", &tokens[0], &[place]);
     }
@@ -140,11 +199,33 @@ fn compared(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let now = talk.fits(&led("the", &tokens[lead], &[noun])) as i64;
     let found = (from..tokens.len()).find(|k| {
         let rest = &tokens[k + 1..];
-        let rest = &rest[begins(rest, "that is|i e|which is|so|thats|exactly|just|meaning|in other words").unwrap_or(0)..];
+        let rest = &rest[begins(
+            rest,
+            "that is|i e|which is|so|thats|exactly|just|meaning|in other words",
+        )
+        .unwrap_or(0)..];
         let refers = rest.iter().any(|t| {
-            matches!(text(t), "now" | "before" | "present" | "current" | "currently" | "far" | "already" | "today" | "existing" | "moment" | "original" | "originally" | "previously")
+            matches!(
+                text(t),
+                "now"
+                    | "before"
+                    | "present"
+                    | "current"
+                    | "currently"
+                    | "far"
+                    | "already"
+                    | "today"
+                    | "existing"
+                    | "moment"
+                    | "original"
+                    | "originally"
+                    | "previously"
+            )
         });
-        (is_mark(&tokens[*k]) || is(tokens.get(*k), &["so"])) && refers && !has_noun(rest) && times(rest, now) == Some(many)
+        (is_mark(&tokens[*k]) || is(tokens.get(*k), &["so"]))
+            && refers
+            && !has_noun(rest)
+            && times(rest, now) == Some(many)
     });
     match found {
         Some(k) if now > 0 => led("there should be", &tokens[0], &[trimmed(&tokens[lead..k])]),
@@ -155,52 +236,144 @@ fn compared(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "three cyclists in place of one, all of them behind us": three in all, where one is.
 fn in_place_of(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let lead = lead_of(&tokens);
-    let Some((i, n)) = find(&tokens, &["in place of", "instead of", "rather than", "where there is", "where there are", "where now there is", "where now there are", "where we have", "where there was", "where there were", "where i see"]).filter(|x| x.0 > lead + 1) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &[
+            "in place of",
+            "instead of",
+            "rather than",
+            "where there is",
+            "where there are",
+            "where now there is",
+            "where now there are",
+            "where we have",
+            "where there was",
+            "where there were",
+            "where i see",
+        ],
+    )
+    .filter(|x| x.0 > lead + 1) else {
         return tokens;
     };
-    let only = begins(&tokens[i + n..], "the|just|only|just the|only the|just this|this|merely").unwrap_or(0);
+    let only = begins(
+        &tokens[i + n..],
+        "the|just|only|just the|only the|just this|this|merely",
+    )
+    .unwrap_or(0);
     let old = i + n + only;
     let (Some(_), Some(now)) = (count(tokens.get(lead)), count(tokens.get(old))) else {
         return tokens;
     };
     let rest = &tokens[old + 1..];
-    let rest = &rest[begins(rest, "only now|only|now|at the moment|at present|today|so far|right now|currently").unwrap_or(0)..];
+    let rest = &rest[begins(
+        rest,
+        "only now|only|now|at the moment|at present|today|so far|right now|currently",
+    )
+    .unwrap_or(0)..];
     let np = &tokens[lead + 1..i];
     let Some((_, b)) = first_noun(np).filter(|x| x.0 < 3) else {
         return tokens;
     };
     // "..., all of them behind us"
     let comma = usize::from(rest.first().is_some_and(is_mark));
-    let all = comma + begins(&rest[comma..], "all of them|all|both|both of them|each|each of them|they should all be|all three|all four").unwrap_or(0);
+    let all = comma
+        + begins(
+            &rest[comma..],
+            "all of them|all|both|both of them|each|each of them|they should all be|all three|all four",
+        )
+        .unwrap_or(0);
     let late = &rest[all..];
-    let place = if late.is_empty() { np.get(b..).filter(|p| is_place(p)).unwrap_or(&[]) } else { late };
+    let place = if late.is_empty() {
+        np.get(b..).filter(|p| is_place(p)).unwrap_or(&[])
+    } else {
+        late
+    };
     let here = place.is_empty() || is_place(place) && !has_noun(place);
-    let queued = leads(&np[b..], &["nose to tail", "in a row", "one behind the other", "one after the other", "in a line", "in line", "in a queue"]) == Some(np.len() - b);
-    let plain = (np[b..].is_empty() || queued || is_place(&np[b..])) && (late.is_empty() || np[b..].is_empty());
+    let queued = leads(
+        &np[b..],
+        &[
+            "nose to tail",
+            "in a row",
+            "one behind the other",
+            "one after the other",
+            "in a line",
+            "in line",
+            "in a queue",
+        ],
+    ) == Some(np.len() - b);
+    let plain =
+        (np[b..].is_empty() || queued || is_place(&np[b..])) && (late.is_empty() || np[b..].is_empty());
     let the = |parts: &[&[Token]]| talk.fits(&led("the", &tokens[lead], parts)) as i64;
     if !(here && plain) || the(&[&np[..b]]) != now && the(&[&np[..b], place]) != now {
         return tokens;
     }
-    led("there should be", &tokens[0], &[&tokens[lead..=lead], &np[..b], place])
+    led(
+        "there should be",
+        &tokens[0],
+        &[&tokens[lead..=lead], &np[..b], place],
+    )
 }
 
-const BESIDES: &[&str] = &["besides", "apart from", "next to", "other than", "except for", "except", "aside from", "in addition to", "along with", "but for", "beside", "not counting"];
+const BESIDES: &[&str] = &[
+    "besides",
+    "apart from",
+    "next to",
+    "other than",
+    "except for",
+    "except",
+    "aside from",
+    "in addition to",
+    "along with",
+    "but for",
+    "beside",
+    "not counting",
+];
 const THERE: &[&str] = &[
-    "is still there", "are still there", "is still here", "are still here", "is left", "are left", "remains", "remain", "is there", "are there", "is still around", "are still around",
-    "is still parked there", "are still parked there", "is still present", "are still present", "still stands there", "still stand there", "is around", "is still standing there",
-    "are still standing there", "has stayed", "have stayed", "is here", "are here", "was still there", "were still there", "is still parked", "are still parked", "is left over", "are left over",
+    "is still there",
+    "are still there",
+    "is still here",
+    "are still here",
+    "is left",
+    "are left",
+    "remains",
+    "remain",
+    "is there",
+    "are there",
+    "is still around",
+    "are still around",
+    "is still parked there",
+    "are still parked there",
+    "is still present",
+    "are still present",
+    "still stands there",
+    "still stand there",
+    "is around",
+    "is still standing there",
+    "are still standing there",
+    "has stayed",
+    "have stayed",
+    "is here",
+    "are here",
+    "was still there",
+    "were still there",
+    "is still parked",
+    "are still parked",
+    "is left over",
+    "are left over",
 ];
 
 /// "besides the pickup just one of the cars is still there": the other cars go.
 fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let spared = leads(tokens, BESIDES).and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 4)?.1)));
+    let spared =
+        leads(tokens, BESIDES).and_then(|n| Some((n, first_noun(&tokens[n..]).filter(|x| x.0 < 4)?.1)));
     let (spared, from) = match spared {
         Some((n, b)) => (Some(&tokens[n..n + b]), n + b),
         None => (None, 0),
     };
     let comma = from + usize::from(spared.is_some() && tokens.get(from).is_some_and(is_mark));
     let there = begins(&tokens[comma..], "there is|there are|i see|we see").unwrap_or(0);
-    let only = begins(&tokens[comma + there..], "just|only|merely|no more than").map(|n| comma + there + n)?;
+    let only =
+        begins(&tokens[comma + there..], "just|only|merely|no more than").map(|n| comma + there + n)?;
     let n = count(tokens.get(only)).filter(|_| there == 0)?;
     let np = &tokens[only + 1..];
     let of = begins(np, "of the|of those|of these").unwrap_or(0);
@@ -211,13 +384,20 @@ fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let boxes = talk.boxes_of(&the);
     let apart = spared.is_none_or(|s| {
         let others = talk.boxes_of(s);
-        !others.is_empty() && others.iter().all(|o| boxes.iter().all(|b| b.center_m != o.center_m))
+        !others.is_empty()
+            && others
+                .iter()
+                .all(|o| boxes.iter().all(|b| b.center_m != o.center_m))
     });
     let more = boxes.len() as i64 > n;
     if leads(late, THERE) != Some(late.len()) || !apart || !more {
         return None;
     }
-    Some(led("keep only", &tokens[0], &[&tokens[only..=only], &led("of", &tokens[only], &[&the])]))
+    Some(led(
+        "keep only",
+        &tokens[0],
+        &[&tokens[only..=only], &led("of", &tokens[only], &[&the])],
+    ))
 }
 
 /// "two cones left, one worker": so many of those that are there.
@@ -229,23 +409,60 @@ fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let noun = &tokens[i + 1..=i + b];
         let end = i + 1 + b;
         let left = usize::from(is(tokens.get(end), &["left", "remaining"]));
-        let closes = tokens.get(end + left).is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
+        let closes = tokens
+            .get(end + left)
+            .is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
         // ("... left, one worker": the others of a list, too)
         let the = all_of(noun);
         if !closes || !(left > 0 || listed) || talk.fits(&the) as i64 <= n {
             return None;
         }
         listed = true;
-        out.extend(led("keep only", &tokens[i], &[&tokens[i..=i], &led("of", &tokens[i], &[&the])]));
+        out.extend(led(
+            "keep only",
+            &tokens[i],
+            &[&tokens[i..=i], &led("of", &tokens[i], &[&the])],
+        ));
         Some(end + left)
     })
 }
 
-const SAME: &str = "same|the same|exactly the same|just the same|again the same|once more the same|once again the same";
+const SAME: &str =
+    "same|the same|exactly the same|just the same|again the same|once more the same|once again the same";
 const THING: [&str; 33] = [
-    "intersection", "junction", "crossing", "roundabout", "highway", "motorway", "bend", "curve", "lot", "crossroads", "freeway",
-    "scene", "thing", "drive", "picture", "situation", "place", "street", "road", "setting", "ride", "again", "scenario", "layout", "shot", "view", "spot", "image", "trip", "case", "moment",
-    "constellation", "set",
+    "intersection",
+    "junction",
+    "crossing",
+    "roundabout",
+    "highway",
+    "motorway",
+    "bend",
+    "curve",
+    "lot",
+    "crossroads",
+    "freeway",
+    "scene",
+    "thing",
+    "drive",
+    "picture",
+    "situation",
+    "place",
+    "street",
+    "road",
+    "setting",
+    "ride",
+    "again",
+    "scenario",
+    "layout",
+    "shot",
+    "view",
+    "spot",
+    "image",
+    "trip",
+    "case",
+    "moment",
+    "constellation",
+    "set",
 ];
 
 /// "same drive by night and with a single car behind us": one in all.
@@ -258,7 +475,12 @@ fn same_with(tokens: Vec<Token>) -> Vec<Token> {
         let only = begins(&tokens[k + 1..], "just|only|exactly|now|now only|but").unwrap_or(0);
         let from = k + 1 + only;
         let single = begins(&tokens[from..], "a single|one single|just one|only one").unwrap_or(0);
-        let counted = single > 0 || count(tokens.get(from)).is_some() && !is(tokens.get(from + 1), &["more", "further", "additional", "extra", "other", "fewer", "less"]);
+        let counted = single > 0
+            || count(tokens.get(from)).is_some()
+                && !is(
+                    tokens.get(from + 1),
+                    &["more", "further", "additional", "extra", "other", "fewer", "less"],
+                );
         let one = only > 0 && is(tokens.get(from), &["a", "an"]);
         (counted || one).then_some((k, from, single.max(usize::from(one))))
     });
@@ -268,7 +490,9 @@ fn same_with(tokens: Vec<Token>) -> Vec<Token> {
     let rest = &tokens[from + single..];
     let named = first_noun(rest).is_some_and(|x| x.0 < 4);
     // (nothing but what is there may follow)
-    let verbs = rest.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
+    let verbs = rest
+        .iter()
+        .any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false));
     if !named || verbs {
         return tokens;
     }
@@ -279,6 +503,10 @@ fn same_with(tokens: Vec<Token>) -> Vec<Token> {
             ..led(",", &tokens[k], &[])[0].clone()
         });
     }
-    let one = if single > 0 { led("exactly one", &tokens[from], &[]) } else { led("exactly", &tokens[from], &[]) };
+    let one = if single > 0 {
+        led("exactly one", &tokens[from], &[])
+    } else {
+        led("exactly", &tokens[from], &[])
+    };
     [&head[..], &led("there should be", &tokens[k], &[&one, rest])].concat()
 }

@@ -299,8 +299,11 @@ fn reason_after(rest: &[Token]) -> bool {
         .any(|t| is(Some(t), &["and", "then", "but", "so"]) || t.kind == TokenKind::Comma);
     let measures = rest.iter().any(|t| number(t).is_some());
     // ("I want it parked on the left": that is where)
-    let placed = begins(rest, "i want it|i need it|i want that|i need that|i like it|i prefer it")
-        .is_some_and(|n| (n..rest.len().min(n + 4)).any(|k| is_place(&rest[k..])));
+    let placed = begins(
+        rest,
+        "i want it|i need it|i want that|i need that|i like it|i prefer it",
+    )
+    .is_some_and(|n| (n..rest.len().min(n + 4)).any(|k| is_place(&rest[k..])));
     begins(rest, WHY).is_some() && !placed && !goes_on && !measures && rest.len() < 14
 }
 

@@ -450,13 +450,20 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         k += 1;
     }
     // "two fellow riders"
-    let fellow = usize::from(is(rest.get(k), &["fellow"]) && rest.get(k + 1).is_some_and(|t| !mark(t) && !super::words::is_place(&rest[k + 1..])));
+    let fellow = usize::from(
+        is(rest.get(k), &["fellow"])
+            && rest
+                .get(k + 1)
+                .is_some_and(|t| !mark(t) && !super::words::is_place(&rest[k + 1..])),
+    );
     k += fellow;
     // ", who are also ahead of us"
     let also = super::words::leads(&rest[(k + 1).min(rest.len())..], WHO_ALSO).unwrap_or(0);
     let place = &rest[(k + 1 + also).min(rest.len())..];
     let named = fellow > 0 || is(rest.get(k), &MATES);
-    let mate = k > 0 && named && (place.first().is_none_or(|t| also == 0 && mark(t)) || super::words::is_place(place));
+    let mate = k > 0
+        && named
+        && (place.first().is_none_or(|t| also == 0 && mark(t)) || super::words::is_place(place));
     if !mate || talk.fits(noun) == 0 {
         return tokens;
     }
@@ -473,8 +480,27 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 const WHO_ALSO: &[&str] = &[
-    ", who are also", ", who is also", "who are also", "who is also", ", also", "also", ", who also stand", ", who also stands", ", who also ride", ", who also rides",
-    ", who also drive", ", both also", "who also ride", "who also stand", ", who are likewise", ", both", "too ,", ", who ride", ", who stand", ", who are", ", all",
+    ", who are also",
+    ", who is also",
+    "who are also",
+    "who is also",
+    ", also",
+    "also",
+    ", who also stand",
+    ", who also stands",
+    ", who also ride",
+    ", who also rides",
+    ", who also drive",
+    ", both also",
+    "who also ride",
+    "who also stand",
+    ", who are likewise",
+    ", both",
+    "too ,",
+    ", who ride",
+    ", who stand",
+    ", who are",
+    ", all",
 ];
 
 /// "the boy's mother and father have come, they stand beside him": both are new.

@@ -234,12 +234,26 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     };
     let (mut lead, rest) = (&tokens[..colon], &tokens[colon + 1..]);
-    while let Some((_, first)) = lead.split_last().filter(|x| is(Some(x.0), &["well", "as", "too", "also", "please"])) {
+    while let Some((_, first)) = lead
+        .split_last()
+        .filter(|x| is(Some(x.0), &["well", "as", "too", "also", "please"]))
+    {
         lead = first;
     }
-    let from_front = ["from the front", "coming towards us", "coming the other way", "in the other direction", "from ahead", "from the other direction"]
-        .iter()
-        .find_map(|p| lead.len().checked_sub(p.split(' ').count()).filter(|k| *k > 0 && leads(&lead[*k..], &[*p]).is_some()));
+    let from_front = [
+        "from the front",
+        "coming towards us",
+        "coming the other way",
+        "in the other direction",
+        "from ahead",
+        "from the other direction",
+    ]
+    .iter()
+    .find_map(|p| {
+        lead.len()
+            .checked_sub(p.split(' ').count())
+            .filter(|k| *k > 0 && leads(&lead[*k..], &[*p]).is_some())
+    });
     if let Some(k) = from_front {
         lead = &lead[..k];
     }
@@ -303,7 +317,9 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
         return rest.to_vec();
     }
     let rest = super::super::wording::rewritten(rest, |i, out| {
-        let noun = oncoming && super::words::noun_at(&rest[i..]).is_some() && (i == 0 || super::words::noun_at(&rest[i - 1..]).is_none());
+        let noun = oncoming
+            && super::words::noun_at(&rest[i..]).is_some()
+            && (i == 0 || super::words::noun_at(&rest[i - 1..]).is_none());
         if !noun {
             return None;
         }
@@ -311,8 +327,15 @@ fn in_particular(tokens: Vec<Token>) -> Vec<Token> {
         Some(i + 1)
     });
     // (what comes towards us is ahead)
-    let far = oncoming && rest.len() > 2 && super::words::is_unit(rest.last()) && number(&rest[rest.len() - 2]).is_some();
-    let ahead = if far { led("ahead", &tokens[0], &[]) } else { Vec::new() };
+    let far = oncoming
+        && rest.len() > 2
+        && super::words::is_unit(rest.last())
+        && number(&rest[rest.len() - 2]).is_some();
+    let ahead = if far {
+        led("ahead", &tokens[0], &[])
+    } else {
+        Vec::new()
+    };
     led("add", &tokens[0], &[&rest, &ahead])
 }
 

@@ -260,19 +260,55 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let tail = &rest[e..];
     let told = is(trimmed(tail).first(), &["who", "that", "which"]);
     // "a teacher, who stands with them": beside them
-    let with = super::words::find(trimmed(tail), &["with them", "beside them", "next to them", "with him", "with her", "beside him", "beside her"]);
+    let with = super::words::find(
+        trimmed(tail),
+        &[
+            "with them",
+            "beside them",
+            "next to them",
+            "with him",
+            "with her",
+            "beside him",
+            "beside her",
+        ],
+    );
     if told && with.is_some_and(|x| x.0 < 4) {
-        let skip = usize::from(tail.first().is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma));
+        let skip = usize::from(
+            tail.first()
+                .is_some_and(|t| t.kind == super::super::tokens::TokenKind::Comma),
+        );
         let end = (skip + 1..tail.len())
             .find(|k| tail[*k].kind == super::super::tokens::TokenKind::Comma || is(tail.get(*k), &["and"]))
             .unwrap_or(tail.len());
-        return [&tokens[..i], &led("add", &tokens[i], &[new, &led("next to", &tokens[i], &[np])]), &tail[end..]].concat();
+        return [
+            &tokens[..i],
+            &led("add", &tokens[i], &[new, &led("next to", &tokens[i], &[np])]),
+            &tail[end..],
+        ]
+        .concat();
     }
     // "two colleagues on the same sidewalk": there
-    if super::words::leads(tail, &["on the same", "in the same", "at the same", "on the other", "on the opposite"]).is_some() {
-        let same = is(tail.get(2), &["same"]).then(|| super::briefs::strip_of(np, talk)).flatten();
+    if super::words::leads(
+        tail,
+        &[
+            "on the same",
+            "in the same",
+            "at the same",
+            "on the other",
+            "on the opposite",
+        ],
+    )
+    .is_some()
+    {
+        let same = is(tail.get(2), &["same"])
+            .then(|| super::briefs::strip_of(np, talk))
+            .flatten();
         if let (Some(strip), true) = (same, tail.len() < 5) {
-            return [&tokens[..i], &led("add", &tokens[i], &[new, &led(strip, &tokens[i], &[])])].concat();
+            return [
+                &tokens[..i],
+                &led("add", &tokens[i], &[new, &led(strip, &tokens[i], &[])]),
+            ]
+            .concat();
         }
         return [&tokens[..i], &led("add", &tokens[i], &[new, tail])].concat();
     }

@@ -13,7 +13,8 @@ pub fn joined(tokens: Vec<Token>) -> Vec<Token> {
         let mut rest = sentence;
         // (a comma or a colon parts halves, too)
         let cut = (2..rest.len()).find(|k| {
-            (matches!(rest[*k].kind, TokenKind::Comma | TokenKind::Mark)) && rest.get(k + 1).is_some_and(|t| t.kind == TokenKind::Word)
+            (matches!(rest[*k].kind, TokenKind::Comma | TokenKind::Mark))
+                && rest.get(k + 1).is_some_and(|t| t.kind == TokenKind::Word)
         });
         if let Some(k) = cut.filter(|k| prepares(&rest[..*k])) {
             parts.push(rest[..=k].to_vec());
@@ -46,14 +47,43 @@ pub fn joined(tokens: Vec<Token>) -> Vec<Token> {
 /// "officer's correction: the lorry stood there": whose words they are says nothing of the scene.
 fn uncaptioned(tokens: Vec<Token>) -> Vec<Token> {
     const SAID: [&str; 22] = [
-        "correction", "remark", "comment", "request", "wish", "statement", "version", "note", "amendment", "suggestion", "demand", "feedback", "idea", "order", "task", "instruction", "proposal", "opinion", "finding", "addition", "question", "update",
+        "correction",
+        "remark",
+        "comment",
+        "request",
+        "wish",
+        "statement",
+        "version",
+        "note",
+        "amendment",
+        "suggestion",
+        "demand",
+        "feedback",
+        "idea",
+        "order",
+        "task",
+        "instruction",
+        "proposal",
+        "opinion",
+        "finding",
+        "addition",
+        "question",
+        "update",
     ];
     let Some(colon) = (2..tokens.len().min(6)).find(|k| text(&tokens[*k]) == ":") else {
         return tokens;
     };
     let words = &tokens[..colon];
-    let whose = words.iter().any(|t| text(t).ends_with("'s") || text(t).ends_with("s'")) || is(words.first(), &["my", "our", "one", "another"]);
-    if is(words.last(), &SAID) && (whose || has_noun(words)) && words.iter().all(|t| t.kind == TokenKind::Word && number(t).is_none_or(|n| n == 1)) {
+    let whose = words
+        .iter()
+        .any(|t| text(t).ends_with("'s") || text(t).ends_with("s'"))
+        || is(words.first(), &["my", "our", "one", "another"]);
+    if is(words.last(), &SAID)
+        && (whose || has_noun(words))
+        && words
+            .iter()
+            .all(|t| t.kind == TokenKind::Word && number(t).is_none_or(|n| n == 1))
+    {
         return tokens[colon + 1..].to_vec();
     }
     tokens
@@ -66,7 +96,11 @@ fn using(tokens: Vec<Token>) -> Vec<Token> {
     super::super::wording::rewritten(&tokens, |i, out| {
         let n = super::super::wording::begins(&tokens[i..], USE)?;
         let at = i + n + usize::from(is(tokens.get(i + n), &["the", "this", "that"]));
-        is(tokens.get(at), &["crossing", "zebra", "crosswalk", "sidewalk", "pavement"]).then(|| {
+        is(
+            tokens.get(at),
+            &["crossing", "zebra", "crosswalk", "sidewalk", "pavement"],
+        )
+        .then(|| {
             out.extend(led("should be on", &tokens[i], &[]));
             i + n
         })
@@ -76,17 +110,48 @@ fn using(tokens: Vec<Token>) -> Vec<Token> {
 /// "I want to see nothing in front of us, everything behind may stay": nothing in front of us.
 fn nothing_there(tokens: Vec<Token>) -> Vec<Token> {
     const WANT: &str = "i want to see|we want to see|i want to have|we want to have|i would like to see|id like to see|i wish to see|i would like to have|id like to have|i want|we want|there should be|there must be";
-    let Some(n) = super::super::wording::begins(&tokens, WANT).filter(|n| is(tokens.get(*n), &["nothing", "nobody", "noone"])) else {
+    let Some(n) = super::super::wording::begins(&tokens, WANT)
+        .filter(|n| is(tokens.get(*n), &["nothing", "nobody", "noone"]))
+    else {
         return tokens;
     };
     let rest = &tokens[n + 1..];
-    let us = leads(rest, &["in front of us", "behind us", "ahead of us", "in front of me", "behind me", "ahead of me", "ahead", "in front", "behind"]);
+    let us = leads(
+        rest,
+        &[
+            "in front of us",
+            "behind us",
+            "ahead of us",
+            "in front of me",
+            "behind me",
+            "ahead of me",
+            "ahead",
+            "in front",
+            "behind",
+        ],
+    );
     let Some(m) = us else { return tokens };
     let late = trimmed(&rest[m..]);
     let stays = is(late.first(), &["everything", "all", "whatever", "the", "what"])
-        && (1..late.len()).any(|k| leads(&late[k..], &["may stay", "can stay", "should stay", "stays", "may remain", "can remain", "remains", "is fine", "is ok", "may stay as it is", "stays as it is"]).is_some_and(|x| {
-            k + x == late.len() || late[k + x].kind == TokenKind::Stop
-        }));
+        && (1..late.len()).any(|k| {
+            leads(
+                &late[k..],
+                &[
+                    "may stay",
+                    "can stay",
+                    "should stay",
+                    "stays",
+                    "may remain",
+                    "can remain",
+                    "remains",
+                    "is fine",
+                    "is ok",
+                    "may stay as it is",
+                    "stays as it is",
+                ],
+            )
+            .is_some_and(|x| k + x == late.len() || late[k + x].kind == TokenKind::Stop)
+        });
     if !(late.is_empty() || stays) {
         return tokens;
     }
@@ -114,7 +179,9 @@ fn one_of(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
 
 /// "the truck is too long; take a van instead": one sentence.
 fn complained(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
-    let too = first.iter().any(|t| text(t) == "too") && first_noun(first).is_some_and(|x| x.0 < 3) && is(first.first(), &["the", "that", "this"]);
+    let too = first.iter().any(|t| text(t) == "too")
+        && first_noun(first).is_some_and(|x| x.0 < 3)
+        && is(first.first(), &["the", "that", "this"]);
     let second = trimmed(second);
     let n = leads(second, &["use", "take", "choose", "pick", "try"]).filter(|_| too && first.len() < 12)?;
     is(second.get(n), &["a", "an"]).then_some(())?;
@@ -123,7 +190,11 @@ fn complained(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
         kind: TokenKind::Comma,
         ..super::words::word(",", &second[0])
     };
-    let instead = if is(second.last(), &["instead"]) { Vec::new() } else { led("instead", &second[0], &[]) };
+    let instead = if is(second.last(), &["instead"]) {
+        Vec::new()
+    } else {
+        led("instead", &second[0], &[])
+    };
     Some([first, &[comma], second, &instead].concat())
 }
 
@@ -132,20 +203,61 @@ fn too_many(words: &[Token]) -> bool {
     let Some(n) = words.first().and_then(number) else {
         return false;
     };
-    let be = leads(&words[1..], &["is", "are", "was", "were", "would be", "seems", "seem"]).unwrap_or(0);
+    let be = leads(
+        &words[1..],
+        &["is", "are", "was", "were", "would be", "seems", "seem"],
+    )
+    .unwrap_or(0);
     let by = usize::from(words.get(1 + be).and_then(number).is_some());
     let ends = |phrases: &[&str]| leads(&words[1 + be + by..], phrases) == Some(words.len() - 1 - be - by);
-    n > 0 && be > 0 && ends(&["too many", "too few", "too much", "not enough", "far too many", "way too many", "a bit much", "more than enough", "more than i need", "more than we need"])
+    n > 0
+        && be > 0
+        && ends(&[
+            "too many",
+            "too few",
+            "too much",
+            "not enough",
+            "far too many",
+            "way too many",
+            "a bit much",
+            "more than enough",
+            "more than i need",
+            "more than we need",
+        ])
 }
 
 /// "the bus itself goes", where something else has taken its place.
 fn has_left(before: &[Token], words: &[Token]) -> bool {
     let taken = before.iter().any(|t| is(Some(t), &["where", "place", "stead"]));
-    let itself = words.iter().position(|t| is(Some(t), &["itself", "themselves", "himself", "herself"]));
+    let itself = words
+        .iter()
+        .position(|t| is(Some(t), &["itself", "themselves", "himself", "herself"]));
     let itself = itself.or_else(|| is(words.first(), &["it", "they", "he", "she", "those"]).then_some(0));
     let goes = itself.is_some_and(|k| {
         let rest = &words[k + 1..];
-        k < 5 && leads(rest, &["goes", "go", "leaves", "leave", "is gone", "are gone", "disappears", "disappear", "drives off", "drives away", "moves off", "has left", "have left", "should go", "is removed", "vanishes", "is out"]) == Some(rest.len())
+        k < 5
+            && leads(
+                rest,
+                &[
+                    "goes",
+                    "go",
+                    "leaves",
+                    "leave",
+                    "is gone",
+                    "are gone",
+                    "disappears",
+                    "disappear",
+                    "drives off",
+                    "drives away",
+                    "moves off",
+                    "has left",
+                    "have left",
+                    "should go",
+                    "is removed",
+                    "vanishes",
+                    "is out",
+                ],
+            ) == Some(rest.len())
     });
     taken && goes
 }
@@ -156,12 +268,41 @@ fn cleared(words: &[Token]) -> bool {
     let n = leads(
         words,
         &[
-            "clear the road", "empty the road", "clear the scene", "empty the scene", "clear everything", "remove everything", "delete everything", "clear the car park", "empty the car park", "clear the parking lot", "empty the parking lot",
-            "remove everybody", "remove everyone", "empty it", "clear it", "empty the lot", "clear the lot", "empty the junction", "clear the junction", "empty the intersection", "clear the intersection", "empty the whole road", "empty the whole scene",
-            "clear the whole scene", "empty everything", "erase everything",
+            "clear the road",
+            "empty the road",
+            "clear the scene",
+            "empty the scene",
+            "clear everything",
+            "remove everything",
+            "delete everything",
+            "clear the car park",
+            "empty the car park",
+            "clear the parking lot",
+            "empty the parking lot",
+            "remove everybody",
+            "remove everyone",
+            "empty it",
+            "clear it",
+            "empty the lot",
+            "clear the lot",
+            "empty the junction",
+            "clear the junction",
+            "empty the intersection",
+            "clear the intersection",
+            "empty the whole road",
+            "empty the whole scene",
+            "clear the whole scene",
+            "empty everything",
+            "erase everything",
         ],
     );
-    n.is_some_and(|n| trimmed(&words[n..]).is_empty() || leads(&words[n..], &["completely", "entirely", "of everything", "away", "out"]) == Some(words.len() - n))
+    n.is_some_and(|n| {
+        trimmed(&words[n..]).is_empty()
+            || leads(
+                &words[n..],
+                &["completely", "entirely", "of everything", "away", "out"],
+            ) == Some(words.len() - n)
+    })
 }
 
 /// "empty the road; only the bus may stay": everything else goes.
@@ -171,15 +312,50 @@ fn only_stays(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     let np = &second[only..];
     is(np.first(), &["the", "both", "all", "my", "that", "a", "one"]).then_some(())?;
     let may = (1..np.len()).find_map(|k| {
-        let helper = leads(&np[k..], &["may", "should", "can", "must", "shall", "is to", "are to", "is allowed to", "will", "has to", "ought to"]).unwrap_or(0);
-        let stays = leads(&np[k + helper..], &["remain", "remains", "stay", "stays", "be left", "be there", "is left", "are left", "be kept", "survive", "survives", "left"])?;
+        let helper = leads(
+            &np[k..],
+            &[
+                "may",
+                "should",
+                "can",
+                "must",
+                "shall",
+                "is to",
+                "are to",
+                "is allowed to",
+                "will",
+                "has to",
+                "ought to",
+            ],
+        )
+        .unwrap_or(0);
+        let stays = leads(
+            &np[k + helper..],
+            &[
+                "remain", "remains", "stay", "stays", "be left", "be there", "is left", "are left",
+                "be kept", "survive", "survives", "left",
+            ],
+        )?;
         Some((k, k + helper + stays))
     });
     let (end, rest) = may.unwrap_or((np.len(), np.len()));
     let late = trimmed(&np[rest..]);
     let who = &np[..end];
     let named = has_noun(who) && who.iter().all(|t| t.kind == TokenKind::Word);
-    let late = if late.is_empty() || leads(late, &["here", "there", "in the scene", "on the road", "behind", "in it", "on it"]) == Some(late.len()) {
+    let late = if late.is_empty()
+        || leads(
+            late,
+            &[
+                "here",
+                "there",
+                "in the scene",
+                "on the road",
+                "behind",
+                "in it",
+                "on it",
+            ],
+        ) == Some(late.len())
+    {
         &[]
     } else {
         is_place(late).then_some(late).filter(|l| !has_noun(l))?
@@ -187,18 +363,90 @@ fn only_stays(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     named.then(|| led("remove everything except", &first[0], &[who, late]))
 }
 
-const SHOW: &[&str] = &["show", "depict", "draw", "picture", "place", "put", "set", "display", "position", "please show", "please put", "so show", "so put", "so place"];
+const SHOW: &[&str] = &[
+    "show",
+    "depict",
+    "draw",
+    "picture",
+    "place",
+    "put",
+    "set",
+    "display",
+    "position",
+    "please show",
+    "please put",
+    "so show",
+    "so put",
+    "so place",
+];
 const MOVES: &[&str] = &[
-    "overtaking", "passing", "crossing", "falling", "dropping", "turning", "braking", "catching", "coming", "changing", "merging", "pulling", "leaving", "moving", "approaching", "reversing", "slowing", "going", "walking", "driving", "riding",
-    "overtaken", "passed", "crossed", "started", "begun", "moved", "turned", "caught", "changed", "pulled", "dropped", "fallen", "reversed", "walked", "gone", "driven", "run", "reached", "stopped", "arrived",
+    "overtaking",
+    "passing",
+    "crossing",
+    "falling",
+    "dropping",
+    "turning",
+    "braking",
+    "catching",
+    "coming",
+    "changing",
+    "merging",
+    "pulling",
+    "leaving",
+    "moving",
+    "approaching",
+    "reversing",
+    "slowing",
+    "going",
+    "walking",
+    "driving",
+    "riding",
+    "overtaken",
+    "passed",
+    "crossed",
+    "started",
+    "begun",
+    "moved",
+    "turned",
+    "caught",
+    "changed",
+    "pulled",
+    "dropped",
+    "fallen",
+    "reversed",
+    "walked",
+    "gone",
+    "driven",
+    "run",
+    "reached",
+    "stopped",
+    "arrived",
 ];
 
 /// Who is doing something, in a clause that says no more: one past his name.
 fn under_way(words: &[Token]) -> Option<usize> {
-    let (_, b) = first_noun(words).filter(|x| x.0 < 4 && is(words.first(), &["the", "both", "that", "my", "our"]))?;
+    let (_, b) =
+        first_noun(words).filter(|x| x.0 < 4 && is(words.first(), &["the", "both", "that", "my", "our"]))?;
     let be = leads(
         &words[b..],
-        &["is", "are", "has", "have", "is now", "are now", "has just", "has now", "has already", "is just", "is already", "have just", "have now", "has been", "is about to be", "have already"],
+        &[
+            "is",
+            "are",
+            "has",
+            "have",
+            "is now",
+            "are now",
+            "has just",
+            "has now",
+            "has already",
+            "is just",
+            "is already",
+            "have just",
+            "have now",
+            "has been",
+            "is about to be",
+            "have already",
+        ],
     )?;
     (words.len() < b + be + 9 && is(words.get(b + be), MOVES)).then_some(b)
 }
@@ -211,15 +459,45 @@ fn shown(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     let pronoun = is(second.get(n), &["it", "him", "her", "them"]);
     let place = second.get(n + 1..)?;
     // (two places of which one is the ego vehicle's side)
-    (pronoun && is_place(place) && !place.iter().any(|t| is(Some(t), &["instead", "away"]))).then(|| [&first[..b], &led("should be", &second[0], &[place])].concat())
+    (pronoun && is_place(place) && !place.iter().any(|t| is(Some(t), &["instead", "away"])))
+        .then(|| [&first[..b], &led("should be", &second[0], &[place])].concat())
 }
 
 const NONE: &[&str] = &[
-    "there is", "theres", "there are", "we have", "i see", "we see", "so far there is", "so far there are", "i can see", "still", "there is still", "there are still", "so far",
+    "there is",
+    "theres",
+    "there are",
+    "we have",
+    "i see",
+    "we see",
+    "so far there is",
+    "so far there are",
+    "i can see",
+    "still",
+    "there is still",
+    "there are still",
+    "so far",
 ];
 const NOBODY: &[&str] = &[
-    "nobody", "no one", "noone", "nothing", "no traffic", "no vehicles", "no vehicle", "no cars", "no car", "no people", "no pedestrians", "no person", "no pedestrian", "no oncoming traffic", "no oncoming vehicles", "no oncoming vehicle",
-    "no oncoming cars", "no oncoming car", "no other traffic",
+    "nobody",
+    "no one",
+    "noone",
+    "nothing",
+    "no traffic",
+    "no vehicles",
+    "no vehicle",
+    "no cars",
+    "no car",
+    "no people",
+    "no pedestrians",
+    "no person",
+    "no pedestrian",
+    "no oncoming traffic",
+    "no oncoming vehicles",
+    "no oncoming vehicle",
+    "no oncoming cars",
+    "no oncoming car",
+    "no other traffic",
 ];
 
 /// Where nobody is as yet; empty if only that nobody comes towards us.
@@ -228,12 +506,31 @@ fn missing(words: &[Token]) -> Option<(&[Token], bool)> {
     let m = n + leads(&words[n..], NOBODY)?;
     let oncoming = words[n..m].iter().any(|t| text(t) == "oncoming");
     let rest = &words[m..];
-    let rest = &rest[leads(rest, &["is", "are", "is driving", "is standing", "is walking", "stands", "drives", "standing", "driving", "parked"]).unwrap_or(0)..];
+    let rest = &rest[leads(
+        rest,
+        &[
+            "is",
+            "are",
+            "is driving",
+            "is standing",
+            "is walking",
+            "stands",
+            "drives",
+            "standing",
+            "driving",
+            "parked",
+        ],
+    )
+    .unwrap_or(0)..];
     let yet = |t: &Token| is(Some(t), &["yet", "so", "far"]);
     let place = match rest.iter().position(yet) {
         Some(k) => {
             let after = &rest[k..];
-            if k == 0 { trimmed(&after[after.iter().take_while(|t| yet(t)).count()..]) } else { trimmed(&rest[..k]) }
+            if k == 0 {
+                trimmed(&after[after.iter().take_while(|t| yet(t)).count()..])
+            } else {
+                trimmed(&rest[..k])
+            }
         }
         // (without "yet" it may be an order)
         None if leads(words, &["so far"]).is_some() || words.iter().any(|t| text(t) == "still") => rest,
@@ -246,9 +543,28 @@ fn missing(words: &[Token]) -> Option<(&[Token], bool)> {
 fn added(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     let (place, oncoming) = missing(first)?;
     let second = trimmed(second);
-    let n = leads(second, &["add", "put", "place", "draw", "i need", "we need", "i want", "i would like", "id like", "let us have", "please add", "please put", "lets have", "insert"])?;
+    let n = leads(
+        second,
+        &[
+            "add",
+            "put",
+            "place",
+            "draw",
+            "i need",
+            "we need",
+            "i want",
+            "i would like",
+            "id like",
+            "let us have",
+            "please add",
+            "please put",
+            "lets have",
+            "insert",
+        ],
+    )?;
     let new = &second[n..];
-    (is(new.first(), &["a", "an", "another", "one", "some"]) || number(new.first()?).is_some()).then_some(())?;
+    (is(new.first(), &["a", "an", "another", "one", "some"]) || number(new.first()?).is_some())
+        .then_some(())?;
     let (a, b) = first_noun(new).filter(|x| x.0 < 5)?;
     let tail = &new[b..];
     let tail = &tail[usize::from(is(tail.first(), &["there", "here"]))..];
@@ -264,28 +580,65 @@ fn added(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
         })
     });
     let article = &new[..a];
-    let ahead = if oncoming { led("oncoming", &new[a], &[]) } else { Vec::new() };
+    let ahead = if oncoming {
+        led("oncoming", &new[a], &[])
+    } else {
+        Vec::new()
+    };
     let article = match article {
         [t] if oncoming && text(t) == "a" => led("an", t, &[]),
         _ => article.to_vec(),
     };
-    Some([&led("add", &second[0], &[&article, &ahead, &new[a..b]]), side, &tail].concat())
+    Some(
+        [
+            &led("add", &second[0], &[&article, &ahead, &new[a..b]]),
+            side,
+            &tail,
+        ]
+        .concat(),
+    )
 }
 
 /// "fill it up a bit", "top the cones up".
 fn topped_up(words: &[Token]) -> bool {
-    is(words.first(), &["fill", "top", "stock", "pack"]) && words.iter().take(7).any(|t| text(t) == "up") && !words.iter().any(|t| is(Some(t), &["with", "to", "until"]) || number(t).is_some_and(|n| n > 1)) && words.len() < 10
+    is(words.first(), &["fill", "top", "stock", "pack"])
+        && words.iter().take(7).any(|t| text(t) == "up")
+        && !words
+            .iter()
+            .any(|t| is(Some(t), &["with", "to", "until"]) || number(t).is_some_and(|n| n > 1))
+        && words.len() < 10
 }
 
 /// "fill it up a bit, I need ten parked cars": so many in all.
 fn filled(first: &[Token], second: &[Token]) -> Option<Vec<Token>> {
     let second = trimmed(second);
-    let n = leads(second, &["i need", "we need", "i want", "we want", "i would like", "id like", "there should be", "there must be", "make it", "it should be", "i would like to have", "we would like"]).filter(|_| topped_up(first))?;
+    let n = leads(
+        second,
+        &[
+            "i need",
+            "we need",
+            "i want",
+            "we want",
+            "i would like",
+            "id like",
+            "there should be",
+            "there must be",
+            "make it",
+            "it should be",
+            "i would like to have",
+            "we would like",
+        ],
+    )
+    .filter(|_| topped_up(first))?;
     let n = n + leads(&second[n..], &["to have", "exactly", "at least"]).unwrap_or(0);
     let many = second.get(n).filter(|t| number(t).is_some_and(|m| m > 1))?;
     let of = &second[n + 1..];
-    let more = of.iter().any(|t| is(Some(t), &["more", "extra", "additional", "new"]));
-    let np = if of.is_empty() || leads(of, &["of them", "in all", "in total", "altogether", "there"]) == Some(of.len()) {
+    let more = of
+        .iter()
+        .any(|t| is(Some(t), &["more", "extra", "additional", "new"]));
+    let np = if of.is_empty()
+        || leads(of, &["of them", "in all", "in total", "altogether", "there"]) == Some(of.len())
+    {
         let (a, b) = first_noun(first)?;
         matches!(look_up(text(&first[b - 1])), Some(Sense::Noun(_, true))).then_some(&first[a..b])?
     } else {

@@ -235,10 +235,32 @@ const SHALL: &str = "shall be|should be|is to be|must be|has to be|needs to be|o
     shall remain|is supposed to be|has to become|must become|must not be less than|should amount to|was|has been|had been";
 
 const MAY_BE: &[&str] = &[
-    "may be", "can be", "could be", "should be", "must be", "has to be", "needs to be", "must become", "may become", "should become", "might be", "ought to be",
+    "may be",
+    "can be",
+    "could be",
+    "should be",
+    "must be",
+    "has to be",
+    "needs to be",
+    "must become",
+    "may become",
+    "should become",
+    "might be",
+    "ought to be",
 ];
 const CHANGED: [&str; 12] = [
-    "smaller", "bigger", "larger", "shorter", "longer", "greater", "wider", "less", "more", "increased", "reduced", "tighter",
+    "smaller",
+    "bigger",
+    "larger",
+    "shorter",
+    "longer",
+    "greater",
+    "wider",
+    "less",
+    "more",
+    "increased",
+    "reduced",
+    "tighter",
 ];
 
 /// "the gap to the scooter shall be 20 m, it stays behind us".
@@ -249,7 +271,13 @@ fn gap_shall(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     // "... may be smaller: 14 m is good"
     let may = (from + 1..tokens.len().min(from + 6)).find_map(|k| {
         let n = leads(&tokens[k..], MAY_BE)?;
-        let adj = k + n + leads(&tokens[k + n..], &["a bit", "a little", "somewhat", "much", "slightly"]).unwrap_or(0);
+        let adj = k
+            + n
+            + leads(
+                &tokens[k + n..],
+                &["a bit", "a little", "somewhat", "much", "slightly"],
+            )
+            .unwrap_or(0);
         is(tokens.get(adj), &CHANGED).then_some((k, adj + 1))
     });
     if let Some((k, end)) = may
@@ -267,9 +295,27 @@ fn gap_shall(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let rest = super::words::trimmed(&tokens[at + b..]);
     // (that it stays where it is, is no place of its own)
     let he = usize::from(is(rest.first(), &["it", "he", "she", "they"]));
-    let stays = leads(&rest[he..], &["stays", "stay", "still", "remains", "remain", "is still", "continues", "keeps driving", "keeps following"]);
+    let stays = leads(
+        &rest[he..],
+        &[
+            "stays",
+            "stay",
+            "still",
+            "remains",
+            "remain",
+            "is still",
+            "continues",
+            "keeps driving",
+            "keeps following",
+        ],
+    );
     (rest.is_empty() || stays.is_some() && !has_noun(rest)).then_some(())?;
-    keeps(&tokens[from..shall], &tokens[at + a], &tokens[at + a + 1..at + b], talk)
+    keeps(
+        &tokens[from..shall],
+        &tokens[at + a],
+        &tokens[at + a + 1..at + b],
+        talk,
+    )
 }
 
 /// "a distance of 20 m to the bus is what I need", "my pupil should keep a gap of 20 m to the bus".

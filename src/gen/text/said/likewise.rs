@@ -583,8 +583,17 @@ fn just_so_many(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let grows = than.is_some() && before > 0 && many > before && there < many && talk.fits(np) == before;
     if grows && whole && !place.is_empty() {
         let more = led("add", &tokens[0], &[]);
-        let count = Token { kind: TokenKind::Number((many - before) as f64), ..tokens[lead].clone() };
-        return [&more[..], &[count], &led("more", &tokens[0], &[np]), &led("waiting", &tokens[0], &[place])].concat();
+        let count = Token {
+            kind: TokenKind::Number((many - before) as f64),
+            ..tokens[lead].clone()
+        };
+        return [
+            &more[..],
+            &[count],
+            &led("more", &tokens[0], &[np]),
+            &led("waiting", &tokens[0], &[place]),
+        ]
+        .concat();
     }
     if !whole || there == 0 || only && there <= many {
         return tokens;

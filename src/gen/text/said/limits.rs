@@ -179,7 +179,16 @@ pub(super) fn group_cut(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "half the cones": half as many.
 pub(super) fn half_of(tokens: Vec<Token>) -> Vec<Token> {
-    if super::words::leads(&tokens, &["only half as many", "just half as many", "only half the number of"]).is_some() {
+    if super::words::leads(
+        &tokens,
+        &[
+            "only half as many",
+            "just half as many",
+            "only half the number of",
+        ],
+    )
+    .is_some()
+    {
         return tokens[1..].to_vec();
     }
     let Some(n) = leads(

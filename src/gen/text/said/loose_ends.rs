@@ -5,7 +5,9 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::begins;
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{find, first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed};
+use super::words::{
+    find, first_noun, has_noun, is, is_finite, is_place, is_unit, leads, led, number, text, trimmed,
+};
 
 /// A text without such ends, before its clauses are parted.
 pub fn cut(tokens: Vec<Token>) -> Vec<Token> {
@@ -21,11 +23,16 @@ pub fn cut(tokens: Vec<Token>) -> Vec<Token> {
             continue;
         }
         let body = without_tail(without_lead(body));
-        ordered |= body.first().is_some_and(super::super::rephrase::is_verb);
+        let polite = usize::from(is(body.first(), &["please", "kindly"]));
+        ordered |= body.get(polite).is_some_and(super::super::rephrase::is_verb);
         out.extend_from_slice(body);
         out.extend_from_slice(stop);
     }
-    if out.iter().any(|t| t.kind == TokenKind::Word) { out } else { tokens }
+    if out.iter().any(|t| t.kind == TokenKind::Word) {
+        out
+    } else {
+        tokens
+    }
 }
 
 const LEAD: &str = "wait no|no wait|oh no|hmm no|wait|hang on|actually no|sorry no|do one thing|please do one thing|one thing|oh wait|hold on";
@@ -36,11 +43,35 @@ const PURPOSE: &str = "i would like to practise|i want to practise|id like to pr
 /// "the photographs show a single one": what else tells the same.
 fn shows(body: &[Token]) -> bool {
     const WITNESS: &[&str] = &[
-        "the photographs", "the photograph", "the photo", "the photos", "the pictures", "the report", "the sketch", "the footage", "the video", "the log", "the plan", "the statement", "the drawing", "the file", "the recording", "the police report", "the records", "the map",
+        "the photographs",
+        "the photograph",
+        "the photo",
+        "the photos",
+        "the pictures",
+        "the report",
+        "the sketch",
+        "the footage",
+        "the video",
+        "the log",
+        "the plan",
+        "the statement",
+        "the drawing",
+        "the file",
+        "the recording",
+        "the police report",
+        "the records",
+        "the map",
     ];
     leads(body, WITNESS).is_some_and(|n| {
-        is(body.get(n), &["show", "shows", "showed", "says", "say", "mention", "mentions", "has", "have", "confirm", "confirms"])
-            && body[n..].iter().any(|t| is(Some(t), &["one", "it", "that", "so", "this", "them"]))
+        is(
+            body.get(n),
+            &[
+                "show", "shows", "showed", "says", "say", "mention", "mentions", "has", "have", "confirm",
+                "confirms",
+            ],
+        ) && body[n..]
+            .iter()
+            .any(|t| is(Some(t), &["one", "it", "that", "so", "this", "them"]))
             && super::words::noun_at(&body[body.len() - 1..]).is_none()
     })
 }
@@ -51,7 +82,10 @@ fn without_lead(body: &[Token]) -> &[Token] {
         return body;
     };
     let mut rest = &body[please + n..];
-    while let Some((first, after)) = rest.split_first().filter(|x| matches!(x.0.kind, TokenKind::Comma | TokenKind::Mark)) {
+    while let Some((first, after)) = rest
+        .split_first()
+        .filter(|x| matches!(x.0.kind, TokenKind::Comma | TokenKind::Mark))
+    {
         let _ = first;
         rest = after;
     }
@@ -60,31 +94,71 @@ fn without_lead(body: &[Token]) -> &[Token] {
 
 /// What follows a comma, or "but", and may be left out up to the end.
 const TAILS: &[&str] = &[
-    "which makes", "making it", "making that", "that makes", "so that makes", "so im alone", "so i am alone", "so we are alone", "so were alone", "so that im alone", "so that i am alone", "so that we are alone", "so im all alone", "so i am all alone",
-    "no longer behind", "no longer ahead", "no longer in front", "no longer on the left", "no longer on the right", "no longer there", "no longer parked", "not my left", "not my right", "not on my left", "not on my right", "not on the left", "not on the right", "not our left", "not our right", "not behind", "not ahead", "not in front",
-    "but leave the", "and leave the",
+    "which makes",
+    "making it",
+    "making that",
+    "that makes",
+    "so that makes",
+    "so im alone",
+    "so i am alone",
+    "so we are alone",
+    "so were alone",
+    "so that im alone",
+    "so that i am alone",
+    "so that we are alone",
+    "so im all alone",
+    "so i am all alone",
+    "no longer behind",
+    "no longer ahead",
+    "no longer in front",
+    "no longer on the left",
+    "no longer on the right",
+    "no longer there",
+    "no longer parked",
+    "not my left",
+    "not my right",
+    "not on my left",
+    "not on my right",
+    "not on the left",
+    "not on the right",
+    "not our left",
+    "not our right",
+    "not behind",
+    "not ahead",
+    "not in front",
+    "but leave the",
+    "and leave the",
 ];
 
 fn without_tail(body: &[Token]) -> &[Token] {
     let found = (3..body.len()).find(|k| {
         let comma = body[*k].kind == TokenKind::Comma;
         let from = k + usize::from(comma);
-        let Some(n) = leads(&body[from..], TAILS).filter(|_| comma || is(body.get(*k), &["but", "and"])) else {
+        let Some(n) = leads(&body[from..], TAILS).filter(|_| comma || is(body.get(*k), &["but", "and"]))
+        else {
             return false;
         };
         let rest = &body[from + n..];
         // "but leave the cyclists alone"; "which makes three of them in total"
         if is(body.get(from + n - 1), &["the"]) {
-            return is(rest.last(), &["alone", "be", "unchanged", "untouched"]) && first_noun(rest).is_some_and(|x| x.1 + 1 == rest.len());
+            return is(rest.last(), &["alone", "be", "unchanged", "untouched"])
+                && first_noun(rest).is_some_and(|x| x.1 + 1 == rest.len());
         }
         let makes = is(body.get(from + n - 1), &["makes", "it", "that"]);
-        (if makes { rest.first().is_some_and(|t| number(t).is_some()) } else { true })
-            && !rest.iter().any(|t| matches!(t.kind, TokenKind::Comma) || is(Some(t), &["and"]) || super::super::rephrase::is_verb(t))
-            && rest.len() < 8
+        (if makes {
+            rest.first().is_some_and(|t| number(t).is_some())
+        } else {
+            true
+        }) && !rest.iter().any(|t| {
+            matches!(t.kind, TokenKind::Comma) || is(Some(t), &["and"]) || super::super::rephrase::is_verb(t)
+        }) && rest.len() < 8
     });
     let body = &body[..found.unwrap_or(body.len())];
     // "12 metres or so"
-    let so = body.len() > 3 && is(body.get(body.len() - 2), &["or"]) && is(body.last(), &["so"]) && is_unit(body.get(body.len() - 3));
+    let so = body.len() > 3
+        && is(body.get(body.len() - 2), &["or"])
+        && is(body.last(), &["so"])
+        && is_unit(body.get(body.len() - 3));
     if so { &body[..body.len() - 2] } else { body }
 }
 
@@ -93,18 +167,63 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = counted(filled(lined(tokens)), talk);
     let out = by_putting(taken_from(from_to(out, talk), talk), talk);
     let out = not_required(with_closer(towards(out), talk), talk);
-    noted(nobody_crosses(same_spot(out, talk)), talk)
+    noted(instead_there(nobody_crosses(same_spot(out, talk)), talk), talk)
+}
+
+/// "bus behind us instead, 15 m": so far it should be.
+fn instead_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let n = tokens.len();
+    let metres = n > 5
+        && is_unit(tokens.last())
+        && number(&tokens[n - 2]).is_some()
+        && tokens[n - 3].kind == TokenKind::Comma;
+    let Some((_, b)) =
+        first_noun(&tokens).filter(|x| x.0 < 2 && metres && is(tokens.get(n - 4), &["instead"]))
+    else {
+        return tokens;
+    };
+    let place = &tokens[b..n - 4];
+    if talk.fits(&tokens[..b]) != 1 || !is_place(place) || has_noun(place) {
+        return tokens;
+    }
+    let the = if is(tokens.first(), &["the", "that"]) {
+        Vec::new()
+    } else {
+        led("the", &tokens[0], &[])
+    };
+    [
+        &the[..],
+        &tokens[..b],
+        &led("should be", &tokens[0], &[&tokens[n - 2..], place]),
+    ]
+    .concat()
 }
 
 /// "change motorbike to bicycle, same spot": where it comes to stand anyhow.
 fn same_spot(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(k) = (4..tokens.len()).find(|k| {
         tokens[*k].kind == TokenKind::Comma
-            && leads(&tokens[k + 1..], &["same spot", "same place", "same position", "the same spot", "the same place", "same location"]).is_some_and(|n| k + 1 + n == tokens.len())
+            && leads(
+                &tokens[k + 1..],
+                &[
+                    "same spot",
+                    "same place",
+                    "same position",
+                    "the same spot",
+                    "the same place",
+                    "same location",
+                ],
+            )
+            .is_some_and(|n| k + 1 + n == tokens.len())
     }) else {
         return tokens;
     };
-    if !is(tokens.first(), &["change", "convert", "turn", "swap", "replace", "exchange", "switch"]) {
+    if !is(
+        tokens.first(),
+        &[
+            "change", "convert", "turn", "swap", "replace", "exchange", "switch",
+        ],
+    ) {
         return tokens;
     }
     let bare = first_noun(&tokens[1..k]).filter(|x| x.0 == 0);
@@ -116,35 +235,93 @@ fn same_spot(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if to == 0 || !first_noun(new).is_some_and(|x| x.0 == 0) {
         return tokens[..k].to_vec();
     }
-    led("replace the", &tokens[0], &[&tokens[1..=b], &led("with a", &tokens[0], &[new])])
+    led(
+        "replace the",
+        &tokens[0],
+        &[&tokens[1..=b], &led("with a", &tokens[0], &[new])],
+    )
 }
 
 /// "oncoming car is not required, you may cancel it": it goes.
 fn not_required(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const NOT: &[&str] = &[
-        "is not required", "are not required", "is not needed", "are not needed", "is not wanted", "are not wanted", "is not necessary", "are not necessary", "isnt needed", "arent needed", "is no longer required", "are no longer required", "is no longer needed", "are no longer needed", "isnt required", "arent required",
+        "is not required",
+        "are not required",
+        "is not needed",
+        "are not needed",
+        "is not wanted",
+        "are not wanted",
+        "is not necessary",
+        "are not necessary",
+        "isnt needed",
+        "arent needed",
+        "is no longer required",
+        "are no longer required",
+        "is no longer needed",
+        "are no longer needed",
+        "isnt required",
+        "arent required",
     ];
-    let Some((k, n)) = find(&tokens, NOT) else { return tokens };
+    let Some((k, n)) = find(&tokens, NOT) else {
+        return tokens;
+    };
     let who = &tokens[..k];
-    let bare = first_noun(who).is_some_and(|x| x.0 < 4) && !who.iter().any(|t| HELPERS.contains(&text(t)) || is(Some(t), &["it", "if", "when"]));
+    let bare = first_noun(who).is_some_and(|x| x.0 < 4)
+        && !who
+            .iter()
+            .any(|t| HELPERS.contains(&text(t)) || is(Some(t), &["it", "if", "when"]));
     let rest = trimmed(&tokens[k + n..]);
-    let goes = leads(rest, &["you may", "you can", "please", "kindly", "just", "you could", "so"]).unwrap_or(0);
-    let gone = is(rest.get(goes), &["cancel", "remove", "delete", "drop", "take", "erase", "discard"]) && rest.iter().any(|t| is(Some(t), &["it", "them", "him", "her"]))
-        && !has_noun(&rest[goes..]) && rest.len() < goes + 4;
+    let goes = leads(
+        rest,
+        &[
+            "you may",
+            "you can",
+            "please",
+            "kindly",
+            "just",
+            "you could",
+            "so",
+        ],
+    )
+    .unwrap_or(0);
+    let gone = is(
+        rest.get(goes),
+        &["cancel", "remove", "delete", "drop", "take", "erase", "discard"],
+    ) && rest.iter().any(|t| is(Some(t), &["it", "them", "him", "her"]))
+        && !has_noun(&rest[goes..])
+        && rest.len() < goes + 4;
     if !bare || !gone || talk.fits(who) == 0 {
         return tokens;
     }
-    let the = if is(who.first(), &["the", "all", "both", "that", "those", "my"]) { Vec::new() } else { led("the", &tokens[0], &[]) };
+    let the = if is(who.first(), &["the", "all", "both", "that", "those", "my"]) {
+        Vec::new()
+    } else {
+        led("the", &tokens[0], &[])
+    };
     led("remove", &tokens[0], &[&the, who])
 }
 
 /// "nobody crosses any more: let all three walk on the pavement": they do something else.
 fn nobody_crosses(tokens: Vec<Token>) -> Vec<Token> {
-    let lead = leads(&tokens, &["nobody crosses", "no one crosses", "nobody is crossing", "noone crosses", "no one is crossing", "nobody waits", "nobody is waiting"]);
+    let lead = leads(
+        &tokens,
+        &[
+            "nobody crosses",
+            "no one crosses",
+            "nobody is crossing",
+            "noone crosses",
+            "no one is crossing",
+            "nobody waits",
+            "nobody is waiting",
+        ],
+    );
     let Some(n) = lead else { return tokens };
     let more = leads(&tokens[n..], &["any more", "anymore", "now", "any longer"]).unwrap_or(0);
     let rest = &tokens[n + more..];
-    let goes_on = rest.first().is_some_and(|t| matches!(t.kind, TokenKind::Mark | TokenKind::Comma)) && is(rest.get(1), &["let", "all", "they", "have", "make"]);
+    let goes_on = rest
+        .first()
+        .is_some_and(|t| matches!(t.kind, TokenKind::Mark | TokenKind::Comma))
+        && is(rest.get(1), &["let", "all", "they", "have", "make"]);
     if !goes_on {
         return tokens;
     }
@@ -160,33 +337,71 @@ fn nobody_crosses(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "line the left side of the road with three bollards": they stand along it.
 fn lined(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(k) = tokens.iter().position(|t| is(Some(t), &["with"])).filter(|_| is(tokens.first(), &["line", "edge", "border", "flank"])) else {
+    let Some(k) = tokens
+        .iter()
+        .position(|t| is(Some(t), &["with"]))
+        .filter(|_| is(tokens.first(), &["line", "edge", "border", "flank"]))
+    else {
         return tokens;
     };
     let (place, new) = (&tokens[1..k], &tokens[k + 1..]);
-    let fresh = new.first().is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "some"])) && has_noun(new);
+    let fresh = new
+        .first()
+        .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "some"]))
+        && has_noun(new);
     if !fresh || has_noun(place) || place.is_empty() {
         return tokens;
     }
-    [&led("add", &tokens[0], &[new])[..], &led("on", &tokens[0], &[place])].concat()
+    [
+        &led("add", &tokens[0], &[new])[..],
+        &led("on", &tokens[0], &[place]),
+    ]
+    .concat()
 }
 
 /// "fill up the pavement on the left till five people are on it": five people should be there.
 fn filled(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["fill up", "fill"]) else { return tokens };
-    let Some((k, m)) = find(&tokens, &["until there are", "till there are", "until", "till"]).filter(|x| x.0 > n) else {
+    let Some(n) = leads(&tokens, &["fill up", "fill"]) else {
+        return tokens;
+    };
+    let Some((k, m)) =
+        find(&tokens, &["until there are", "till there are", "until", "till"]).filter(|x| x.0 > n)
+    else {
         return tokens;
     };
     let rest = &tokens[k + m..];
-    let Some((_, b)) = first_noun(rest).filter(|x| x.0 < 3 && rest.first().is_some_and(|t| number(t).is_some())) else {
+    let Some((_, b)) =
+        first_noun(rest).filter(|x| x.0 < 3 && rest.first().is_some_and(|t| number(t).is_some()))
+    else {
         return tokens;
     };
     let tail = trimmed(&rest[b..]);
-    let ends = tail.is_empty() || leads(tail, &["are on it", "are in it", "stand on it", "stand there", "are there", "are standing on it", "on it", "in it", "there", "stand in it", "walk on it"]).is_some_and(|x| x == tail.len());
+    let ends = tail.is_empty()
+        || leads(
+            tail,
+            &[
+                "are on it",
+                "are in it",
+                "stand on it",
+                "stand there",
+                "are there",
+                "are standing on it",
+                "on it",
+                "in it",
+                "there",
+                "stand in it",
+                "walk on it",
+            ],
+        )
+        .is_some_and(|x| x == tail.len());
     if !ends || has_noun(&tokens[n..k]) {
         return tokens;
     }
-    [&led("there should be", &tokens[0], &[&rest[..b]])[..], &led("on", &tokens[0], &[&tokens[n..k]])].concat()
+    [
+        &led("there should be", &tokens[0], &[&rest[..b]])[..],
+        &led("on", &tokens[0], &[&tokens[n..k]]),
+    ]
+    .concat()
 }
 
 /// "children count to be increased to six": there should be six children.
@@ -195,21 +410,46 @@ fn counted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let count = leads(&tokens[b..], &["count", "number", "numbers", "quantity", "total"]).unwrap_or(0);
-    let Some((k, n)) = find(&tokens[b..], &["increased to", "raised to", "reduced to", "brought to", "brought down to", "brought up to", "lowered to", "decreased to", "changed to", "set to", "cut to"]).map(|x| (b + x.0, x.1)) else {
+    let Some((k, n)) = find(
+        &tokens[b..],
+        &[
+            "increased to",
+            "raised to",
+            "reduced to",
+            "brought to",
+            "brought down to",
+            "brought up to",
+            "lowered to",
+            "decreased to",
+            "changed to",
+            "set to",
+            "cut to",
+        ],
+    )
+    .map(|x| (b + x.0, x.1)) else {
         return tokens;
     };
-    let helped = tokens[b + count..k].iter().all(|t| HELPERS.contains(&text(t)) || is(Some(t), &["to", "be", "should", "must", "needs"]));
+    let helped = tokens[b + count..k]
+        .iter()
+        .all(|t| HELPERS.contains(&text(t)) || is(Some(t), &["to", "be", "should", "must", "needs"]));
     let many = tokens.get(k + n).is_some_and(|t| number(t).is_some()) && tokens.len() == k + n + 1;
     if count == 0 || !helped || !many || talk.fits(&tokens[..b]) == 0 {
         return tokens;
     }
     let from = usize::from(is(tokens.first(), &["the"]));
-    led("there should be", &tokens[0], &[&tokens[k + n..], &tokens[from..b]])
+    led(
+        "there should be",
+        &tokens[0],
+        &[&tokens[k + n..], &tokens[from..b]],
+    )
 }
 
 /// "from three cyclists go down to one": one stays.
 fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let n = leads(&tokens, &["from", "go from", "go down from", "go up from", "come down from"]);
+    let n = leads(
+        &tokens,
+        &["from", "go from", "go down from", "go up from", "come down from"],
+    );
     let Some(n) = n.filter(|n| tokens.get(*n).is_some_and(|t| number(t).is_some())) else {
         return tokens;
     };
@@ -217,7 +457,21 @@ fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let rest = &tokens[n + b..];
-    let to = leads(rest, &["go down to", "go up to", "come down to", "get down to", "down to", "up to", "to", "go to", "reduce to", "increase to"]);
+    let to = leads(
+        rest,
+        &[
+            "go down to",
+            "go up to",
+            "come down to",
+            "get down to",
+            "down to",
+            "up to",
+            "to",
+            "go to",
+            "reduce to",
+            "increase to",
+        ],
+    );
     let Some(m) = to.filter(|m| rest.len() == m + 1 && number(&rest[*m]).is_some()) else {
         return tokens;
     };
@@ -230,18 +484,33 @@ fn from_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "take the bus from behind and position it 25 m ahead": it is moved there.
 fn taken_from(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["take", "pick", "grab", "get"])) else {
+    let Some((_, b)) =
+        first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["take", "pick", "grab", "get"]))
+    else {
         return tokens;
     };
     let Some(k) = (b..tokens.len()).find(|k| is(tokens.get(*k), &["and"])) else {
         return tokens;
     };
-    let puts = is(tokens.get(k + 1), &["put", "place", "position", "set", "move", "drop", "park"]) && is(tokens.get(k + 2), &["it", "him", "her", "them"]);
-    let from = tokens[b..k].first().is_none_or(|t| is(Some(t), &["from", "out", "away", "off"]));
-    if !puts || !from || !is(tokens.get(1), &["the", "both", "that", "those"]) || talk.fits(&tokens[1..b]) == 0 {
+    let puts = is(
+        tokens.get(k + 1),
+        &["put", "place", "position", "set", "move", "drop", "park"],
+    ) && is(tokens.get(k + 2), &["it", "him", "her", "them"]);
+    let from = tokens[b..k]
+        .first()
+        .is_none_or(|t| is(Some(t), &["from", "out", "away", "off"]));
+    if !puts
+        || !from
+        || !is(tokens.get(1), &["the", "both", "that", "those"])
+        || talk.fits(&tokens[1..b]) == 0
+    {
         return tokens;
     }
-    let verb = if is(tokens.get(k + 1), &["park"]) { "park" } else { "move" };
+    let verb = if is(tokens.get(k + 1), &["park"]) {
+        "park"
+    } else {
+        "move"
+    };
     led(verb, &tokens[0], &[&tokens[1..b], &tokens[k + 3..]])
 }
 
@@ -249,7 +518,12 @@ fn taken_from(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn by_putting(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (2..tokens.len()).find(|k| {
         is(tokens.get(*k), &["by"])
-            && is(tokens.get(k + 1), &["starting", "putting", "placing", "having", "moving", "setting", "keeping"])
+            && is(
+                tokens.get(k + 1),
+                &[
+                    "starting", "putting", "placing", "having", "moving", "setting", "keeping",
+                ],
+            )
             && is(tokens.get(k + 2), &["the", "both", "all"])
     });
     let Some(k) = found else { return tokens };
@@ -262,29 +536,73 @@ fn by_putting(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let at = usize::from(is(np.get(b), &["at"]));
     let place = &np[b + at..];
-    let away = if at == 1 && place.len() == 2 { led("away", &tokens[k], &[]) } else { Vec::new() };
+    let away = if at == 1 && place.len() == 2 {
+        led("away", &tokens[k], &[])
+    } else {
+        Vec::new()
+    };
     [&np[..b], &led("should be", &tokens[k], &[place, &away])].concat()
 }
 
 /// "from the other direction a car must come towards us": it is put in.
 fn towards(tokens: Vec<Token>) -> Vec<Token> {
-    let Some(n) = leads(&tokens, &["from the other direction", "from the opposite direction", "from the front", "out of the other direction"]) else {
+    let Some(n) = leads(
+        &tokens,
+        &[
+            "from the other direction",
+            "from the opposite direction",
+            "from the front",
+            "out of the other direction",
+        ],
+    ) else {
         return tokens;
     };
     let rest = trimmed(&tokens[n..]);
-    let Some((_, b)) = first_noun(rest).filter(|x| x.0 < 4 && rest.first().is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]))) else {
+    let Some((_, b)) = first_noun(rest).filter(|x| {
+        x.0 < 4
+            && rest
+                .first()
+                .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]))
+    }) else {
         return tokens;
     };
-    let comes = rest[b..].iter().any(|t| is(Some(t), &["come", "comes", "coming", "approach", "approaches", "drive", "drives"]));
+    let comes = rest[b..].iter().any(|t| {
+        is(
+            Some(t),
+            &[
+                "come",
+                "comes",
+                "coming",
+                "approach",
+                "approaches",
+                "drive",
+                "drives",
+            ],
+        )
+    });
     if !comes {
         return tokens;
     }
-    let metres: &[Token] = match (b..rest.len()).find(|k| number(&rest[*k]).is_some() && is_unit(rest.get(k + 1))) {
-        Some(k) => &rest[k..k + 2],
-        None => &[],
+    let metres: &[Token] =
+        match (b..rest.len()).find(|k| number(&rest[*k]).is_some() && is_unit(rest.get(k + 1))) {
+            Some(k) => &rest[k..k + 2],
+            None => &[],
+        };
+    let ahead = if metres.is_empty() {
+        Vec::new()
+    } else {
+        led("ahead", &rest[0], &[])
     };
-    let ahead = if metres.is_empty() { Vec::new() } else { led("ahead", &rest[0], &[]) };
-    led("add", &tokens[0], &[&rest[..b], &led("coming towards us", &tokens[0], &[]), metres, &ahead])
+    led(
+        "add",
+        &tokens[0],
+        &[
+            &rest[..b],
+            &led("coming towards us", &tokens[0], &[]),
+            metres,
+            &ahead,
+        ],
+    )
 }
 
 /// "car behind me closer: 8 m": that is how far it is.
@@ -293,8 +611,13 @@ fn with_closer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let words = trimmed(&tokens[..colon]);
-    let way = leads(&words[words.len() - 1..], &["closer", "nearer", "farther", "further"]);
-    let metres = tokens.get(colon + 1).is_some_and(|t| number(t).is_some()) && is_unit(tokens.get(colon + 2)) && tokens.len() == colon + 3;
+    let way = leads(
+        &words[words.len() - 1..],
+        &["closer", "nearer", "farther", "further"],
+    );
+    let metres = tokens.get(colon + 1).is_some_and(|t| number(t).is_some())
+        && is_unit(tokens.get(colon + 2))
+        && tokens.len() == colon + 3;
     let who = &words[..words.len() - 1];
     let Some((_, b)) = first_noun(who).filter(|x| x.0 < 3 && x.1 < who.len() && is_place(&who[x.1..])) else {
         return tokens;
@@ -303,8 +626,17 @@ fn with_closer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if way.is_none() || !metres || talk.fits(who) != 1 {
         return tokens;
     }
-    let the = if is(who.first(), &["the", "that", "my"]) { Vec::new() } else { led("the", &tokens[0], &[]) };
-    [&the[..], who, &led("should keep a distance of", &tokens[0], &[&tokens[colon + 1..]])].concat()
+    let the = if is(who.first(), &["the", "that", "my"]) {
+        Vec::new()
+    } else {
+        led("the", &tokens[0], &[])
+    };
+    [
+        &the[..],
+        who,
+        &led("should keep a distance of", &tokens[0], &[&tokens[colon + 1..]]),
+    ]
+    .concat()
 }
 
 /// "motorcycle beside me on the left", where there is one: it should be there.
@@ -321,17 +653,35 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let _ = a;
-    let one = matches!(super::super::lexicon::look_up(text(&body[b - 1])), Some(super::super::lexicon::Sense::Noun(_, false)));
+    let one = matches!(
+        super::super::lexicon::look_up(text(&body[b - 1])),
+        Some(super::super::lexicon::Sense::Noun(_, false))
+    );
     let rest = &body[b..];
     let place = is_place(rest)
-        && !is(rest.first(), &["to", "away", "off", "out", "back", "forward", "up", "down", "into", "onto", "over"])
+        && !is(
+            rest.first(),
+            &[
+                "to", "away", "off", "out", "back", "forward", "up", "down", "into", "onto", "over",
+            ],
+        )
         && !has_noun(rest)
-        && rest.iter().all(|t| matches!(t.kind, TokenKind::Word | TokenKind::Number(_)))
-        && !rest.iter().any(|t| HELPERS.contains(&text(t)) || is_finite(text(t), false) || is(Some(t), &["and", "instead", "too", "please"]));
+        && rest
+            .iter()
+            .all(|t| matches!(t.kind, TokenKind::Word | TokenKind::Number(_)))
+        && !rest.iter().any(|t| {
+            HELPERS.contains(&text(t))
+                || is_finite(text(t), false)
+                || is(Some(t), &["and", "instead", "too", "please"])
+        });
     let there = talk.fits(&body[..b]);
     let known = one && there == 1 || stays.is_some() && there > 0;
     if !known || !place || talk.fits(body) > 0 {
         return tokens;
     }
-    led("the", &tokens[0], &[&body[..b], &led("should be", &tokens[0], &[rest])])
+    led(
+        "the",
+        &tokens[0],
+        &[&body[..b], &led("should be", &tokens[0], &[rest])],
+    )
 }

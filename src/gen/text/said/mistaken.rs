@@ -85,7 +85,8 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 fn excused(tokens: &[Token]) -> usize {
     // "according to the witness it was ..."
     if leads(tokens, &["according to"]).is_some()
-        && let Some(k) = (3..tokens.len().min(8)).find(|k| is(tokens.get(*k), &["it", "that", "this", "what"]))
+        && let Some(k) =
+            (3..tokens.len().min(8)).find(|k| is(tokens.get(*k), &["it", "that", "this", "what"]))
     {
         return k;
     }
@@ -332,8 +333,21 @@ fn told_of_place(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 
 /// "what followed us was a bicycle, not a motorcycle".
 fn it_was_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let n = leads(tokens, &["what", "whatever", "who", "the one that", "the thing that", "the vehicle that", "the one who", "that which"])?;
-    let at = (n + 1..tokens.len().min(n + 8)).find(|k| is(tokens.get(*k), &["is", "was"]) && is(tokens.get(k + 1), &["a", "an"]))?;
+    let n = leads(
+        tokens,
+        &[
+            "what",
+            "whatever",
+            "who",
+            "the one that",
+            "the thing that",
+            "the vehicle that",
+            "the one who",
+            "that which",
+        ],
+    )?;
+    let at = (n + 1..tokens.len().min(n + 8))
+        .find(|k| is(tokens.get(*k), &["is", "was"]) && is(tokens.get(k + 1), &["a", "an"]))?;
     let verb = tokens.get(n..at)?;
     let place = stood(verb, !is_place(verb))?;
     let new = &tokens[at + 1..];
@@ -391,7 +405,13 @@ fn new_there(tokens: &[Token]) -> Option<&[Token]> {
 fn rides_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     const INSTEAD: [&str; 3] = ["instead of", "rather than", "and not"];
     let (i, n) = find(tokens, &INSTEAD)?;
-    let on = |t: &[Token]| leads(t, &["being on", "sitting on", "riding", "riding on", "on", "driving"]).unwrap_or(0);
+    let on = |t: &[Token]| {
+        leads(
+            t,
+            &["being on", "sitting on", "riding", "riding on", "on", "driving"],
+        )
+        .unwrap_or(0)
+    };
     let (old, he) = if i == 0 {
         let comma = tokens.iter().position(|t| t.kind == TokenKind::Comma)?;
         (&tokens[n..comma], &tokens[comma + 1..])
@@ -400,7 +420,25 @@ fn rides_other(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     };
     let old = &old[on(old)..];
     is(he.first(), &["he", "she", "they"]).then_some(())?;
-    let rides = 1 + leads(&he[1..], &["is on", "is riding", "rides", "sits on", "is sitting on", "should be on", "should ride", "should be riding", "has", "is now on", "is now riding", "uses", "is driving", "drives"])?;
+    let rides = 1 + leads(
+        &he[1..],
+        &[
+            "is on",
+            "is riding",
+            "rides",
+            "sits on",
+            "is sitting on",
+            "should be on",
+            "should ride",
+            "should be riding",
+            "has",
+            "is now on",
+            "is now riding",
+            "uses",
+            "is driving",
+            "drives",
+        ],
+    )?;
     exchange(old, &[], &he[rides..], talk).filter(|_| is(old.first(), &["a", "an"]))
 }
 
@@ -414,13 +452,27 @@ fn belongs_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 
 /// "the suspect's vehicle was not a bus but a lorry": whose it was tells no place.
 pub(super) fn whose(tokens: Vec<Token>) -> Vec<Token> {
-    let found = find(&tokens, &["was not a", "wasnt a", "is not a", "isnt a", "was not an", "was no", "is no"]).filter(|x| (2..8).contains(&x.0));
+    let found = find(
+        &tokens,
+        &[
+            "was not a",
+            "wasnt a",
+            "is not a",
+            "isnt a",
+            "was not an",
+            "was no",
+            "is no",
+        ],
+    )
+    .filter(|x| (2..8).contains(&x.0));
     let Some((k, n)) = found else { return tokens };
     let things = ["vehicle", "thing", "object"];
     let thing = is(tokens.get(k - 1), &things);
     // ("the vehicle of the suspect")
     let owned = k > 3 && is(tokens.get(1), &things) && is(tokens.get(2), &["of"]);
-    let of = text(&tokens[k - 2]).ends_with('s') || is(tokens.get(k - 2), &["his", "her", "their"]) || k == 2 && is(tokens.first(), &["the", "that"]);
+    let of = text(&tokens[k - 2]).ends_with('s')
+        || is(tokens.get(k - 2), &["his", "her", "their"])
+        || k == 2 && is(tokens.first(), &["the", "that"]);
     let but = tokens[k + n..].iter().take(6).any(|t| is(Some(t), &["but"]));
     if !(thing && of || owned) || !but {
         return tokens;

@@ -3,8 +3,8 @@
 //! said of it ([`predicate`]) are told apart; what follows for the scene stands in [`acts`]. Who is meant is decided by
 //! what the scene holds. Clauses that are none of this are left to the grammar of imperatives.
 
-mod acts;
 mod actors;
+mod acts;
 mod apart;
 mod arrivals;
 mod as_now;
@@ -120,8 +120,8 @@ use forms::{
 };
 use frame::unwrapped;
 pub use left::Left;
-pub use loose_ends::cut;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
+pub use loose_ends::cut;
 pub use nominal::plain as as_orders;
 use orders::{imperative, some_replaced, turn_about};
 use parting::clauses;
@@ -300,7 +300,9 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
-    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(paired::joined(paired::of_two(tokens))))))
+    group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(
+        paired::joined(paired::of_two(tokens)),
+    ))))
 }
 
 /// Reads a sentence with its stop.

@@ -28,11 +28,17 @@ fn turned_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let np = &tokens[verb..];
-    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "both", "all", "that", "those", "these"])) else {
+    let Some((_, b)) = first_noun(np)
+        .filter(|x| x.0 < 4 && is(np.first(), &["the", "both", "all", "that", "those", "these"]))
+    else {
         return tokens;
     };
     let round = b + begins(&np[b..], "around|round|about").unwrap_or(0);
-    let Some(n) = begins(&np[round..], "until|till|so that|so|to|such that|in such a way that").map(|n| round + n) else {
+    let Some(n) = begins(
+        &np[round..],
+        "until|till|so that|so|to|such that|in such a way that",
+    )
+    .map(|n| round + n) else {
         return tokens;
     };
     let he = n + usize::from(is(np.get(n), &["it", "he", "she", "they"]));
@@ -74,7 +80,9 @@ pub fn of_two(tokens: Vec<Token>) -> Vec<Token> {
         let mut from = 0;
         let mut out = Vec::new();
         for i in 0..=tokens.len() {
-            let link = tokens.get(i).is_none_or(|t| is_mark(t) || is(Some(t), &["and", "so"]));
+            let link = tokens
+                .get(i)
+                .is_none_or(|t| is_mark(t) || is(Some(t), &["and", "so"]));
             if link {
                 out.push((from, i));
                 from = i + 1;
@@ -117,9 +125,15 @@ pub fn of_two(tokens: Vec<Token>) -> Vec<Token> {
 /// "do daytime", "go for a snowy night".
 fn does_sky(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
-        let n = i + begins(&tokens[i..], "do|go for|go with|try|lets do|lets go for|lets try|let us do").filter(|_| begins_at(&tokens, i))?;
+        let n = i + begins(
+            &tokens[i..],
+            "do|go for|go with|try|lets do|lets go for|lets try|let us do",
+        )
+        .filter(|_| begins_at(&tokens, i))?;
         let the = usize::from(is(tokens.get(n), &["a", "an", "the", "some"]));
-        let end = (n..tokens.len()).find(|k| is_mark(&tokens[*k])).unwrap_or(tokens.len());
+        let end = (n..tokens.len())
+            .find(|k| is_mark(&tokens[*k]))
+            .unwrap_or(tokens.len());
         let sky = &tokens[n..end];
         (sky.len() > the && sky.len() < 6 && !has_noun(sky) && super::parting::only_sky(sky)).then(|| {
             out.extend(led("make it", &tokens[i], &[]));
@@ -130,10 +144,15 @@ fn does_sky(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "the scooter fellow": the scooter.
 fn fellow_of(tokens: Vec<Token>) -> Vec<Token> {
-    const WHO: [&str; 9] = ["fellow", "guy", "chap", "dude", "bloke", "wala", "wallah", "walla", "lad"];
+    const WHO: [&str; 9] = [
+        "fellow", "guy", "chap", "dude", "bloke", "wala", "wallah", "walla", "lad",
+    ];
     rewritten(&tokens, |i, _| {
         let who = i > 0 && is(tokens.get(i), &WHO) && noun_at(&tokens[i - 1..]) == Some(1);
-        (who && tokens.get(i + 1).is_none_or(|t| noun_at(std::slice::from_ref(t)).is_none())).then_some(i + 1)
+        (who && tokens
+            .get(i + 1)
+            .is_none_or(|t| noun_at(std::slice::from_ref(t)).is_none()))
+        .then_some(i + 1)
     })
 }
 
@@ -145,8 +164,11 @@ fn side_named(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, _| {
         let n = i + begins(&tokens[i..], OUR_SIDE)?;
         let comma = tokens.get(n).is_some_and(is_mark);
-        let strip = begins(&tokens[(n + 1).min(tokens.len())..], "on the right sidewalk|on the left sidewalk|on the right roadside|on the left roadside|at the right roadside|\
-            at the left roadside|on the right side of the road|on the left side of the road|on the right|on the left|in the oncoming lane|in our lane");
+        let strip = begins(
+            &tokens[(n + 1).min(tokens.len())..],
+            "on the right sidewalk|on the left sidewalk|on the right roadside|on the left roadside|at the right roadside|\
+            at the left roadside|on the right side of the road|on the left side of the road|on the right|on the left|in the oncoming lane|in our lane",
+        );
         (comma && strip.is_some()).then_some(n + 1)
     })
 }
@@ -158,7 +180,10 @@ fn and_with(tokens: Vec<Token>) -> Vec<Token> {
     }
     rewritten(&tokens, |i, out| {
         let with = is(tokens.get(i), &["with"]) && is(out.last(), &["and"]);
-        let named = is(tokens.get(i + 1), &["the", "its", "their", "his", "her", "all", "both"]);
+        let named = is(
+            tokens.get(i + 1),
+            &["the", "its", "their", "his", "her", "all", "both"],
+        );
         (with && named).then_some(i + 1)
     })
 }
@@ -170,9 +195,13 @@ fn our_car(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
         let n = i + begins(&tokens[i..], SIDE_OF)?;
         let the = is(tokens.get(n), &["the"]) && is(tokens.get(n + 1), &["car", "vehicle"]);
-        let closes = tokens.get(n + 2).is_none_or(|t| is_mark(t) || is(Some(t), &["so", "and", "but", "now", "please"]));
+        let closes = tokens
+            .get(n + 2)
+            .is_none_or(|t| is_mark(t) || is(Some(t), &["so", "and", "but", "now", "please"]));
         // (one that the text brings in would be meant)
-        let new = tokens.windows(2).any(|w| is(w.first(), &["a", "another", "one"]) && is(w.get(1), &["car", "vehicle"]));
+        let new = tokens
+            .windows(2)
+            .any(|w| is(w.first(), &["a", "another", "one"]) && is(w.get(1), &["car", "vehicle"]));
         let ours = the && closes && !new && noun_at(&tokens[n + 1..]) == Some(1);
         (ours && talk.has_none(&tokens[n..n + 2])).then(|| {
             out.extend_from_slice(&tokens[i..n]);
@@ -191,13 +220,19 @@ fn without_fix(tokens: Vec<Token>) -> Vec<Token> {
     let cut = (4..tokens.len()).find_map(|k| {
         let n = begins(&tokens[k..], FIX).filter(|_| begins_at(&tokens, k))?;
         let object = k + n + begins(&tokens[k + n..], FIXED)?;
-        let tail = tokens[object..].iter().all(|t| is(Some(t), &["please", "accordingly", "for", "me", "now"]));
+        let tail = tokens[object..]
+            .iter()
+            .all(|t| is(Some(t), &["please", "accordingly", "for", "me", "now"]));
         tail.then_some(k)
     });
     let Some(k) = cut else { return tokens };
     let mut head = &tokens[..k];
     while let Some((last, rest)) = head.split_last()
-        && (is_mark(last) || is(Some(last), &["so", "and", "please", "then", "kindly", "just", "now"]))
+        && (is_mark(last)
+            || is(
+                Some(last),
+                &["so", "and", "please", "then", "kindly", "just", "now"],
+            ))
     {
         head = rest;
     }
@@ -236,26 +271,62 @@ fn not_yet(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !told || talk.fits(np) == 0 {
         return tokens;
     }
-    let be = if still == 2 { led("should be", &rest[0], &[]) } else { Vec::new() };
+    let be = if still == 2 {
+        led("should be", &rest[0], &[])
+    } else {
+        Vec::new()
+    };
     [np, &be, place].concat()
 }
 
 const COME: &[&str] = &[
-    "arrived", "come", "turned up", "shown up", "appeared", "got there", "been there", "reached the scene", "arrived on the scene",
-    "arrived at the scene", "been on the scene", "got here", "entered the scene", "driven up", "arrived there", "arrived here", "come along",
-    "been around", "been present", "joined us", "been on site", "on the scene", "on site", "around", "present", "showed up", "come here",
+    "arrived",
+    "come",
+    "turned up",
+    "shown up",
+    "appeared",
+    "got there",
+    "been there",
+    "reached the scene",
+    "arrived on the scene",
+    "arrived at the scene",
+    "been on the scene",
+    "got here",
+    "entered the scene",
+    "driven up",
+    "arrived there",
+    "arrived here",
+    "come along",
+    "been around",
+    "been present",
+    "joined us",
+    "been on site",
+    "on the scene",
+    "on site",
+    "around",
+    "present",
+    "showed up",
+    "come here",
 ];
 
 /// "the ambulance had not arrived yet": it is not there.
 fn not_come(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "my", "that", "both", "all"])) else {
+    let Some((_, b)) =
+        first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "my", "that", "both", "all"]))
+    else {
         return tokens;
     };
     let said = &tokens[b..];
     let denied = said.iter().any(|t| NOT.contains(&text(t)));
     let yet = said.iter().any(|t| is(Some(t), &["yet", "still"]));
-    let small = ["has", "have", "had", "is", "are", "was", "were", "yet", "still", "even", "at", "all", "then", "by"];
-    let words: Vec<&str> = said.iter().map(text).filter(|w| !NOT.contains(w) && !small.contains(w)).collect();
+    let small = [
+        "has", "have", "had", "is", "are", "was", "were", "yet", "still", "even", "at", "all", "then", "by",
+    ];
+    let words: Vec<&str> = said
+        .iter()
+        .map(text)
+        .filter(|w| !NOT.contains(w) && !small.contains(w))
+        .collect();
     let come = COME.contains(&words.join(" ").as_str());
     if denied && yet && come && talk.fits(&tokens[..b]) > 0 {
         return led("remove", &tokens[0], &[&tokens[..b]]);
@@ -276,10 +347,18 @@ fn complained(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let np = &tokens[from..];
-    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "those", "both", "all", "these", "this"])) else {
+    let Some((_, b)) = first_noun(np).filter(|x| {
+        x.0 < 4
+            && is(
+                np.first(),
+                &["the", "that", "those", "both", "all", "these", "this"],
+            )
+    }) else {
         return tokens;
     };
-    let link = (b..np.len()).find(|i| is_mark(&np[*i]) || is(np.get(*i), &["so", "and"])).unwrap_or(np.len());
+    let link = (b..np.len())
+        .find(|i| is_mark(&np[*i]) || is(np.get(*i), &["so", "and"]))
+        .unwrap_or(np.len());
     let who = &np[..link];
     if tokens[..k].iter().any(is_mark) || link > b + 5 || talk.fits(who) == 0 {
         return tokens;
@@ -288,7 +367,10 @@ fn complained(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if rest.is_empty() {
         return remark(who);
     }
-    match rest.iter().position(|t| is(Some(t), &["it", "them", "him", "her"])) {
+    match rest
+        .iter()
+        .position(|t| is(Some(t), &["it", "them", "him", "her"]))
+    {
         Some(i) if !has_noun(&rest[..i]) => [&rest[..i], who, &rest[i + 1..]].concat(),
         _ => tokens,
     }
@@ -306,13 +388,18 @@ fn moved_where(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let np = &tokens[please + verb..];
-    let Some((_, b)) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "both", "all", "those", "these"])) else {
+    let Some((_, b)) = first_noun(np)
+        .filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "both", "all", "those", "these"]))
+    else {
         return tokens;
     };
     let way = b + begins(&np[b..], WAY).unwrap_or(0);
-    let link = np.get(way).is_some_and(|t| is_mark(t) || is(Some(t), &["because", "as", "since", "and"]));
+    let link = np
+        .get(way)
+        .is_some_and(|t| is_mark(t) || is(Some(t), &["because", "as", "since", "and"]));
     let rest = trimmed(np.get(way + 1..).unwrap_or(&[]));
-    let Some(n) = begins(rest, WANTS).filter(|n| link && is(rest.get(*n), &["it", "them", "him", "her"])) else {
+    let Some(n) = begins(rest, WANTS).filter(|n| link && is(rest.get(*n), &["it", "them", "him", "her"]))
+    else {
         return tokens;
     };
     let place = &rest[n + 1..];
@@ -336,12 +423,23 @@ fn who_where<'t>(part: &'t [Token], talk: &Talk<'_>) -> Option<(Vec<Token>, &'t 
     let part = trimmed(part);
     let (a, b) = first_noun(part).filter(|x| x.0 < 3)?;
     let own = is(part.first(), &["the", "that", "my"]);
-    if part[..a].iter().any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"])) {
+    if part[..a]
+        .iter()
+        .any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]))
+    {
         return None;
     }
-    let np = if own { part[..b].to_vec() } else { led("the", &part[0], &[&part[..b]]) };
+    let np = if own {
+        part[..b].to_vec()
+    } else {
+        led("the", &part[0], &[&part[..b]])
+    };
     let rest = &part[b..];
-    let rest = &rest[begins(rest, "should be|goes|is|now|belongs|should go|comes|drives|moves|must be|has to be|stands").unwrap_or(0)..];
+    let rest = &rest[begins(
+        rest,
+        "should be|goes|is|now|belongs|should go|comes|drives|moves|must be|has to be|stands",
+    )
+    .unwrap_or(0)..];
     (is_place(rest) && !has_noun(rest) && talk.boxes_of(&np).len() == 1).then_some((np, rest))
 }
 
@@ -366,7 +464,17 @@ fn exchanged(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let x = |np: &[Token]| talk.boxes_of(np).first().map_or(0.0, |b| b.center_m.x);
-    let side = |place: &[Token]| match leads(place, &["ahead of us", "in front of us", "ahead of me", "in front of me", "ahead", "in front"]) {
+    let side = |place: &[Token]| match leads(
+        place,
+        &[
+            "ahead of us",
+            "in front of us",
+            "ahead of me",
+            "in front of me",
+            "ahead",
+            "in front",
+        ],
+    ) {
         Some(_) => 1.0,
         None if leads(place, &["behind us", "behind me", "behind"]).is_some() => -1.0,
         None => 0.0,

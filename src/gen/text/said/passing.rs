@@ -345,7 +345,10 @@ fn passed(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
         let has = is(tokens.get(i), &["has", "have"]);
         // "just overtook us"
-        let past = is(tokens.get(i + usize::from(is(tokens.get(i), &["just", "already"]))), &["overtook", "passed"]);
+        let past = is(
+            tokens.get(i + usize::from(is(tokens.get(i), &["just", "already"]))),
+            &["overtook", "passed"],
+        );
         (has || past && is_noun_end(out)).then_some(())?;
         let mut k = i + usize::from(has);
         while is(

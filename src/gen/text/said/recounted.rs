@@ -159,12 +159,36 @@ fn not_this_but(tokens: Vec<Token>) -> Vec<Token> {
         return tokens;
     }
     let helper = led(if ing { "should be" } else { "should" }, &tokens[not], &[]);
-    let comes = is(denied.first(), &["come", "coming", "approach", "approaching", "face", "facing"]);
-    let ahead = (1..rest.len()).find_map(|k| leads(&rest[k..], &["ahead of us", "in front of us", "ahead of me", "in front of me", "ahead"]).map(|n| k + n));
-    let lane = rest.iter().any(|t| is(Some(t), &["lane", "direction", "side", "towards"]));
+    let comes = is(
+        denied.first(),
+        &["come", "coming", "approach", "approaching", "face", "facing"],
+    );
+    let ahead = (1..rest.len()).find_map(|k| {
+        leads(
+            &rest[k..],
+            &[
+                "ahead of us",
+                "in front of us",
+                "ahead of me",
+                "in front of me",
+                "ahead",
+            ],
+        )
+        .map(|n| k + n)
+    });
+    let lane = rest
+        .iter()
+        .any(|t| is(Some(t), &["lane", "direction", "side", "towards"]));
     // (who rides ahead of us does not come towards us any more)
     match ahead.filter(|_| comes && !lane) {
-        Some(end) => [&tokens[..b], &helper, &rest[..end], &led("in our direction", &tokens[not], &[]), &rest[end..]].concat(),
+        Some(end) => [
+            &tokens[..b],
+            &helper,
+            &rest[..end],
+            &led("in our direction", &tokens[not], &[]),
+            &rest[end..],
+        ]
+        .concat(),
         None => [&tokens[..b], &helper, rest].concat(),
     }
 }

@@ -151,7 +151,8 @@ fn but_there(tokens: &[Token]) -> Vec<Token> {
         let rest = &rest[..end.unwrap_or(rest.len())];
         let says = |t: &Token| is_verb(t) && !is_place(std::slice::from_ref(t)) || is_finite(text(t), false);
         let bare = but && is(rest.first(), &["on", "in", "at", "behind", "beside"]) && is_place(rest);
-        let adds = |t: &Token| is_verb(t) || super::words::number(t).is_some() || is(Some(t), &["another", "more"]);
+        let adds =
+            |t: &Token| is_verb(t) || super::words::number(t).is_some() || is(Some(t), &["another", "more"]);
         (bare && out.first().is_some_and(adds) && !rest.iter().any(says)).then_some(i + 2)
     })
 }

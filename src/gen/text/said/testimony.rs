@@ -154,21 +154,105 @@ fn found_that(tokens: &[Token], i: usize) -> Option<usize> {
 /// "in my report the cyclist was ...", "according to our notes ...": one past it.
 fn in_report(tokens: &[Token], i: usize) -> Option<usize> {
     const PAPERS: &[&str] = &[
-        "report", "notes", "statement", "file", "log", "protocol", "drawing", "sketch", "record", "records", "diary", "notebook",
-        "minutes", "plan", "brief", "specification", "spec", "photo", "photos", "footage", "recording", "video", "testimony",
-        "description", "account", "memory", "paper", "papers", "documents", "document", "documentation", "table", "sheet", "email",
-        "case file", "logbook", "tyre marks", "tire marks", "skid marks", "marks", "traces", "tracks", "debris", "damage", "scratches", "reconstruction", "original", "version", "script", "storyboard", "files",
+        "report",
+        "notes",
+        "statement",
+        "file",
+        "log",
+        "protocol",
+        "drawing",
+        "sketch",
+        "record",
+        "records",
+        "diary",
+        "notebook",
+        "minutes",
+        "plan",
+        "brief",
+        "specification",
+        "spec",
+        "photo",
+        "photos",
+        "footage",
+        "recording",
+        "video",
+        "testimony",
+        "description",
+        "account",
+        "memory",
+        "paper",
+        "papers",
+        "documents",
+        "document",
+        "documentation",
+        "table",
+        "sheet",
+        "email",
+        "case file",
+        "logbook",
+        "tyre marks",
+        "tire marks",
+        "skid marks",
+        "marks",
+        "traces",
+        "tracks",
+        "debris",
+        "damage",
+        "scratches",
+        "reconstruction",
+        "original",
+        "version",
+        "script",
+        "storyboard",
+        "files",
     ];
-    const BY: &[&str] = &["in", "on", "according to", "per", "as per", "going by", "judging by", "by", "to go by", "from", "following", "as stated in", "as written in", "in accordance with"];
+    const BY: &[&str] = &[
+        "in",
+        "on",
+        "according to",
+        "per",
+        "as per",
+        "going by",
+        "judging by",
+        "by",
+        "to go by",
+        "from",
+        "following",
+        "as stated in",
+        "as written in",
+        "in accordance with",
+    ];
     let mut k = i + leads(&tokens[i..], BY).filter(|_| opens(tokens, i))?;
-    is(tokens.get(k), &["my", "our", "the", "his", "her", "their", "that", "this", "your"]).then_some(())?;
+    is(
+        tokens.get(k),
+        &["my", "our", "the", "his", "her", "their", "that", "this", "your"],
+    )
+    .then_some(())?;
     k += 1;
-    let which = ["first", "original", "old", "written", "police", "accident", "official", "own", "earlier", "test", "witness"];
+    let which = [
+        "first", "original", "old", "written", "police", "accident", "official", "own", "earlier", "test",
+        "witness",
+    ];
     k += usize::from(is(tokens.get(k), &which));
     k += leads(&tokens[k..], PAPERS)?;
-    k += leads(&tokens[k..], &["of the accident", "of the crash", "of the incident", "of the officer", "of the witness"]).unwrap_or(0);
+    k += leads(
+        &tokens[k..],
+        &[
+            "of the accident",
+            "of the crash",
+            "of the incident",
+            "of the officer",
+            "of the witness",
+        ],
+    )
+    .unwrap_or(0);
     k += usize::from(tokens.get(k).is_some_and(|t| t.kind == TokenKind::Comma));
-    let named = is(tokens.get(k), &["the", "a", "an", "all", "both", "there", "no", "that", "two", "three", "four", "one"]);
+    let named = is(
+        tokens.get(k),
+        &[
+            "the", "a", "an", "all", "both", "there", "no", "that", "two", "three", "four", "one",
+        ],
+    );
     named.then_some(k)
 }
 
@@ -286,8 +370,26 @@ fn shown_that(tokens: &[Token], i: usize) -> Option<usize> {
     let more = is(
         tokens.get(k + 2),
         &[
-            "the", "a", "an", "all", "both", "there", "no", "my", "our", "one", "two", "three", "it", "residents",
-            "people", "parents", "neighbours", "citizens", "locals", "customers",
+            "the",
+            "a",
+            "an",
+            "all",
+            "both",
+            "there",
+            "no",
+            "my",
+            "our",
+            "one",
+            "two",
+            "three",
+            "it",
+            "residents",
+            "people",
+            "parents",
+            "neighbours",
+            "citizens",
+            "locals",
+            "customers",
         ],
     );
     (that && more).then_some(k + 2)

@@ -81,8 +81,12 @@ pub(super) fn topic(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let ends = rest.len() == 1;
-    let gone =
-        is(Some(first), &["none", "gone", "out", "away", "nil", "off", "0", "zero", "nobody", "removed", "deleted"]) || number(first) == Some(0);
+    let gone = is(
+        Some(first),
+        &[
+            "none", "gone", "out", "away", "nil", "off", "0", "zero", "nobody", "removed", "deleted",
+        ],
+    ) || number(first) == Some(0);
     if ends && gone {
         return led("remove all", &tokens[0], &[&the]);
     }
