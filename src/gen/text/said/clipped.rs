@@ -930,7 +930,7 @@ fn parted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && strip
                 .as_deref()
                 .is_none_or(|s| matches!(s, "sidewalk" | "roadside" | "edge" | "pavement" | "kerb")))
-        .then(|| (n, left, strip))
+        .then_some((n, left, strip))
     };
     let (Some(x), Some(y)) = (side(one), side(two)) else {
         return tokens;

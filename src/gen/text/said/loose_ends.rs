@@ -232,7 +232,7 @@ fn same_spot(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let to = usize::from(is(tokens.get(1 + b), &["to", "into", "for", "with", "by"]));
     let new = &tokens[1 + b + to..k];
-    if to == 0 || !first_noun(new).is_some_and(|x| x.0 == 0) {
+    if to == 0 || first_noun(new).is_none_or(|x| x.0 != 0) {
         return tokens[..k].to_vec();
     }
     led(
