@@ -1011,6 +1011,29 @@ pub fn whole(tokens: Vec<Token>) -> Vec<Token> {
                 let n = t.split(' ').count();
                 i >= n && leads(&tokens[i - n..i], &[t]).is_some()
             });
+        // "bring the red car nearer; 8 metres in front of us will do"
+        let closer = tokens[i].kind == TokenKind::Stop && is(tokens.get(i - 1), &["nearer", "closer", "back", "forward", "away"]);
+        let order = closer
+            .then(|| tokens[..i].iter().rposition(|t| t.kind == TokenKind::Stop).map_or(0, |k| k + 1))
+            .filter(|from| {
+                let end = tokens[i + 1..].iter().position(|t| t.kind == TokenKind::Stop).map_or(tokens.len(), |k| i + 1 + k);
+                let please = usize::from(is(tokens.get(*from), &["please"]));
+                super::super::rephrase::is_verb(&tokens[from + please])
+                    && number(&tokens[i + 1]).is_some()
+                    && is_unit(tokens.get(i + 2))
+                    && tokens[i + 1..end].iter().any(|t| is(Some(t), &["do", "enough", "fine", "ok", "good", "perfect", "suffice"]))
+            });
+        if let Some(from) = order {
+            let please = usize::from(is(tokens.get(from), &["please"]));
+            let np = tokens[from + please + 1..i - 1].to_vec();
+            let end = (i + 1..tokens.len()).find(|k| is(tokens.get(*k), &["will", "would", "is", "should", "ought"])).unwrap_or(tokens.len());
+            let stop = (i + 1..tokens.len()).find(|k| tokens[*k].kind == TokenKind::Stop).unwrap_or(tokens.len());
+            let place = tokens[i + 1..end.min(stop)].to_vec();
+            let away = if place.len() == 2 { led("away", &place[0], &[]) } else { Vec::new() };
+            let new = [&np[..], &led("should be", &tokens[i], &[&place, &away])].concat();
+            tokens.splice(from..stop, new);
+            break;
+        }
         if complaint && number(&tokens[i + 1]).is_some() && is_unit(tokens.get(i + 2)) {
             tokens[i].kind = TokenKind::Comma;
         }

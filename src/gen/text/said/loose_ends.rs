@@ -11,6 +11,7 @@ use super::words::{
 
 /// A text without such ends, before its clauses are parted.
 pub fn cut(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = phrased(tokens);
     let mut out: Vec<Token> = Vec::with_capacity(tokens.len());
     let mut ordered = false;
     for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
@@ -35,10 +36,55 @@ pub fn cut(tokens: Vec<Token>) -> Vec<Token> {
     }
 }
 
-const LEAD: &str = "wait no|no wait|oh no|hmm no|wait|hang on|actually no|sorry no|do one thing|please do one thing|one thing|oh wait|hold on";
+const LEAD: &str = "we need a bigger crowd here|we need a bigger crowd|i need a bigger crowd|for the level|for this level|for the shot|wait no|no wait|oh no|hmm no|wait|hang on|actually no|sorry no|do one thing|please do one thing|one thing|oh wait|hold on";
 const PURPOSE: &str = "i would like to practise|i want to practise|id like to practise|i would like to practice|i want to practice|id like to practice|we want to practise|\
     i want to test|i would like to test|we want to test|i need to test|we need to test|i want to check|we want to check|i want to train|we want to train|\
     i want to demonstrate|i would like to demonstrate|i want to explain|i would like to explain|i want to measure|we want to measure|i want to study|we want to study";
+
+const PHRASES: &[(&str, &str)] = &[
+    ("go for a stroll|go for a walk|take a stroll|take a walk|have a stroll|have a walk", "walk"),
+    ("goes for a stroll|goes for a walk|takes a stroll|takes a walk", "walks"),
+    ("clear up the sky|clear the sky|clear the skies", "make it clear"),
+    (
+        "for my pupils to see|for my students to see|for my class to see|for them to see|for the learner to see|for my pupil to see|for the class to see|for the students to see",
+        "",
+    ),
+    ("but this one at|but this one on|but that one at|but that one on|but this time at|but this time on", "on"),
+    ("the very same traffic|the very same scene|the exact same scene|the same traffic", "the scene"),
+];
+
+/// Phrases in plainer words.
+fn phrased(tokens: Vec<Token>) -> Vec<Token> {
+    super::super::wording::rewritten(&tokens, |i, out| {
+        for (phrases, words) in PHRASES {
+            let Some(n) = begins(&tokens[i..], phrases) else {
+                continue;
+            };
+            if words.is_empty() {
+                return Some(i + n);
+            }
+            if *words == "on" && out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+                out.pop();
+            }
+            out.extend(led(words, &tokens[i], &[]));
+            return Some(i + n);
+        }
+        // "a van is missing on the left; add one": said twice
+        let twice = tokens[i].kind == TokenKind::Stop
+            && begins(&tokens[i + 1..], "add one|please add one|so add one|put one there|add it|please add it").is_some()
+            && out.iter().any(|t| is(Some(t), &["missing", "lacking"]));
+        if twice {
+            let n = begins(&tokens[i + 1..], "add one|please add one|so add one|put one there|add it|please add it")?;
+            let comma = usize::from(tokens.get(i + 1 + n).is_some_and(|t| t.kind == TokenKind::Comma));
+            out.push(tokens[i].clone());
+            let and = usize::from(is(tokens.get(i + 1 + n + comma), &["and"]));
+            return Some(i + 1 + n + comma + and);
+        }
+        // "six cars parked here": in the scene
+        let here = is(tokens.get(i), &["here"]) && out.last().is_some_and(|t| is(Some(t), &["parked", "standing"]));
+        here.then_some(i + 1)
+    })
+}
 
 /// "the photographs show a single one": what else tells the same.
 fn shows(body: &[Token]) -> bool {
@@ -128,6 +174,11 @@ const TAILS: &[&str] = &[
     "not in front",
     "but leave the",
     "and leave the",
+    "so please turn it by 180 degrees",
+    "so please turn it around",
+    "so please turn it round",
+    "so turn it by 180 degrees",
+    "so please rotate it by 180 degrees",
 ];
 
 fn without_tail(body: &[Token]) -> &[Token] {
@@ -657,7 +708,9 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         super::super::lexicon::look_up(text(&body[b - 1])),
         Some(super::super::lexicon::Sense::Noun(_, false))
     );
-    let rest = &body[b..];
+    // ("truck only 14 m ahead")
+    let only = usize::from(is(body.get(b), &["only", "just"]));
+    let rest = &body[b + only..];
     let place = is_place(rest)
         && !is(
             rest.first(),
