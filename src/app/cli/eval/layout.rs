@@ -77,6 +77,7 @@ const SETS: &[(&str, &str)] = sets![
     "causes_x.jsonl",
     "exam_9.jsonl",
     "exam_10.jsonl",
+    "exam_11.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",
     "strangers_34.jsonl",

@@ -5,7 +5,7 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::Talk;
-use super::briefs::strip_of;
+use super::brief_places::strip_of;
 use super::words::{
     find, first_noun, has_noun, is, is_finite, is_place, leads, led, number, text, trimmed, unit_at,
 };

@@ -301,7 +301,7 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     .is_some()
     {
         let same = is(tail.get(2), &["same"])
-            .then(|| super::briefs::strip_of(np, talk))
+            .then(|| super::brief_places::strip_of(np, talk))
             .flatten();
         if let (Some(strip), true) = (same, tail.len() < 5) {
             return [

@@ -42,15 +42,27 @@ const PURPOSE: &str = "i would like to practise|i want to practise|id like to pr
     i want to demonstrate|i would like to demonstrate|i want to explain|i would like to explain|i want to measure|we want to measure|i want to study|we want to study";
 
 const PHRASES: &[(&str, &str)] = &[
-    ("go for a stroll|go for a walk|take a stroll|take a walk|have a stroll|have a walk", "walk"),
-    ("goes for a stroll|goes for a walk|takes a stroll|takes a walk", "walks"),
+    (
+        "go for a stroll|go for a walk|take a stroll|take a walk|have a stroll|have a walk",
+        "walk",
+    ),
+    (
+        "goes for a stroll|goes for a walk|takes a stroll|takes a walk",
+        "walks",
+    ),
     ("clear up the sky|clear the sky|clear the skies", "make it clear"),
     (
         "for my pupils to see|for my students to see|for my class to see|for them to see|for the learner to see|for my pupil to see|for the class to see|for the students to see",
         "",
     ),
-    ("but this one at|but this one on|but that one at|but that one on|but this time at|but this time on", "on"),
-    ("the very same traffic|the very same scene|the exact same scene|the same traffic", "the scene"),
+    (
+        "but this one at|but this one on|but that one at|but that one on|but this time at|but this time on",
+        "on",
+    ),
+    (
+        "the very same traffic|the very same scene|the exact same scene|the same traffic",
+        "the scene",
+    ),
 ];
 
 /// Phrases in plainer words.
@@ -71,17 +83,25 @@ fn phrased(tokens: Vec<Token>) -> Vec<Token> {
         }
         // "a van is missing on the left; add one": said twice
         let twice = tokens[i].kind == TokenKind::Stop
-            && begins(&tokens[i + 1..], "add one|please add one|so add one|put one there|add it|please add it").is_some()
+            && begins(
+                &tokens[i + 1..],
+                "add one|please add one|so add one|put one there|add it|please add it",
+            )
+            .is_some()
             && out.iter().any(|t| is(Some(t), &["missing", "lacking"]));
         if twice {
-            let n = begins(&tokens[i + 1..], "add one|please add one|so add one|put one there|add it|please add it")?;
+            let n = begins(
+                &tokens[i + 1..],
+                "add one|please add one|so add one|put one there|add it|please add it",
+            )?;
             let comma = usize::from(tokens.get(i + 1 + n).is_some_and(|t| t.kind == TokenKind::Comma));
             out.push(tokens[i].clone());
             let and = usize::from(is(tokens.get(i + 1 + n + comma), &["and"]));
             return Some(i + 1 + n + comma + and);
         }
         // "six cars parked here": in the scene
-        let here = is(tokens.get(i), &["here"]) && out.last().is_some_and(|t| is(Some(t), &["parked", "standing"]));
+        let here =
+            is(tokens.get(i), &["here"]) && out.last().is_some_and(|t| is(Some(t), &["parked", "standing"]));
         here.then_some(i + 1)
     })
 }

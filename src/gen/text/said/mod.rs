@@ -11,6 +11,9 @@ mod as_now;
 mod asides;
 mod asked;
 mod bare;
+mod brief_places;
+mod brief_turns;
+mod brief_wholes;
 mod briefs;
 mod causing;
 mod clipped;
@@ -112,7 +115,7 @@ use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
 pub use asides::without as without_asides;
 pub use asked::unasked;
-pub use briefs::whole;
+pub use brief_wholes::whole;
 pub use exception::except;
 use forms::{
     all_but, distance_times, fragment, fresh, half, inverted, made_of, only_so_many, preferred, run_out,
