@@ -258,7 +258,7 @@ pub fn lay_out_graph(
 }
 
 /// Other variations of the road that are tried where something finds no place.
-const OTHER_ROADS: u64 = 2;
+const OTHER_ROADS: u64 = 1;
 /// Boxes up to which they are tried.
 const FEW_BOXES: usize = 24;
 
