@@ -229,7 +229,7 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
         0.1..=60.0,
         0.05,
     );
-    let mut yaw_deg = b.yaw_rad.to_degrees();
+    let mut yaw_deg = heading_deg(b.yaw_rad);
     let turned = ui
         .horizontal(|ui| {
             caption(ui, "Heading");
@@ -252,6 +252,12 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
     field(&position, "Move box", edit(Some(center), None, None), commands);
     field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
     field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
+}
+
+/// A heading in degrees from -180 to 180. One beyond the range of a field would be brought into it as if it were typed,
+/// and turn every box that is chosen.
+fn heading_deg(yaw_rad: f64) -> f64 {
+    (yaw_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0
 }
 
 /// What cannot be set: how fast it is, and its number.
@@ -315,7 +321,7 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
     }
     label_ui(ui, &boxes, commands);
     let limit = SceneBox::LIMIT_M;
-    let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, first.yaw_rad.to_degrees());
+    let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, heading_deg(first.yaw_rad));
     let position = numbers(ui, "Middle", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
     let names = ["Length", "Width", "Height"];
     let dimensions = numbers(ui, "Size", names, &mut size, 0.1..=60.0, 0.05);
@@ -366,6 +372,17 @@ pub fn neighbour(ids: &[BoxId], chosen: Option<BoxId>, step: i32) -> Option<BoxI
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A pedestrian placed at 371 degrees turned all chosen boxes as soon as the inspector showed them.
+    #[test]
+    fn headings_beyond_a_turn_lie_within_their_field() {
+        for deg in [371.0, -200.0, 540.0, 180.0, -0.5, 1e4] {
+            let shown = heading_deg(f64::to_radians(deg));
+            assert!((-180.0..=180.0).contains(&shown), "{deg}: {shown}");
+            let off = (shown - deg).to_radians();
+            assert!(off.cos() > 0.999_999, "{deg}: {shown}");
+        }
+    }
 
     #[test]
     fn stepping_through_boxes_goes_round() {
