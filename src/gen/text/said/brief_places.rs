@@ -125,8 +125,7 @@ pub(super) fn same_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     // the last that was named is what it is beside
     let side = (0..i).rev().find_map(|k| {
-        let (a, b) = first_noun(&tokens[k..i]).filter(|x| x.0 > 0 && is(tokens.get(k), &["the", "that"]))?;
-        let _ = a;
+        let (_, b) = first_noun(&tokens[k..i]).filter(|x| x.0 > 0 && is(tokens.get(k), &["the", "that"]))?;
         strip_of(&tokens[k..k + b], talk)
     });
     // "it is parked at the same edge, in front of the police car"

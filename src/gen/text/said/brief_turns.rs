@@ -69,10 +69,9 @@ pub(super) fn apposed(tokens: Vec<Token>) -> Vec<Token> {
     {
         return tokens;
     }
-    let Some((a, b)) = first_noun(&tokens[comma + 1..]).filter(|x| x.0 < 4) else {
+    let Some((_, b)) = first_noun(&tokens[comma + 1..]).filter(|x| x.0 < 4) else {
         return tokens;
     };
-    let _ = a;
     let end = comma + 1 + b;
     let skip = usize::from(tokens.get(end).is_some_and(|t| t.kind == TokenKind::Comma));
     [&tokens[..k], &tokens[comma + 1..end], &tokens[end + skip..]].concat()

@@ -118,7 +118,8 @@ pub fn whole(tokens: Vec<Token>) -> Vec<Token> {
                     .position(|t| t.kind == TokenKind::Stop)
                     .map_or(tokens.len(), |k| i + 1 + k);
                 let please = usize::from(is(tokens.get(*from), &["please"]));
-                super::super::rephrase::is_verb(&tokens[from + please])
+                from + please + 1 < i
+                    && super::super::rephrase::is_verb(&tokens[from + please])
                     && number(&tokens[i + 1]).is_some()
                     && is_unit(tokens.get(i + 2))
                     && tokens[i + 1..end].iter().any(|t| {

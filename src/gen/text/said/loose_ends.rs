@@ -65,6 +65,8 @@ const PHRASES: &[(&str, &str)] = &[
     ),
 ];
 
+const ADD_ONE: &str = "add one|please add one|so add one|put one there|add it|please add it";
+
 /// Phrases in plainer words.
 fn phrased(tokens: Vec<Token>) -> Vec<Token> {
     super::super::wording::rewritten(&tokens, |i, out| {
@@ -83,17 +85,10 @@ fn phrased(tokens: Vec<Token>) -> Vec<Token> {
         }
         // "a van is missing on the left; add one": said twice
         let twice = tokens[i].kind == TokenKind::Stop
-            && begins(
-                &tokens[i + 1..],
-                "add one|please add one|so add one|put one there|add it|please add it",
-            )
-            .is_some()
+            && begins(&tokens[i + 1..], ADD_ONE).is_some()
             && out.iter().any(|t| is(Some(t), &["missing", "lacking"]));
         if twice {
-            let n = begins(
-                &tokens[i + 1..],
-                "add one|please add one|so add one|put one there|add it|please add it",
-            )?;
+            let n = begins(&tokens[i + 1..], ADD_ONE)?;
             let comma = usize::from(tokens.get(i + 1 + n).is_some_and(|t| t.kind == TokenKind::Comma));
             out.push(tokens[i].clone());
             let and = usize::from(is(tokens.get(i + 1 + n + comma), &["and"]));
@@ -148,11 +143,10 @@ fn without_lead(body: &[Token]) -> &[Token] {
         return body;
     };
     let mut rest = &body[please + n..];
-    while let Some((first, after)) = rest
+    while let Some((_, after)) = rest
         .split_first()
         .filter(|x| matches!(x.0.kind, TokenKind::Comma | TokenKind::Mark))
     {
-        let _ = first;
         rest = after;
     }
     if has_noun(rest) { rest } else { body }
@@ -682,6 +676,9 @@ fn with_closer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let words = trimmed(&tokens[..colon]);
+    if words.len() < 2 {
+        return tokens;
+    }
     let way = leads(
         &words[words.len() - 1..],
         &["closer", "nearer", "farther", "further"],
@@ -690,11 +687,8 @@ fn with_closer(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         && is_unit(tokens.get(colon + 2))
         && tokens.len() == colon + 3;
     let who = &words[..words.len() - 1];
-    let Some((_, b)) = first_noun(who).filter(|x| x.0 < 3 && x.1 < who.len() && is_place(&who[x.1..])) else {
-        return tokens;
-    };
-    let _ = b;
-    if way.is_none() || !metres || talk.fits(who) != 1 {
+    let placed = first_noun(who).is_some_and(|x| x.0 < 3 && x.1 < who.len() && is_place(&who[x.1..]));
+    if !placed || way.is_none() || !metres || talk.fits(who) != 1 {
         return tokens;
     }
     let the = if is(who.first(), &["the", "that", "my"]) {
@@ -720,10 +714,9 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && first_noun(&body[k + 1..]).is_some_and(|x| x.0 < 3 && k + 1 + x.1 + 1 == body.len())
     });
     let body = &body[..stays.unwrap_or(body.len())];
-    let Some((a, b)) = first_noun(body).filter(|x| x.0 == 0 && x.1 < body.len()) else {
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 == 0 && x.1 < body.len()) else {
         return tokens;
     };
-    let _ = a;
     let one = matches!(
         super::super::lexicon::look_up(text(&body[b - 1])),
         Some(super::super::lexicon::Sense::Noun(_, false))
