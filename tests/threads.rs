@@ -195,7 +195,8 @@ fn layout_diffusion() {
     let graph = to_graph(&reading.description, 1).graph;
     let layout = template::layout("intersection", 4).expect("a template");
     same_bits("layout diffusion", || {
-        let (boxes, _) = place_with(&net, &graph, &layout, 5, 9).expect("placed");
+        let (boxes, _) =
+            place_with(&net, &graph, &std::collections::BTreeMap::new(), &layout, 5, 9).expect("placed");
         assert!(boxes.len() > 5);
         boxes.iter().fold(Hash::new(), |h, b| {
             h.f64s(b.center_m.to_array())

@@ -1,6 +1,7 @@
 //! How a description becomes a scene: which placer, with or without memory, on which road, around which objects. The window,
 //! the command line and the evaluation share it.
 
+mod diffused;
 mod filling;
 
 use std::collections::BTreeMap;
@@ -10,12 +11,13 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use diffused::diffuse_and_mend;
 pub use filling::{Remembered, recall, remembered_phrases};
 use filling::{fill_in, memory};
 
 use super::memory::layout_of;
 use crate::generation::model::layout::net::LayoutNet;
-use crate::generation::placement::diffuse::{self, PlacementReport, STEPS};
+use crate::generation::placement::diffuse::{self, PlacementReport};
 use crate::generation::placement::memory::RoadRef;
 use crate::generation::text::description::Description;
 use crate::generation::text::place::{Placement, place_with};
@@ -296,54 +298,6 @@ fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {
         Some(folder) => LayoutNet::from_dir(folder)?,
         None => LayoutNet::bundled()?,
     })
-}
-
-/// Boxes by diffusion and projection; then rules place what was left out or breaks a statement, around all the others.
-fn diffuse_and_mend(
-    net: &LayoutNet,
-    graphed: &Graphed,
-    layout: &BevLayout,
-    others: &[SceneBox],
-    seed: u64,
-) -> Result<(Placement, Diffused), diffuse::PlacementError> {
-    let (boxes, report) = diffuse::place_with(net, &graphed.graph, layout, STEPS, seed)?;
-    let moved = &report.projection.moved;
-    let mut diffused = Diffused {
-        mean_move_m: report.projection.mean_move_m(boxes.len()),
-        most_move_m: moved.iter().map(|m| m.distance_m).fold(0.0, f64::max),
-        report,
-        by_rules: 0,
-    };
-    let found: BTreeMap<u32, SceneBox> = diffused.report.nodes.iter().copied().zip(boxes).collect();
-    let mut graph = graphed.graph.clone();
-    let broken: Vec<u32> = diffused
-        .report
-        .projection
-        .broken
-        .iter()
-        .map(|e| e.from)
-        .chain(crate::generation::text::place::broken(&graph, layout, &found))
-        .chain(
-            found
-                .iter()
-                .filter(|(_, b)| road::misplaced(layout, &[**b]) > 0)
-                .map(|f| *f.0),
-        )
-        .collect();
-    for node in &mut graph.nodes {
-        if let (None, Some(b)) = (&node.locked, found.get(&node.id))
-            && !broken.contains(&node.id)
-        {
-            node.locked = Some(Locked::Box(*b));
-        }
-    }
-    diffused.by_rules = graph
-        .nodes
-        .iter()
-        .filter(|n| n.locked.is_none() && matches!(n.kind, NodeKind::Object(_)))
-        .count();
-    let placement = place_with(&graph, layout, seed, &graphed.sizes_m, others);
-    Ok((placement, diffused))
 }
 
 /// A road on which given objects stand well: by the network where it may, else the variation of the templates that has the

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -163,13 +163,22 @@ pub fn place_by_diffusion(
     layout: &BevLayout,
     seed: u64,
 ) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError> {
-    place_with(&*LayoutNet::bundled()?, graph, layout, STEPS, seed)
+    place_with(
+        &*LayoutNet::bundled()?,
+        graph,
+        &BTreeMap::new(),
+        layout,
+        STEPS,
+        seed,
+    )
 }
 
-/// The same with a network and a number of steps.
+/// The same with a network, the sizes of those objects of which more is known than their class (length, width, height, m, by
+/// node id), and a number of steps.
 pub fn place_with(
     net: &LayoutNet,
     graph: &SceneGraph,
+    sizes_m: &BTreeMap<u32, [f64; 3]>,
     layout: &BevLayout,
     steps: usize,
     seed: u64,
@@ -183,8 +192,14 @@ pub fn place_with(
     let values = sample(net, &full, Some(Arc::new(map_raster(&road))), steps, seed)?;
     let diffusion_s = start.elapsed().as_secs_f64();
     let mut boxes = boxes_of(&full, &values);
-    let start = std::time::Instant::now();
     let locked = locked_objects(graph);
+    for (id, size_m) in sizes_m.iter().filter(|(id, _)| !locked.contains(id)) {
+        if let Some(b) = boxes.get_mut(id) {
+            b.size_m = DVec3::from_array(*size_m);
+            b.center_m.z = b.size_m.z / 2.0;
+        }
+    }
+    let start = std::time::Instant::now();
     let projection = project(graph, &road, &mut boxes, &locked);
     let report = PlacementReport {
         steps,
@@ -213,6 +228,7 @@ fn boxes_of(graph: &SceneGraph, values: &[f64]) -> BTreeMap<u32, SceneBox> {
         if object.state == Some(ObjectState::Moving) {
             b.velocity_mps = b.heading() * usual_speed_mps(object.class);
         }
+        b.label = object.label;
         if let Some(Locked::Box(given)) = &node.locked {
             b = *given;
         }
@@ -281,7 +297,7 @@ pub fn lay_out_with(
             node.locked = None;
         }
     }
-    let (boxes, mut report) = place_with(net, &placed, &layout, STEPS, seed)?;
+    let (boxes, mut report) = place_with(net, &placed, &BTreeMap::new(), &layout, STEPS, seed)?;
     report.diffusion_s += road_s;
     report.steps += STEPS;
     Ok((layout, boxes, report))

@@ -1,0 +1,117 @@
+//! Boxes by diffusion and projection; then rules place what was left out or does not stand as it was said to.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Diffused;
+use crate::generation::model::layout::net::LayoutNet;
+use crate::generation::placement::diffuse::{PlacementError, STEPS, place_with as place_by_network};
+use crate::generation::text::lanes::LaneMap;
+use crate::generation::text::place::{Placement, broken, place_with};
+use crate::generation::text::road;
+use crate::generation::text::to_graph::Graphed;
+use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
+use crate::scene::{BevLayout, SceneBox};
+
+/// So far beside the middle of the lane that it was said to be in, m, a vehicle drives between two lanes.
+const ASTRAY_M: f64 = 1.0;
+
+/// Boxes of the network; those that the projection could not mend are placed by rules around all the others. While a
+/// statement does not hold even so, the things that it speaks of are placed anew, too, and at last everything: what was said
+/// comes before what the network would like. The first of these placements that breaks the least is taken.
+pub(super) fn diffuse_and_mend(
+    net: &LayoutNet,
+    graphed: &Graphed,
+    layout: &BevLayout,
+    others: &[SceneBox],
+    seed: u64,
+) -> Result<(Placement, Diffused), PlacementError> {
+    let (boxes, report) = place_by_network(net, &graphed.graph, &graphed.sizes_m, layout, STEPS, seed)?;
+    let moved = &report.projection.moved;
+    let mut diffused = Diffused {
+        mean_move_m: report.projection.mean_move_m(boxes.len()),
+        most_move_m: moved.iter().map(|m| m.distance_m).fold(0.0, f64::max),
+        report,
+        by_rules: 0,
+    };
+    let found: BTreeMap<u32, SceneBox> = diffused.report.nodes.iter().copied().zip(boxes).collect();
+    let map = LaneMap::new(layout);
+    let bad = |id: &u32, b: &SceneBox| {
+        road::misplaced(layout, &[*b]) > 0 || is_between_lanes(&graphed.graph, &map, *id, b)
+    };
+    let mut free: BTreeSet<u32> = diffused
+        .report
+        .projection
+        .broken
+        .iter()
+        .map(|e| e.from)
+        .chain(broken(&graphed.graph, layout, &found))
+        .chain(found.iter().filter(|(id, b)| bad(id, b)).map(|f| *f.0))
+        .collect();
+    let mut best: Option<(Placement, usize)> = None;
+    for last in [false, false, true] {
+        let mut graph = graphed.graph.clone();
+        for node in &mut graph.nodes {
+            if let (None, Some(b)) = (&node.locked, found.get(&node.id))
+                && !free.contains(&node.id)
+                && !last
+            {
+                node.locked = Some(Locked::Box(*b));
+            }
+        }
+        let by_rules = graph
+            .nodes
+            .iter()
+            .filter(|n| n.locked.is_none() && matches!(n.kind, NodeKind::Object(_)))
+            .count();
+        let placement = place_with(&graph, layout, seed, &graphed.sizes_m, others);
+        let bound: Vec<u32> = placement
+            .unmet
+            .iter()
+            .map(|i| graph.edges[*i])
+            .chain(left_out(&graph, &placement))
+            .flat_map(|e| [Some(e.from), Some(e.to), e.and])
+            .flatten()
+            .collect();
+        if best.as_ref().is_none_or(|(b, _)| placement.cost() < b.cost()) {
+            best = Some((placement, by_rules));
+        }
+        if bound.is_empty() {
+            break;
+        }
+        free.extend(bound);
+    }
+    let (placement, by_rules) = best.unwrap_or_default();
+    diffused.by_rules = by_rules;
+    Ok((placement, diffused))
+}
+
+/// What is said of things that found no place.
+fn left_out(graph: &SceneGraph, placement: &Placement) -> Vec<Edge> {
+    let out: BTreeSet<u32> = placement.left_out.iter().map(|l| l.0).collect();
+    let of = |e: &&Edge| out.contains(&e.from);
+    graph.edges.iter().filter(of).copied().collect()
+}
+
+/// True for a vehicle that is said to be in a lane, does not stand at its edge, and is not in the middle of it.
+fn is_between_lanes(graph: &SceneGraph, map: &LaneMap<'_>, id: u32, b: &SceneBox) -> bool {
+    use LaneRole as L;
+    let lane = |e: &&Edge| {
+        let to = graph.node(e.to).map(|n| &n.kind);
+        e.from == id
+            && matches!(
+                to,
+                Some(NodeKind::Lane {
+                    role: L::Ego | L::Left | L::Right | L::Oncoming | L::Cross,
+                    ..
+                })
+            )
+    };
+    let still = graph.object(id).and_then(|o| o.state) == Some(ObjectState::Parked);
+    let p = b.center_m.truncate();
+    b.class.is_vehicle()
+        && !still
+        && graph.edges.iter().any(|e| lane(&e))
+        && map
+            .nearest(p)
+            .is_some_and(|l| l.dir.perp_dot(p - l.p).abs() > ASTRAY_M)
+}
