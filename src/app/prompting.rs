@@ -425,8 +425,30 @@ mod tests {
         let laid = lay_out("", &said.description, 2, &how);
         assert_eq!(laid.placement.boxes.len(), 4, "{:?}", laid.notes);
         let diffused = laid.diffused.expect("by diffusion");
-        assert_eq!(diffused.report.steps, STEPS);
+        assert_eq!(diffused.report.steps, diffuse::STEPS);
         let again = lay_out("", &said.description, 2, &how);
         assert_eq!(laid.placement, again.placement);
+    }
+
+    #[test]
+    fn names_and_colours_survive_the_network() {
+        let prompt =
+            "three red cars parked on the left, two white vans parked on the right, a school bus ahead of me";
+        let names = |placer| {
+            let how = How {
+                placer,
+                ..How::default()
+            };
+            let laid = lay_out(prompt, &read(prompt).description, 2, &how);
+            let mut labels: Vec<String> = laid
+                .placement
+                .boxes
+                .iter()
+                .map(|b| format!("{:?} {:?}", b.class, b.label))
+                .collect();
+            labels.sort();
+            labels
+        };
+        assert_eq!(names(Placer::Diffusion), names(Placer::Rules));
     }
 }
