@@ -11,6 +11,7 @@ use super::edit_grammar::{Back, Command, Destination, Reader};
 use super::holds::in_role;
 use super::lanes::LaneMap;
 use super::mention::Mention;
+use super::second_look::Done;
 use super::select::{Candidate, Chosen, choose};
 use super::tokens::{LONGEST, Span};
 use super::words::edits::{Pick, Verb};
@@ -171,9 +172,11 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
             }
         }
         editor.settle(&mut commands);
+        let only = reader.ended() && done == 0 && commands.len() == 1;
         for command in commands {
             if done < MOST_COMMANDS {
-                editor.read_command(text, done, &command);
+                let words = if only { text } else { command.span.of(text) };
+                editor.read_command(text, words, done, &command);
             }
             done += 1;
         }
@@ -187,11 +190,31 @@ pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
 }
 
 impl Editor<'_> {
-    /// Carries out one command and reports it.
-    fn read_command(&mut self, text: &str, i: usize, command: &Command) {
+    /// Carries out one command, looks at it again as its words stand in the text, and reports it.
+    fn read_command(&mut self, text: &str, words: &str, i: usize, command: &Command) {
         let before = self.out.edits.len();
         let asked = self.out.questions.len();
-        let meaning = self.carry_out(command);
+        let noted = self.out.notes.len();
+        let scene = self.boxes.clone();
+        let mut meaning = self.carry_out(command);
+        let done = Done {
+            edits: before..self.out.edits.len(),
+            before: scene,
+            asked: self.out.questions.len() > asked,
+        };
+        if let Some(did) = self.look_again(words, command, &done) {
+            // (what was not clear at first is done now)
+            let settled = [
+                "not everything said could be met",
+                "was not understood",
+                "was not clear",
+                " is in the scene",
+            ];
+            let new = self.out.notes.split_off(noted);
+            let stays = |n: &String| !settled.iter().any(|s| n.contains(s));
+            self.out.notes.extend(new.into_iter().filter(stays));
+            meaning = Some(meaning.map_or(did.to_string(), |m| format!("{m}, {did}")));
+        }
         self.out
             .not_understood
             .extend(command.reading.not_understood.iter().cloned());

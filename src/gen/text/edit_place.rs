@@ -43,7 +43,7 @@ fn referred(d: &Description) -> Vec<usize> {
 
 impl Editor<'_> {
     /// Boxes that an anchor of a description may mean; those that stand where it was said to be, if any do.
-    fn meant(&self, o: &ObjectSpec) -> Vec<SceneBox> {
+    pub(super) fn meant(&self, o: &ObjectSpec) -> Vec<SceneBox> {
         let noun = match look_up(&o.noun) {
             Some(Sense::Noun(noun, _)) => Some(noun),
             _ => NOUNS.iter().find(|n| n.classes.first() == Some(&o.class)),
@@ -68,7 +68,7 @@ impl Editor<'_> {
     }
 
     /// Of several boxes those that the text spoke of last, if any; else those of the size that the noun has.
-    fn likely(&self, fits: Vec<SceneBox>, o: &ObjectSpec) -> Vec<SceneBox> {
+    pub(super) fn likely(&self, fits: Vec<SceneBox>, o: &ObjectSpec) -> Vec<SceneBox> {
         let sized = of_size(&fits, &o.noun, o.size_m);
         let recent: Vec<SceneBox> = sized
             .iter()

@@ -48,6 +48,7 @@ mod reports;
 pub mod road;
 mod said;
 mod same_words;
+mod second_look;
 mod select;
 mod shares;
 mod spaces;
