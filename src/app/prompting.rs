@@ -425,7 +425,7 @@ mod tests {
         let laid = lay_out("", &said.description, 2, &how);
         assert_eq!(laid.placement.boxes.len(), 4, "{:?}", laid.notes);
         let diffused = laid.diffused.expect("by diffusion");
-        assert_eq!(diffused.report.steps, STEPS);
+        assert_eq!(diffused.report.steps, diffuse::STEPS);
         let again = lay_out("", &said.description, 2, &how);
         assert_eq!(laid.placement, again.placement);
     }
