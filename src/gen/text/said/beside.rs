@@ -5,8 +5,9 @@ use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, rewritten};
+use super::Talk;
 use super::lists::HELPERS;
-use super::words::{first_noun, has_noun, is, is_finite, leads, led, noun_at, number, text};
+use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, noun_at, number, text};
 use crate::scene::Class;
 
 /// A text in plainer words, before its clauses are parted.
@@ -189,6 +190,92 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
     let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     rewritten(&tokens, |i, out| {
         let t = &tokens[i];
+        let opens = is_mark(out.last()) || is(out.last(), &["and", "but", "then", "please"]);
+        // "let a second bus be parked on the left"
+        if opens
+            && is(Some(t), &["let", "have"])
+            && is(tokens.get(i + 1), &["a", "an", "another"])
+            && let Some((_, b)) = first_noun(&tokens[i + 1..]).filter(|n| n.0 < 5)
+            && is(tokens.get(i + 1 + b), &["be"])
+            && tokens[i + 1..i + 1 + b].iter().all(|t| t.kind == TokenKind::Word)
+            && (is(tokens.get(i + 2 + b), &["parked"]) || tokens.get(i + 2 + b..).is_some_and(is_place))
+        {
+            out.extend(led("add", t, &[&tokens[i + 1..i + 1 + b]]));
+            return Some(i + 2 + b);
+        }
+        // "everyone has left the zebra"
+        if opens
+            && is(Some(t), &["everyone", "everybody"])
+            && is(
+                tokens.get(i + 1),
+                &[
+                    "has", "should", "must", "is", "may", "can", "shall", "leaves", "goes",
+                ],
+            )
+            && !tokens[i..]
+                .iter()
+                .take_while(|t| t.kind != TokenKind::Stop)
+                .any(|t| is(Some(t), &["but", "except", "else", "who", "save", "apart"]))
+        {
+            out.extend(led("all the pedestrians", t, &[]));
+            return Some(i + 1);
+        }
+        // "bicycles here: four of them, to my right"
+        if text(t) == ":"
+            && tokens.get(i + 1).is_some_and(|t| number(t).is_some())
+            && is(tokens.get(i + 2), &["of"])
+            && is(tokens.get(i + 3), &["them", "these"])
+        {
+            let from = out
+                .iter()
+                .rposition(|t| is_mark(Some(t)) || is(Some(t), &["and", "but"]))
+                .map_or(0, |k| k + 1);
+            let (a, b) = first_noun(&out[from..])?;
+            let lead = &out[from..from + a];
+            let plain = !out[from..]
+                .iter()
+                .any(|t| HELPERS.contains(&text(t)) || is_verb(t) || number(t).is_some())
+                && !lead
+                    .iter()
+                    .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
+            if plain && matches!(look_up(text(&out[from + b - 1])), Some(Sense::Noun(_, true))) {
+                let noun = out[from + a..from + b].to_vec();
+                out.truncate(from);
+                let comma = usize::from(tokens.get(i + 4).is_some_and(|t| t.kind == TokenKind::Comma));
+                out.extend(led("add", t, &[&tokens[i + 1..i + 2], &noun]));
+                return Some(i + 4 + comma);
+            }
+        }
+        // "..., while the first two keep standing there": as before
+        if is(Some(t), &["while", "whereas"])
+            && let Some(n) = begins(
+                &tokens[i + 1..],
+                "the first two|the first three|the first one|the first|the existing ones|the existing two|the original two|the original ones",
+            )
+            && is(
+                tokens.get(i + 1 + n),
+                &[
+                    "keep",
+                    "keeps",
+                    "stay",
+                    "stays",
+                    "remain",
+                    "remains",
+                    "continue",
+                    "continues",
+                    "still",
+                    "just",
+                ],
+            )
+        {
+            let end = (i..tokens.len())
+                .find(|k| tokens[*k].kind == TokenKind::Stop)
+                .unwrap_or(tokens.len());
+            if out.last().is_some_and(|t| t.kind == TokenKind::Comma) {
+                out.pop();
+            }
+            return Some(end);
+        }
         // "besides, the taxi was further off"
         if starts(out)
             && is(Some(t), &["besides", "moreover", "furthermore"])
@@ -289,6 +376,32 @@ fn without_mishap(tokens: Vec<Token>) -> Vec<Token> {
         (article == 1).then_some(())?;
         let colon = (i + n + 2..tokens.len().min(i + n + 6)).find(|k| text(&tokens[*k]) == ":")?;
         (!has_noun(&tokens[i + n..colon]) && has_noun(&tokens[colon..])).then_some(colon + 1)
+    })
+}
+
+/// "a truck that waits for all of them", where they are on a crossing: it waits there; elsewhere that says only that it stands.
+pub(super) fn waits_for(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const STANDS: &[&str] = &[
+        "waits", "wait", "waiting", "stopped", "stops", "stop", "stopping", "brakes", "braked", "yields",
+        "yielding", "halted",
+    ];
+    const THEM: &str = "all of them|both of them|them all|them both|them|him|her|these people|the people|the pedestrians|those people";
+    rewritten(&tokens, |i, out| {
+        let stands = is(tokens.get(i), &["for", "to"]) && is(out.last(), STANDS);
+        let n = begins(tokens.get(i + 1..)?, THEM).filter(|_| stands)?;
+        let end = i + 1 + n;
+        let rest = tokens.get(end..).unwrap_or(&[]);
+        let at_stripes = || talk.fits(&led("pedestrians on the crossing", &tokens[i], &[])) > 0;
+        let named = rest
+            .iter()
+            .any(|t| is(Some(t), &["zebra", "crossing", "crosswalk"]));
+        let closes = is_mark(rest.first()) || is(rest.first(), &["and", "too", "there"]);
+        if closes && !named && at_stripes() {
+            out.extend(led("at the crossing", &tokens[i], &[]));
+            return Some(end);
+        }
+        let pronoun = n == 1 || !is(tokens.get(i + 1), &["the", "these", "those"]);
+        (pronoun && (closes || is_place(rest))).then_some(end)
     })
 }
 

@@ -6,7 +6,7 @@ use super::super::tokens::{Token, TokenKind};
 use super::apart::{orders_something, says};
 use super::lists::{HELPERS, NEGATED};
 use super::some_of::removes;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, number, text};
+use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, noun_at, number, text};
 
 /// Small leads after "and" that name no place of their own: what they point at is the clause before.
 const LEADS: &[&str] = &[
@@ -62,7 +62,7 @@ enum Next {
     /// They are a sentence from here on.
     From(usize),
     /// They are one after a verb that the half before has, or that is understood.
-    Led(&'static str, usize),
+    Led(String, usize),
 }
 
 /// The tokens with a full stop at each such link.
@@ -98,7 +98,7 @@ fn of_sentence(tokens: Vec<Token>) -> Vec<Token> {
     out.push(stop);
     let rest = match next {
         Next::From(n) => tokens[b + n..].to_vec(),
-        Next::Led(verb, n) => led(verb, &tokens[b], &[&tokens[b + n..]]),
+        Next::Led(verb, n) => led(&verb, &tokens[b], &[&tokens[b + n..]]),
     };
     out.extend(of_sentence(rest));
     out
@@ -149,7 +149,7 @@ fn whole(left: &[Token]) -> bool {
         ],
     )
     .is_some();
-    let number_changes = fresh(Some(first))
+    let number_changes = (fresh(Some(first)) || noun_at(left).is_some())
         && left
             .iter()
             .any(|t| is(Some(t), &["instead", "not", "more", "fewer"]));
@@ -240,7 +240,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
             && !at
                 .iter()
                 .any(|t| verbal(t) || is(Some(t), &["its", "his", "their"]));
-        return told.then_some(Next::Led("add", 1));
+        return told.then_some(Next::Led("add".into(), 1));
     }
     // "no more barriers there, but a truck coming along it"
     let no = (0..left.len()).any(|k| {
@@ -254,7 +254,52 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
         && right.get(b).is_some_and(|t| text(t).ends_with("ing"))
         && is_place(&right[b + 1..])
     {
-        return Some(Next::Led("add", 0));
+        return Some(Next::Led("add".into(), 0));
+    }
+    // "change the van for a bus, the car for a truck"
+    const TRADES: &[&str] = &[
+        "change",
+        "swap",
+        "exchange",
+        "replace",
+        "trade",
+        "switch",
+        "turn",
+        "convert",
+        "substitute",
+        "transform",
+    ];
+    if is(left.first(), TRADES) && is(right.first(), &["the", "both", "all", "that"]) {
+        let by = |t: Option<&Token>| is(t, &["for", "by", "with", "into", "against"]);
+        let each = first_noun(right).is_some_and(|n| {
+            n.0 < 4
+                && by(right.get(n.1))
+                && new_one(&right[n.1 + 1..]).is_some()
+                && left.iter().any(|t| text(t) == text(&right[n.1]))
+        });
+        if each {
+            return Some(Next::Led(text(left.first()?).into(), 0));
+        }
+    }
+    let corrects = leads(&left[1..], &["instead of", "rather than"]).is_some()
+        || (1..left.len()).any(|k| {
+            leads(&left[k..], &["instead of", "rather than"])
+                .is_some_and(|n| left.get(k + n).is_some_and(|t| number(t).is_some()))
+        });
+    // "motorcycle at 25 m instead of 15, no car"
+    let none = is(right.first(), &["no"]) && first_noun(right).is_some_and(|n| n.0 < 3 && n.1 == right.len());
+    if corrects
+        && !left.iter().any(verbal)
+        && (none
+            || words
+                && new_one(right).is_some_and(|b| {
+                    b == right.len()
+                        || is_place(&right[b..])
+                        || is(right.get(b), &["parked"])
+                        || text(&right[b]).ends_with("ing")
+                }))
+    {
+        return Some(Next::From(0));
     }
     if !words {
         return None;
@@ -280,23 +325,24 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
             .iter()
             .any(|t| verbal(t) || t.kind == TokenKind::Comma || is(Some(t), &["and", "closer", "further"]))
     {
-        return Some(Next::Led(
-            if is(left.first(), &["park"]) {
-                "park"
-            } else {
-                "add"
-            },
-            0,
-        ));
+        let verb = if is(left.first(), &["park"]) {
+            "park"
+        } else {
+            "add"
+        };
+        return Some(Next::Led(verb.into(), 0));
     }
     // "remove the worker and half of the cones"
     let share = leads(right, &["half of the", "half the", "half of my"]);
     if removes(left.first())
         && !left.iter().any(verbal)
         && share.is_some_and(|n| first_noun(&right[n..]).is_some_and(|x| x.0 < 3))
-        && !right.iter().any(verbal)
+        && !right
+            .iter()
+            .take_while(|t| t.kind == TokenKind::Word && text(t) != "and")
+            .any(verbal)
     {
-        return Some(Next::Led("remove", 0));
+        return Some(Next::Led("remove".into(), 0));
     }
     None
 }

@@ -263,7 +263,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
-    let out = owned::plain(remarks::reported(out), talk);
+    let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);
     if out.is_empty() {
