@@ -167,6 +167,18 @@ fn withdrawn(tokens: Vec<Token>) -> Vec<Token> {
     out
 }
 
+/// Length of a run of words that only take back what was said: "hmm, no,".
+fn took_back(tokens: &[Token]) -> Option<usize> {
+    const NO: &str = "no|hmm|hm|oh|er|uh|sorry|wait|no wait|hang on|hold on|correction|nope|oops|ah|well";
+    let mut k = 0;
+    while let Some(n) =
+        begins(&tokens[k..], NO).filter(|n| tokens.get(k + n).is_some_and(|t| t.kind == TokenKind::Comma))
+    {
+        k += n + 1;
+    }
+    (k > 0).then_some(k)
+}
+
 /// The plural of a noun.
 fn many(noun: &[Token]) -> Vec<Token> {
     let mut out = noun.to_vec();
@@ -187,6 +199,7 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
     const HAD: &str = "where you had only|where you had just|where you had|where we had only|where we had|where i had only|where i had|where there was only|where there was just|where there were only|where there had been only|where until now there was only|where it had been only";
     const SKY: &str = "only with|just with|but with|only in|just in";
     const OVER: &str = "over it|over it all|over everything|over them|over all of it|around it|in it|over the scene|on it|on top of it|on top";
+    const MISTAKE: &str = "i made a mistake|i have made a mistake|ive made a mistake|we made a mistake|there was a mistake|i got it wrong|i got that wrong|that was wrong|that was a mistake|i was wrong|i was mistaken|my mistake|i mixed something up|i got something wrong";
     let sky = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
     rewritten(&tokens, |i, out| {
         let t = &tokens[i];
@@ -232,12 +245,13 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
                 .map_or(0, |k| k + 1);
             let (a, b) = first_noun(&out[from..])?;
             let lead = &out[from..from + a];
-            let plain = !out[from..]
+            let plain = !out[from..].iter().any(|t| {
+                HELPERS.contains(&text(t))
+                    || is_verb(t) && !is(Some(t), &["only", "just"])
+                    || number(t).is_some()
+            }) && !lead
                 .iter()
-                .any(|t| HELPERS.contains(&text(t)) || is_verb(t) || number(t).is_some())
-                && !lead
-                    .iter()
-                    .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
+                .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
             if plain && matches!(look_up(text(&out[from + b - 1])), Some(Sense::Noun(_, true))) {
                 let noun = out[from + a..from + b].to_vec();
                 out.truncate(from);
@@ -275,6 +289,38 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
                 out.pop();
             }
             return Some(end);
+        }
+        // "hmm, no, make it a car"
+        if starts(out)
+            && let Some(n) = took_back(&tokens[i..])
+            && tokens.get(i + n).is_some_and(is_verb)
+        {
+            return Some(i + n);
+        }
+        // "I made a mistake: it was ..."
+        if starts(out)
+            && let Some(n) = begins(&tokens[i..], MISTAKE)
+            && is_mark(tokens.get(i + n))
+            && tokens.get(i + n + 1).is_some_and(|t| t.kind == TokenKind::Word)
+            && tokens[i + n].kind != TokenKind::Stop
+        {
+            return Some(i + n + 1);
+        }
+        // "I wanted the van in front, 8 m ahead of me"
+        if is(Some(t), &["in"])
+            && is(tokens.get(i + 1), &["front"])
+            && is_mark(tokens.get(i + 2))
+            && out.len() > 2
+        {
+            let told = tokens.get(i + 2).is_some_and(|t| t.kind == TokenKind::Comma)
+                && tokens.get(i + 3).is_some_and(|t| number(t).is_some())
+                && tokens[i + 4..]
+                    .iter()
+                    .take(5)
+                    .any(|t| is(Some(t), &["ahead", "front", "before"]));
+            if told {
+                return Some(i + 3);
+            }
         }
         // "besides, the taxi was further off"
         if starts(out)

@@ -211,18 +211,7 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some((_, b)) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 4) else {
         return tokens;
     };
-    let mut to = i + 1 + b;
-    // ("give the man on the left pavement a companion")
-    if is_place(&tokens[to..])
-        && let Some(k) = (2..8).find(|k| {
-            let new = tokens.get(to + k..).unwrap_or(&[]);
-            is_fresh(new.first()) && first_noun(new).is_some_and(|x| x.0 < 4)
-        })
-        && !has_noun(&tokens[to..to + k])
-        && talk.fits(&tokens[i + 1..to + k]) > 0
-    {
-        to += k;
-    }
+    let to = i + 1 + b;
     let np = &tokens[i + 1..to];
     if talk.fits(np) == 0 {
         return tokens;

@@ -1,6 +1,7 @@
 //! Links that nothing but a clause of its own follows: "..., and for that the cones have to be removed", "... and behind the car
 //! there should be a truck", "... and could a police car follow me". Both halves are read one after the other.
 
+use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
 use super::apart::{orders_something, says};
@@ -119,6 +120,10 @@ fn new_one(tokens: &[Token]) -> Option<usize> {
 
 fn verbal(t: &Token) -> bool {
     let w = text(t);
+    // ("cones" and "walkers" are no verbs here)
+    if matches!(look_up(w), Some(Sense::Noun(..))) {
+        return false;
+    }
     HELPERS.contains(&w) || NEGATED.contains(&w) || is_finite(w, false) && !w.ends_with("ed")
 }
 
@@ -335,7 +340,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
     // "remove the worker and half of the cones"
     let share = leads(right, &["half of the", "half the", "half of my"]);
     if removes(left.first())
-        && !left.iter().any(verbal)
+        && !left[1..].iter().any(verbal)
         && share.is_some_and(|n| first_noun(&right[n..]).is_some_and(|x| x.0 < 3))
         && !right
             .iter()
