@@ -4,10 +4,11 @@
 use super::super::lexicon::{Sense, look_up};
 use super::super::rephrase::is_verb;
 use super::super::tokens::{Token, TokenKind};
+use super::super::wording::rewritten;
 use super::apart::{orders_something, says};
 use super::lists::{HELPERS, NEGATED};
 use super::some_of::removes;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, noun_at, number, text};
+use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, longest, noun_at, number, text};
 
 /// Small leads after "and" that name no place of their own: what they point at is the clause before.
 const LEADS: &[&str] = &[
@@ -58,14 +59,6 @@ const THERE_IS: &[&str] = &[
 const ASKS: &[&str] = &["could", "can", "should", "would", "may", "must"];
 const ANYBODY: &[&str] = &["everyone", "everybody", "nobody", "somebody", "someone"];
 
-/// What becomes of the words after a link.
-enum Next {
-    /// They are a sentence from here on.
-    From(usize),
-    /// They are one after a verb that the half before has, or that is understood.
-    Led(String, usize),
-}
-
 /// The tokens with a full stop at each such link.
 pub fn parted(tokens: Vec<Token>) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::with_capacity(tokens.len());
@@ -97,11 +90,7 @@ fn of_sentence(tokens: Vec<Token>) -> Vec<Token> {
     };
     let mut out = tokens[..a].to_vec();
     out.push(stop);
-    let rest = match next {
-        Next::From(n) => tokens[b + n..].to_vec(),
-        Next::Led(verb, n) => led(&verb, &tokens[b], &[&tokens[b + n..]]),
-    };
-    out.extend(of_sentence(rest));
+    out.extend(of_sentence([&next[..], &tokens[body..]].concat()));
     out
 }
 
@@ -193,18 +182,19 @@ fn who_does(rest: &[Token]) -> Option<usize> {
     (verb + 1 < rest.len()).then_some(verb)
 }
 
-fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
+/// What is read after the full stop, if one stands here: the words after the link, with a verb that they share.
+fn next(left: &[Token], right: &[Token], words: bool) -> Option<Vec<Token>> {
     whole(left).then_some(())?;
     let comma = |k: usize| usize::from(right.get(k).is_some_and(|t| t.kind == TokenKind::Comma));
     if let Some(n) = leads(right, LEADS) {
         let n = n + comma(n);
-        return clause(&right[n..]).then_some(Next::From(n));
+        return clause(&right[n..]).then_some(right[n..].to_vec());
     }
     // "and could a police car follow me"
     if words && is(right.first(), ASKS) {
         let asked = &right[1..];
         let who = new_one(asked).is_some_and(|b| asked.get(b).is_some_and(|t| is_finite(text(t), true)));
-        return who.then_some(Next::From(0));
+        return who.then_some(right.to_vec());
     }
     // "and as the lights have failed a policeman stands ...": only why
     if words
@@ -218,21 +208,38 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
                 && new_one(&right[*k..]).is_some()
                 && clause(&right[*k..])
         })?;
-        return Some(Next::From(from));
+        return Some(right[from..].to_vec());
     }
     // "and everyone has left"
     if words && is(right.first(), ANYBODY) && right.get(1).is_some_and(verbal) && right.len() > 2 {
-        return Some(Next::From(0));
+        return Some(right.to_vec());
     }
     // "and nobody on foot", "and no one on the left sidewalk"
     if words
         && leads(right, &["nobody", "no one"])
             .is_some_and(|n| is_place(&right[n..]) || leads(&right[n..], &["on foot", "else"]).is_some())
     {
-        return (!right.iter().any(|t| is(Some(t), &["and", "but", "or"]))).then_some(Next::From(0));
+        return (!right.iter().any(|t| is(Some(t), &["and", "but", "or"]))).then_some(right.to_vec());
     }
     if words && who_does(right).is_some() {
-        return Some(Next::From(0));
+        return Some(right.to_vec());
+    }
+    // "remove the worker and half of the cones"
+    let share = leads(right, &["half of the", "half the", "half of my"]);
+    if words
+        && removes(left.first())
+        && !left[1..].iter().any(verbal)
+        && share.is_some_and(|n| first_noun(&right[n..]).is_some_and(|x| x.0 < 3))
+        && !right
+            .iter()
+            .take_while(|t| t.kind == TokenKind::Word && text(t) != "and")
+            .any(verbal)
+    {
+        return Some(led("remove", &right[0], &[&right[0..]]));
+    }
+    // "of the three vehicles only the van may stay, and two people ..."
+    if is(left.last(), &["stay", "stays", "remain", "remains"]) && is(left.first(), &["of", "out"]) && clause(right) {
+        return Some(right.to_vec());
     }
     if words && is_place(right) {
         return placed(right);
@@ -245,7 +252,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
             && !at
                 .iter()
                 .any(|t| verbal(t) || is(Some(t), &["its", "his", "their"]));
-        return told.then_some(Next::Led("add".into(), 1));
+        return told.then_some(led("add", &right[0], &[&right[1..]]));
     }
     // "no more barriers there, but a truck coming along it"
     let no = (0..left.len()).any(|k| {
@@ -259,7 +266,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
         && right.get(b).is_some_and(|t| text(t).ends_with("ing"))
         && is_place(&right[b + 1..])
     {
-        return Some(Next::Led("add".into(), 0));
+        return Some(led("add", &right[0], &[&in_strip(right, left)]));
     }
     // "change the van for a bus, the car for a truck"
     const TRADES: &[&str] = &[
@@ -283,7 +290,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
                 && left.iter().any(|t| text(t) == text(&right[n.1]))
         });
         if each {
-            return Some(Next::Led(text(left.first()?).into(), 0));
+            return Some(led(text(left.first()?), &right[0], &[right]));
         }
     }
     let corrects = leads(&left[1..], &["instead of", "rather than"]).is_some()
@@ -304,7 +311,7 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
                         || text(&right[b]).ends_with("ing")
                 }))
     {
-        return Some(Next::From(0));
+        return Some(right.to_vec());
     }
     if !words {
         return None;
@@ -335,29 +342,35 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Next> {
         } else {
             "add"
         };
-        return Some(Next::Led(verb.into(), 0));
-    }
-    // "remove the worker and half of the cones"
-    let share = leads(right, &["half of the", "half the", "half of my"]);
-    if removes(left.first())
-        && !left[1..].iter().any(verbal)
-        && share.is_some_and(|n| first_noun(&right[n..]).is_some_and(|x| x.0 < 3))
-        && !right
-            .iter()
-            .take_while(|t| t.kind == TokenKind::Word && text(t) != "and")
-            .any(verbal)
-    {
-        return Some(Next::Led("remove".into(), 0));
+        return Some(led(verb, &right[0], &[right]));
     }
     None
 }
 
+/// "a truck coming along it": along the lane that was named.
+fn in_strip(right: &[Token], left: &[Token]) -> Vec<Token> {
+    let strip = (0..left.len()).find_map(|i| {
+        is(left.get(i), &["the", "my", "our"]).then_some(())?;
+        let (sense, n) = longest(&left[i + 1..])?;
+        matches!(sense, Sense::Place(..)).then(|| &left[i..i + 1 + n])
+    });
+    let Some(strip) = strip else { return right.to_vec() };
+    rewritten(right, |i, out| {
+        let it = is(right.get(i), &["it"]) && is(out.last(), &["along", "in", "on", "down", "up"]);
+        it.then(|| {
+            out.pop();
+            out.extend(led("in", &right[i], &[strip]));
+            i + 1
+        })
+    })
+}
+
 /// "behind the car there should be a truck", "farther on, 25 m ahead of me, an excavator standing in my lane".
-fn placed(right: &[Token]) -> Option<Next> {
+fn placed(right: &[Token]) -> Option<Vec<Token>> {
     if let Some(k) = (1..right.len().min(14)).find(|k| leads(&right[*k..], THERE_IS).is_some()) {
         let before = &right[..k];
         let own = !before.iter().any(verbal) && !is(before.last(), &["that", "which", "where", "if"]);
-        return (own && has_noun(&right[k..])).then_some(Next::From(0));
+        return (own && has_noun(&right[k..])).then_some(right.to_vec());
     }
     // (a comma parts the place from who is there)
     let k = (1..right.len().min(16))
@@ -368,7 +381,7 @@ fn placed(right: &[Token]) -> Option<Next> {
         .is_none_or(|t| text(t).ends_with("ing") || is(Some(t), &["parked", "stopped"]));
     let place = &right[..k];
     let plain = !has_noun(place) && !place.iter().any(|t| verbal(t) || is(Some(t), &["and"]));
-    (stands && plain).then_some(Next::From(0))
+    (stands && plain).then_some(right.to_vec())
 }
 
 #[cfg(test)]
