@@ -7,7 +7,9 @@ use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, rewritten};
 use super::Talk;
 use super::lists::HELPERS;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, noun_at, number, text};
+use super::words::{
+    first_noun, has_noun, is, is_finite, is_place, leads, led, longest, noun_at, number, text,
+};
 use crate::scene::Class;
 
 /// A text in plainer words, before its clauses are parted.
@@ -231,6 +233,18 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
                 .any(|t| is(Some(t), &["but", "except", "else", "who", "save", "apart"]))
         {
             out.extend(led("all the pedestrians", t, &[]));
+            // (those who have left a place are those who were there)
+            let left = is(tokens.get(i + 1), &["has"])
+                && is(tokens.get(i + 2), &["left"])
+                && is(tokens.get(i + 3), &["the"]);
+            if left
+                && let Some((Sense::Place(..), n)) = tokens.get(i + 4..).and_then(longest)
+                && (is_mark(tokens.get(i + 4 + n)) || is(tokens.get(i + 4 + n), &["and"]))
+            {
+                out.extend(led("on the", t, &[&tokens[i + 4..i + 4 + n]]));
+                out.extend(led("have left", t, &[]));
+                return Some(i + 4 + n);
+            }
             return Some(i + 1);
         }
         // "bicycles here: four of them, to my right"
@@ -239,10 +253,12 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
             && is(tokens.get(i + 2), &["of"])
             && is(tokens.get(i + 3), &["them", "these"])
         {
-            let from = out
-                .iter()
-                .rposition(|t| is_mark(Some(t)) || is(Some(t), &["and", "but"]))
-                .map_or(0, |k| k + 1);
+            let link = |k: usize| {
+                is_mark(out.get(k))
+                    || is(out.get(k), &["and"])
+                    || is(out.get(k), &["but"]) && (k == 0 || !is(out.get(k - 1), &["nothing"]))
+            };
+            let from = (0..out.len()).rev().find(|k| link(*k)).map_or(0, |k| k + 1);
             let (a, b) = first_noun(&out[from..])?;
             let lead = &out[from..from + a];
             let plain = !out[from..].iter().any(|t| {
@@ -254,9 +270,14 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
                 .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
             if plain && matches!(look_up(text(&out[from + b - 1])), Some(Sense::Noun(_, true))) {
                 let noun = out[from + a..from + b].to_vec();
+                let place = if is_place(&out[from + b..]) {
+                    out[from + b..].to_vec()
+                } else {
+                    Vec::new()
+                };
                 out.truncate(from);
                 let comma = usize::from(tokens.get(i + 4).is_some_and(|t| t.kind == TokenKind::Comma));
-                out.extend(led("add", t, &[&tokens[i + 1..i + 2], &noun]));
+                out.extend(led("add", t, &[&tokens[i + 1..i + 2], &noun, &place]));
                 return Some(i + 4 + comma);
             }
         }
@@ -442,7 +463,7 @@ pub(super) fn waits_for(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             .iter()
             .any(|t| is(Some(t), &["zebra", "crossing", "crosswalk"]));
         let closes = is_mark(rest.first()) || is(rest.first(), &["and", "too", "there"]);
-        if closes && !named && at_stripes() {
+        if (closes || is_place(rest)) && !named && at_stripes() {
             out.extend(led("at the crossing", &tokens[i], &[]));
             return Some(end);
         }

@@ -60,7 +60,14 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
             ],
         )
         .is_some_and(|n| {
-            (n..rest.len()).any(|k| is(rest.get(k), &["on", "to", "onto", "in", "at", "behind", "beside"]))
+            (n..rest.len()).any(|k| {
+                is(
+                    rest.get(k),
+                    &[
+                        "on", "to", "onto", "in", "at", "behind", "beside", "ahead", "next", "towards",
+                    ],
+                )
+            })
         });
         let stays = here.iter().position(|t| {
             is(

@@ -8,7 +8,9 @@ use super::super::wording::rewritten;
 use super::apart::{orders_something, says};
 use super::lists::{HELPERS, NEGATED};
 use super::some_of::removes;
-use super::words::{first_noun, has_noun, is, is_finite, is_place, leads, led, longest, noun_at, number, text};
+use super::words::{
+    first_noun, has_noun, is, is_finite, is_place, leads, led, longest, noun_at, number, text,
+};
 
 /// Small leads after "and" that name no place of their own: what they point at is the clause before.
 const LEADS: &[&str] = &[
@@ -79,9 +81,9 @@ fn of_sentence(tokens: Vec<Token>) -> Vec<Token> {
         (link(&tokens[a]) && !link(&tokens[a - 1])).then_some(())?;
         let b = (a..body).find(|k| !link(&tokens[*k]))?;
         let words = tokens[a..b].iter().any(|t| t.kind == TokenKind::Word);
-        next(&tokens[..a], &tokens[b..body], words).map(|n| (a, b, n))
+        next(&tokens[..a], &tokens[b..body], words).map(|n| (a, n))
     });
-    let Some((a, b, next)) = found else {
+    let Some((a, next)) = found else {
         return tokens;
     };
     let stop = Token {
@@ -238,7 +240,10 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Vec<Token>> {
         return Some(led("remove", &right[0], &[&right[0..]]));
     }
     // "of the three vehicles only the van may stay, and two people ..."
-    if is(left.last(), &["stay", "stays", "remain", "remains"]) && is(left.first(), &["of", "out"]) && clause(right) {
+    if is(left.last(), &["stay", "stays", "remain", "remains"])
+        && is(left.first(), &["of", "out"])
+        && clause(right)
+    {
         return Some(right.to_vec());
     }
     if words && is_place(right) {
@@ -283,14 +288,13 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Vec<Token>> {
     ];
     if is(left.first(), TRADES) && is(right.first(), &["the", "both", "all", "that"]) {
         let by = |t: Option<&Token>| is(t, &["for", "by", "with", "into", "against"]);
-        let each = first_noun(right).is_some_and(|n| {
-            n.0 < 4
-                && by(right.get(n.1))
-                && new_one(&right[n.1 + 1..]).is_some()
-                && left.iter().any(|t| text(t) == text(&right[n.1]))
-        });
-        if each {
-            return Some(led(text(left.first()?), &right[0], &[right]));
+        let each = first_noun(right)
+            .filter(|n| n.0 < 4 && by(right.get(n.1)) && new_one(&right[n.1 + 1..]).is_some());
+        if let Some((_, b)) = each {
+            let into = is(right.get(b), &["into"]);
+            let verb = if into { text(left.first()?) } else { "replace" };
+            let by = led(if into { "into" } else { "with" }, &right[b], &[&right[b + 1..]]);
+            return Some(led(verb, &right[0], &[&right[..b], &by]));
         }
     }
     let corrects = leads(&left[1..], &["instead of", "rather than"]).is_some()

@@ -1,6 +1,7 @@
 //! So many are wanted: "not two but four", "four would be better than two", "three are not enough, we need six", "must not exceed
 //! three".
 
+use super::super::lexicon::{Sense, look_up, plural};
 use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::totals::{bare, links, plain_verb};
@@ -259,7 +260,15 @@ pub(super) fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let place = if placed { place } else { &[] };
-    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np), place])
+    let mut who = bare(np).to_vec();
+    if placed
+        && let Some(last) = who.last_mut()
+        && number(&rest[k]) != Some(1)
+        && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
+    {
+        last.text = plural(text(last));
+    }
+    led("keep exactly", &tokens[0], &[&rest[k..=k], &who, place])
 }
 
 /// "the parked cars go from two to four", "the cones drop to three".
