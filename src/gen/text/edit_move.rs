@@ -366,10 +366,7 @@ impl Editor<'_> {
             out.push(kept);
         }
         // (what was parked and drives before us now drives in our lane)
-        let parked = matches!(
-            role_of(&self.map, b),
-            Some(LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark)
-        );
+        let parked = super::select::state_of(&self.map, b, ObjectState::Parked);
         let before_us =
             |r: &Stated| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind);
         if !sideways
