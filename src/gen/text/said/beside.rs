@@ -96,7 +96,7 @@ fn withdrawn(tokens: Vec<Token>) -> Vec<Token> {
         // a run of such words with marks between them
         let mut k = i;
         let mut takes_back = false;
-        while let Some(t) = tokens.get(k) {
+        while let Some(t) = tokens.get(k).filter(|_| k < i + 12) {
             if is_mark(Some(t)) {
                 k += 1;
             } else if let Some(n) = leads(&tokens[k..], NO).filter(|n| k > i && is_mark(tokens.get(k + n))) {
@@ -151,13 +151,13 @@ fn withdrawn(tokens: Vec<Token>) -> Vec<Token> {
                 out.truncate(from + v);
                 out.push(again[0].clone());
                 let whole = is(again.get(1), &["both", "all", "them"]);
-                let np = if whole {
-                    led("all the", &again[0], &[])
+                let all = super::as_now::all_of(&noun);
+                if whole {
+                    out.extend(led("all", &again[0], &[&all]));
                 } else {
-                    again[1..1 + n].to_vec()
-                };
-                out.extend(np);
-                out.extend(many(&noun));
+                    out.extend_from_slice(&again[1..1 + n]);
+                    out.extend_from_slice(&all[1..]);
+                }
                 i = k + 1 + n;
             }
             _ => {
@@ -179,21 +179,6 @@ fn took_back(tokens: &[Token]) -> Option<usize> {
         k += n + 1;
     }
     (k > 0).then_some(k)
-}
-
-/// The plural of a noun.
-fn many(noun: &[Token]) -> Vec<Token> {
-    let mut out = noun.to_vec();
-    if let Some(last) = out.last_mut()
-        && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
-    {
-        last.text = match last.text.as_str() {
-            "child" => "children".into(),
-            "person" => "people".into(),
-            w => super::super::lexicon::plural(w),
-        };
-    }
-    out
 }
 
 /// Small turns, one by one.
