@@ -246,13 +246,17 @@ fn small(tokens: Vec<Token>) -> Vec<Token> {
             let from = (0..out.len()).rev().find(|k| link(*k)).map_or(0, |k| k + 1);
             let (a, b) = first_noun(&out[from..])?;
             let lead = &out[from..from + a];
-            let plain = !out[from..].iter().any(|t| {
-                HELPERS.contains(&text(t))
-                    || is_verb(t) && !is(Some(t), &["only", "just"])
-                    || number(t).is_some()
-            }) && !lead
-                .iter()
-                .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
+            // ("cyclists: three of them" says how many there are to be)
+            let label = a == 0 && from + b == out.len();
+            let plain = !label
+                && !out[from..].iter().any(|t| {
+                    HELPERS.contains(&text(t))
+                        || is_verb(t) && !is(Some(t), &["only", "just"])
+                        || number(t).is_some()
+                })
+                && !lead
+                    .iter()
+                    .any(|t| is(Some(t), &["the", "those", "these", "all", "both"]));
             if plain && matches!(look_up(text(&out[from + b - 1])), Some(Sense::Noun(_, true))) {
                 let noun = out[from + a..from + b].to_vec();
                 let place = if is_place(&out[from + b..]) {

@@ -288,8 +288,12 @@ fn next(left: &[Token], right: &[Token], words: bool) -> Option<Vec<Token>> {
     ];
     if is(left.first(), TRADES) && is(right.first(), &["the", "both", "all", "that"]) {
         let by = |t: Option<&Token>| is(t, &["for", "by", "with", "into", "against"]);
-        let each = first_noun(right)
-            .filter(|n| n.0 < 4 && by(right.get(n.1)) && new_one(&right[n.1 + 1..]).is_some());
+        let each = first_noun(right).filter(|n| {
+            n.0 < 4
+                && by(right.get(n.1))
+                && new_one(&right[n.1 + 1..]).is_some()
+                && left.iter().any(|t| by(Some(t)))
+        });
         if let Some((_, b)) = each {
             let into = is(right.get(b), &["into"]);
             let verb = if into { text(left.first()?) } else { "replace" };
