@@ -150,7 +150,7 @@ impl Editor<'_> {
                 self.like_the_others(&mut spec, &fitting);
                 let foreground = match side_by_side(said).then(|| self.beside_those(&spec)) {
                     Some(pair) => pair,
-                    None => vec![spec],
+                    None => self.with_those_named(spec, c),
                 };
                 let d = Description {
                     foreground,
@@ -158,6 +158,24 @@ impl Editor<'_> {
                 };
                 self.add(&d);
             }
+        }
+    }
+
+    /// "three workers near the barriers": with the barriers that are there.
+    fn with_those_named(&self, spec: ObjectSpec, c: &Command) -> Vec<ObjectSpec> {
+        let points = |o: &ObjectSpec| {
+            let at = |a: Anchor| matches!(a, Anchor::Object(_));
+            o.relations.iter().any(|r| at(r.anchor) || r.and.is_some_and(at))
+        };
+        let mut all = c.reading.description.foreground.clone();
+        let own = all.iter().position(|o| o.span == spec.span);
+        let there = |o: &ObjectSpec| o.span == spec.span || self.definite.contains(&o.span);
+        match own.filter(|_| points(&spec) && all.iter().all(there)) {
+            Some(i) => {
+                all[i] = spec;
+                all
+            }
+            None => vec![spec],
         }
     }
 

@@ -365,6 +365,26 @@ impl Editor<'_> {
             });
             out.push(kept);
         }
+        // (what was parked and drives before us now drives in our lane)
+        let parked = super::select::state_of(&self.map, b, ObjectState::Parked);
+        let before_us =
+            |r: &Stated| r.anchor == Anchor::Ego && matches!(r.relation, R::InFrontOf | R::Behind);
+        if !sideways
+            && parked
+            && spec.state == Some(ObjectState::Moving)
+            && b.class.is_vehicle()
+            && spec.relations.iter().any(before_us)
+        {
+            let mut ours = spec.clone();
+            ours.relations.push(Stated {
+                relation: R::On,
+                anchor: Anchor::Lane(LaneRole::Ego),
+                and: None,
+                distance_m: None,
+                span: spec.span,
+            });
+            out.insert(0, ours);
+        }
         // Behind the truck is in its lane, and goes its way.
         let after = spec.relations.iter().position(|r| {
             r.relation == R::Behind

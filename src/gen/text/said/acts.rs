@@ -111,13 +111,24 @@ pub fn acts(
         ]);
         over == Some(p.main.len())
     };
+    // "has stepped into our lane and is 10 m ahead of us": the one tells the lane, the other how far
+    let adds = |i: usize| {
+        let after = &parts[i + 1..];
+        let p = &parts[i];
+        let far =
+            stopped(p) && metres_in(&p.main).is_some() && after.iter().all(|q| metres_in(&q.main).is_none());
+        let strip = arrives_on(&p.main)
+            && !after.iter().any(|q| names_place(&q.main))
+            && after.iter().any(|q| metres_in(&q.main).is_some());
+        p.perfect && !p.not && !p.is_gone() && !steps_off(p) && (far || strip)
+    };
     let kept: Vec<&Part> = parts
         .iter()
         .enumerate()
         .filter(|(i, p)| !((steps_off(p) && later(*i)) || parts.len() > 1 && keeps_lane(p)))
         .filter(|(i, p)| !(p.begins(&["lets", "let", "allows", "makes room"]).is_some() && later(*i)))
         .filter(|(i, p)| !(crosses(p) && later(*i)))
-        .filter(|(i, p)| !((p.perfect || p.is_gone() || p.not) && later(*i)))
+        .filter(|(i, p)| adds(*i) || !((p.perfect || p.is_gone() || p.not) && later(*i)))
         .map(|x| x.1)
         .collect();
     if kept.iter().any(|p| p.is_gone()) {
@@ -290,6 +301,39 @@ fn steps_off(p: &Part) -> bool {
             .any(|t| is(Some(t), &["to", "onto", "into", "in", "on"]))
     });
     (leaves || from.is_some()) && !goes_to && metres_in(&p.main).is_none()
+}
+
+/// Who has stopped still stands there.
+fn stopped(p: &Part) -> bool {
+    p.begins(&[
+        "stopped",
+        "parked",
+        "halted",
+        "stood",
+        "pulled up",
+        "come to a stop",
+        "come to a halt",
+        "stalled",
+        "braked",
+    ])
+    .is_some()
+}
+
+/// True if a lane or strip is named.
+fn names_place(main: &[Token]) -> bool {
+    (0..main.len()).any(|i| matches!(super::words::longest(&main[i..]), Some((Sense::Place(..), _))))
+}
+
+/// "into our lane", "onto the left sidewalk".
+fn arrives_on(main: &[Token]) -> bool {
+    (0..main.len()).any(|i| {
+        let the = i + 1 + usize::from(is(main.get(i + 1), &["the", "my", "our"]));
+        is(main.get(i), &["into", "onto", "in", "on", "to"])
+            && matches!(
+                main.get(the..).and_then(super::words::longest),
+                Some((Sense::Place(..), _))
+            )
+    })
 }
 
 /// "stays in its lane": what is not said of a box stays as it was anyhow.

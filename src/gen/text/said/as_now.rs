@@ -35,7 +35,7 @@ fn lead_of(tokens: &[Token]) -> usize {
 }
 
 /// "the cars" of "car" and "cars".
-fn all_of(noun: &[Token]) -> Vec<Token> {
+pub(super) fn all_of(noun: &[Token]) -> Vec<Token> {
     let mut out = led("the", &noun[0], &[noun]);
     if let Some(last) = out.last_mut()
         && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))

@@ -440,6 +440,17 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     };
     let (noun, rest) = (&tokens[n + a..n + b], &tokens[n + b..]);
+    // ("give the man on the left pavement a companion": there, too)
+    let new = (2..rest.len().min(9)).find(|j| {
+        let counted = is(rest.get(*j), &["a", "an", "another"]) || number(&rest[*j]).is_some();
+        counted && (1..3).any(|m| is(rest.get(j + m), &MATES))
+    });
+    let (there, rest) = match new
+        .filter(|j| is_place(rest) && !has_noun(&rest[..*j]) && talk.fits(&tokens[n + a..n + b + j]) > 0)
+    {
+        Some(j) => rest.split_at(j),
+        None => (&rest[..0], rest),
+    };
     let many = rest.first().and_then(number).filter(|m| *m > 0);
     let mut k = usize::from(many.is_some() || is(rest.first(), &["a", "an", "another"]));
     while k > 0
@@ -476,7 +487,7 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         ),
         None => led("add another", &tokens[0], &[&one]),
     };
-    [&add[..], place].concat()
+    [&add[..], there, place].concat()
 }
 
 const WHO_ALSO: &[&str] = &[

@@ -26,7 +26,7 @@ fn wish(tokens: &[Token]) -> Option<usize> {
     while let Some(t) = tokens.get(k) {
         match text(t) {
             "want" | "need" | "like" | "prefer" | "wish" | "love" | "require" | "expect" | "order"
-            | "ask" | "hope" | "demand" => wishes = true,
+            | "ask" | "hope" | "demand" | "wanted" => wishes = true,
             "rather"
                 if matches!(text(&tokens[0]), "id" | "wed" | "youd")
                     || is(tokens.get(k - 1), &["would", "should", "had"]) =>

@@ -60,7 +60,14 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
             ],
         )
         .is_some_and(|n| {
-            (n..rest.len()).any(|k| is(rest.get(k), &["on", "to", "onto", "in", "at", "behind", "beside"]))
+            (n..rest.len()).any(|k| {
+                is(
+                    rest.get(k),
+                    &[
+                        "on", "to", "onto", "in", "at", "behind", "beside", "ahead", "next", "towards",
+                    ],
+                )
+            })
         });
         let stays = here.iter().position(|t| {
             is(
@@ -70,6 +77,13 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
                 ],
             )
         });
+        // ("only one of them should be oncoming; the other one ...")
+        let does = here.iter().skip(2).position(|t| {
+            super::lists::HELPERS.contains(&text(t))
+                || super::words::is_finite(text(t), false) && !text(t).ends_with("ed")
+        });
+        let other_verb = stays.is_none() && does.is_some();
+        let stays = stays.or(does.map(|k| k + 2));
         if let (true, Some(stays)) = (others, stays)
             && stays + 1 < here.len()
             && !rest
@@ -95,7 +109,9 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
                     .collect();
                 new.extend(led("of the", &here[1], &[&many]));
             }
-            let verb = if number(&here[1]) == Some(1) {
+            let verb = if other_verb {
+                text(&here[stays])
+            } else if number(&here[1]) == Some(1) {
                 "stays"
             } else {
                 "stay"

@@ -183,7 +183,12 @@ fn in_that(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             let np = led(&format!("the {}", talk.last.as_deref()?), &tokens[i], &[]);
             name_of(&talk.boxes_of(&np), talk).filter(|name| is_of_kind(lane, name))
         };
-        let name = before.or_else(last)?;
+        // ("three cones in that lane": where those stand that are there)
+        let own = || {
+            let (a, b) = first_noun(out).filter(|x| x.1 + 1 == out.len())?;
+            name_of(&talk.boxes_of(&out[a..b]), talk).filter(|name| is_of_kind(lane, name))
+        };
+        let name = before.or_else(last).or_else(own)?;
         out.extend(led(name, &tokens[i], &[]));
         Some(i + 1 + n)
     })

@@ -11,6 +11,7 @@ mod as_now;
 mod asides;
 mod asked;
 mod bare;
+mod beside;
 mod brief_places;
 mod brief_turns;
 mod brief_wholes;
@@ -42,6 +43,7 @@ mod lane_of;
 mod left;
 mod likewise;
 mod limits;
+mod links;
 pub(super) mod lists;
 mod loose_ends;
 mod mistaken;
@@ -115,6 +117,7 @@ use crate::scene::{BoxId, Class, SceneBox};
 pub use apart::apart;
 pub use asides::without as without_asides;
 pub use asked::unasked;
+pub use beside::plain as plain_beside;
 pub use brief_wholes::whole;
 pub use exception::except;
 use forms::{
@@ -123,6 +126,7 @@ use forms::{
 };
 use frame::unwrapped;
 pub use left::Left;
+pub use links::parted as parted_at_links;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
 pub use loose_ends::cut;
 pub use nominal::plain as as_orders;
@@ -259,7 +263,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
         return sentence.to_vec();
     }
     let out = speakers::plain(testimony::plain(body.to_vec()), talk);
-    let out = owned::plain(remarks::reported(out), talk);
+    let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);
     if out.is_empty() {

@@ -371,6 +371,19 @@ fn only_the_one(tokens: Vec<Token>) -> Vec<Token> {
         let except = led("except the", &rest[0], &[&rest[n..n + 1 + b]]);
         return led("remove all the", &tokens[0], &[&all, &except]);
     }
+    // ("of the three vehicles only the van may stay")
+    if let Some(n) = only
+        && let Some((a, b)) = rest.get(n..).and_then(first_noun).filter(|x| x.0 < 3)
+        && rest[n..n + a]
+            .iter()
+            .all(|t| pick_at(std::slice::from_ref(t)).is_none())
+        && rest[n + b..].iter().all(|t| t.kind == TokenKind::Word)
+        && rest[n + b..].iter().any(|t| STAYS.contains(&text(t)))
+    {
+        let all = bare_np(np);
+        let except = led("except the", &rest[0], &[&rest[n..n + b]]);
+        return led("remove all the", &tokens[0], &[&all, &except]);
+    }
     if let Some(n) = only
         && let Some(p) = rest.get(n..).and_then(|r| pick_at(r).or_else(|| side_at(r)))
         && (rest[n + p..]

@@ -228,6 +228,14 @@ fn still_so(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && first_noun(rest).is_none();
         (own || same).then_some((i, end, own))
     });
+    // ("stands in our lane now, still 20 m ahead": as far as before, elsewhere)
+    if let Some((i, end, _)) = found
+        && is(tokens.get(i), &["still"])
+        && tokens[i..end].iter().any(|t| number(t).is_some())
+        && first_noun(&tokens[..i]).is_some_and(|n| (n.1..i).any(|k| is_place(&tokens[k..i])))
+    {
+        return [&tokens[..i], &tokens[i + 1..]].concat();
+    }
     let Some((i, end, own)) = found else {
         return tokens;
     };

@@ -1,7 +1,8 @@
 //! So many are wanted: "not two but four", "four would be better than two", "three are not enough, we need six", "must not exceed
 //! three".
 
-use super::super::tokens::Token;
+use super::super::lexicon::{Sense, look_up, plural};
+use super::super::tokens::{Token, TokenKind};
 use super::Talk;
 use super::totals::{bare, links, plain_verb};
 use super::words::{find, first_noun, is, is_place, leads, led, number, text, trimmed};
@@ -242,7 +243,12 @@ pub(super) fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             ],
         )
     });
-    let own = first_noun(&rest[k..]);
+    // ("two of them near the car": where they are may be said, too)
+    let of_them =
+        2 * usize::from(is(rest.get(k + 1), &["of"]) && is(rest.get(k + 2), &["them", "these", "those"]));
+    let place = rest.get(k + 1 + of_them..).unwrap_or(&[]);
+    let placed = of_them > 0 && is_place(place) && !place.iter().any(|t| t.kind == TokenKind::Comma);
+    let own = if placed { None } else { first_noun(&rest[k..]) };
     let ends = rest.get(k + 1).is_none_or(|t| {
         links(t)
             || is(
@@ -253,7 +259,16 @@ pub(super) fn not_enough(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !known || !lead || first_noun(np).is_none_or(|x| x.0 > 4) || own.is_some() || !ends {
         return tokens;
     }
-    led("keep exactly", &tokens[0], &[&rest[k..=k], bare(np)])
+    let place = if placed { place } else { &[] };
+    let mut who = bare(np).to_vec();
+    if placed
+        && let Some(last) = who.last_mut()
+        && number(&rest[k]) != Some(1)
+        && matches!(look_up(text(last)), Some(Sense::Noun(_, false)))
+    {
+        last.text = plural(text(last));
+    }
+    led("keep exactly", &tokens[0], &[&rest[k..=k], &who, place])
 }
 
 /// "the parked cars go from two to four", "the cones drop to three".
