@@ -27,6 +27,7 @@ mod exception;
 mod exchanges;
 mod forms;
 mod frame;
+mod fronted;
 mod gapped;
 mod gaps;
 mod gaze;
@@ -258,7 +259,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = speakers::plain(testimony::plain(body.to_vec()), talk);
+    let out = fronted::plain(speakers::plain(testimony::plain(body.to_vec()), talk), talk);
     let out = owned::plain(remarks::reported(out), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);

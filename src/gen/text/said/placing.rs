@@ -22,6 +22,37 @@ const SHOWS: &[&str] = &[
     "spawn",
     "init",
 ];
+/// What wishes for the same, where a state follows: "I want the truck parked on the left".
+const WISHES: &[&str] = &[
+    "have",
+    "i want",
+    "i want to have",
+    "i want to see",
+    "i would like",
+    "i would like to have",
+    "i would like to see",
+    "id like",
+    "id like to have",
+    "id like to see",
+    "i would rather have",
+    "id rather have",
+    "i need",
+    "i prefer",
+    "i would prefer",
+    "id prefer",
+    "we want",
+    "we need",
+    "we would like",
+    "wed like",
+    "let us have",
+    "lets have",
+    "let me see",
+    "could we have",
+    "can we have",
+    "can i have",
+    "could i have",
+    "could you have",
+];
 const THROWS: &[&str] = &[
     "chuck", "throw", "toss", "fling", "sling", "kick", "dump", "lift", "haul", "tow", "heave", "cart",
     "boot", "sweep", "pluck", "yank", "lob", "bundle", "hoist", "fetch",
@@ -67,7 +98,8 @@ fn opens_with(tokens: &[Token], i: usize, verbs: &[&str]) -> Option<usize> {
 /// "show the pickup parked on the right roadside": it should be there.
 fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
-        let from = i + opens_with(&tokens, i, SHOWS)?;
+        let wish = opens_with(&tokens, i, WISHES);
+        let from = i + opens_with(&tokens, i, SHOWS).or(wish)?;
         let it = is(tokens.get(from), &["it", "him", "her", "them"]);
         let end = if it { from + 1 } else { known(&tokens, from)? };
         let state = usize::from(matches!(
@@ -75,7 +107,7 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        let sure = it || talk.tells(&tokens[from..end]);
+        let sure = (it || talk.tells(&tokens[from..end])) && (wish.is_none() || state > 0);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {
