@@ -127,6 +127,14 @@ pub fn without_order(tokens: &[Token]) -> Vec<Token> {
                 {
                     out.pop();
                 }
+                // ("two cyclists, one after the other, ride ahead of us" is one clause)
+                let verb = tokens.get(i + 1).is_some_and(|t| {
+                    super::said::words::is_finite(&t.text, true)
+                        || matches!(t.text.as_str(), "are" | "is" | "should" | "must")
+                });
+                if verb && tokens.get(i).is_some_and(|t| t.kind == TokenKind::Comma) {
+                    i += 1;
+                }
             }
             None => {
                 out.push(tokens[i].clone());

@@ -48,7 +48,15 @@ const SMALL: &[&str] = &[
     "both",
 ];
 const BEFORE: &[&str] = &[
-    "just", "directly", "right", "straight", "exactly", "immediately", "shortly", "close", "somewhere",
+    "just",
+    "directly",
+    "right",
+    "straight",
+    "exactly",
+    "immediately",
+    "shortly",
+    "close",
+    "somewhere",
 ];
 const THERE: &[&str] = &[
     "there should be",
@@ -115,9 +123,16 @@ fn only_places(tokens: &[Token]) -> bool {
         let described = known
             && matches!(
                 look_up(text(t)),
-                Some(Sense::Color(_) | Sense::State(_, false) | Sense::Size(_) | Sense::Attribute(_) | Sense::Count(_))
+                Some(
+                    Sense::Color(_)
+                        | Sense::State(_, false)
+                        | Sense::Size(_)
+                        | Sense::Attribute(_)
+                        | Sense::Count(_)
+                )
             );
-        let place = is_place(&tokens[i..]) || matches!(longest(&tokens[i..]), Some((Sense::Place(..) | Sense::Ego, _)));
+        let place = is_place(&tokens[i..])
+            || matches!(longest(&tokens[i..]), Some((Sense::Place(..) | Sense::Ego, _)));
         let n = match longest(&tokens[i..]) {
             Some((_, n)) if place => n,
             _ if number(t).is_some() || is_unit(Some(t)) => 1,
@@ -134,7 +149,8 @@ fn one_more(place: &[Token], clause: &[Token]) -> Option<(Vec<Token>, usize)> {
     let n = leads(clause, ONE_MORE)?;
     let next = &clause[n..];
     // ("another lorry" has a noun of its own)
-    let own = first_noun(next).is_some_and(|x| x.0 < 3 && !next[..x.0].iter().any(|t| is(Some(t), &["the"]) || comma(t)));
+    let own = first_noun(next)
+        .is_some_and(|x| x.0 < 3 && !next[..x.0].iter().any(|t| is(Some(t), &["the"]) || comma(t)));
     let (a, b) = first_noun(place)?;
     (!own).then(|| (led("another", &clause[0], &[&singular_of(&place[a..b])]), n))
 }
@@ -144,18 +160,23 @@ fn ordered(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let start = lead + leads(&tokens[lead..], BEFORE).unwrap_or(0);
     let goal = is(
         tokens.get(start),
-        &["into", "onto", "until", "till", "back", "forward", "closer", "off", "out", "up", "down", "by", "away", "over"],
+        &[
+            "into", "onto", "until", "till", "back", "forward", "closer", "off", "out", "up", "down", "by",
+            "away", "over",
+        ],
     );
     if goal || !tokens.get(start..).is_some_and(is_place) {
         return None;
     }
     let fresh = |i: usize| {
         let t = &tokens[i];
-        let more = is(tokens.get(i), &["a", "an", "another", "some", "yet"]) || number(t).is_some() && !is_place(&tokens[i..]);
+        let more = is(tokens.get(i), &["a", "an", "another", "some", "yet"])
+            || number(t).is_some() && !is_place(&tokens[i..]);
         more && !is(tokens.get(i + 1), &["of"])
     };
-    let at = (start + 1..tokens.len().min(start + 24))
-        .find(|i| leads(&tokens[*i..], THERE).is_some_and(|n| i + n < tokens.len() && fresh(i + n)) || fresh(*i))?;
+    let at = (start + 1..tokens.len().min(start + 24)).find(|i| {
+        leads(&tokens[*i..], THERE).is_some_and(|n| i + n < tokens.len() && fresh(i + n)) || fresh(*i)
+    })?;
     let mut place = &tokens[lead..at];
     let set_off = place.iter().any(comma);
     while place.last().is_some_and(comma) {
@@ -163,7 +184,10 @@ fn ordered(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     }
     let open = is(
         place.last(),
-        &["of", "to", "on", "in", "at", "from", "and", "between", "opposite", "behind", "beside", "near", "by", "with", "after", "before", "past", "than"],
+        &[
+            "of", "to", "on", "in", "at", "from", "and", "between", "opposite", "behind", "beside", "near",
+            "by", "with", "after", "before", "past", "than",
+        ],
     );
     let named = has_noun(place);
     if open && !set_off || !(named || set_off) || !only_places(place) {
@@ -180,8 +204,10 @@ fn ordered(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     };
     // one clause only, of one thing
     let several = (0..rest.len()).any(|k| {
-        is(rest.get(k), &["and", "but", "while", "which", "who", "that", "so"])
-            || rest[k].kind == TokenKind::Mark
+        is(
+            rest.get(k),
+            &["and", "but", "while", "which", "who", "that", "so"],
+        ) || rest[k].kind == TokenKind::Mark
             || comma(&rest[k]) && has_noun(&rest[k..])
     });
     if several || rest.iter().any(|t| t.kind == TokenKind::Stop) || talk.text.len() > 400 {

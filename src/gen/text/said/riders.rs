@@ -275,15 +275,45 @@ fn climbs_out(tokens: Vec<Token>) -> Vec<Token> {
 /// "the driver has got out of the lorry and stands behind it": the lorry is named with what he did.
 fn out_of_it(tokens: &[Token]) -> Option<Vec<Token>> {
     const WHO: &[&str] = &[
-        "the driver", "its driver", "a driver", "the rider", "its rider", "someone", "somebody", "a passenger",
-        "one passenger", "the passenger", "its owner", "the owner", "a man", "a woman", "the trucker",
+        "the driver",
+        "its driver",
+        "a driver",
+        "the rider",
+        "its rider",
+        "someone",
+        "somebody",
+        "a passenger",
+        "one passenger",
+        "the passenger",
+        "its owner",
+        "the owner",
+        "a man",
+        "a woman",
+        "the trucker",
     ];
     const HAS: &[&str] = &[
-        "has just", "has now", "has already", "had", "has", "just", "is", "is just", "should have", "must have",
+        "has just",
+        "has now",
+        "has already",
+        "had",
+        "has",
+        "just",
+        "is",
+        "is just",
+        "should have",
+        "must have",
     ];
-    const OF: &[&str] = &["of the", "of that", "from the", "the", "of his", "of her", "from his"];
+    const OF: &[&str] = &[
+        "of the", "of that", "from the", "the", "of his", "of her", "from his",
+    ];
     const OUT_OF: &[&str] = &[
-        "getting out", "climbing out", "stepping out", "jumping out", "exited", "exits", "has left",
+        "getting out",
+        "climbing out",
+        "stepping out",
+        "jumping out",
+        "exited",
+        "exits",
+        "has left",
     ];
     let who = leads(tokens, WHO)?;
     let has = leads(&tokens[who..], HAS).unwrap_or(0);
