@@ -262,138 +262,42 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     let out = appended::plain(speakers::plain(testimony::plain(body.to_vec()), talk), talk);
     let out = fronted::plain(out, talk);
-    super::wording::zadbg(
-        r##"let out = fronted::plain(speakers::plain(testimony::plain(body.to_vec()), talk), talk);"##,
-        &out,
-    );
     let out = owned::plain(remarks::reported(out), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = clipped::plain(loose_ends::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = actors::unseen(out);
     if out.is_empty() {
         return stop.to_vec();
     }
     let out = actors::plain(out, talk);
     let out = as_now::plain(paired::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = as_now::plain(paired::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = placing::plain(bare::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = placing::plain(bare::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = headway::plain(happier::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = headway::plain(happier::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = of_several::from_there(of_several::both_of_them(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = of_several::from_there(of_several::both_of_them(out, talk), talk);"##,
-        &out,
-    );
     let out = mistaken::plain(recounted::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = mistaken::plain(recounted::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = joined_by::plain(told_again::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = joined_by::plain(told_again::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = sites::plain(kept::plain(briefs::plain(out, talk), talk), talk);"##,
-        &out,
-    );
     let out = left::only_person(gaze::plain(spoken::coming(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = left::only_person(gaze::plain(spoken::coming(out, talk), talk), talk);"##,
-        &out,
-    );
     let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = passing::plain(corrected::plain(offhand::plain(out, talk), talk), talk);"##,
-        &out,
-    );
     let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);
-    super::wording::zadbg(
-        r##"let out = tidy::plain(tails::plain(small_turns::plain(spoken::sides_named(out))), talk);"##,
-        &out,
-    );
     let out = seconds::plain(vacated::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = seconds::plain(vacated::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = notes::plain(lane_of::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = notes::plain(lane_of::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = of_several::front_and_rear(spoken::engine(spoken::little_ones(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = of_several::front_and_rear(spoken::engine(spoken::little_ones(out, talk), talk), talk);"##,
-        &out,
-    );
     let out = notes::gone(out, talk);
     let out = riders::plain(curt::plain(out, talk));
     let out = newcomers::plain(plainly::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = newcomers::plain(plainly::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = splits::plain(remarks::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = splits::plain(remarks::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = presence::plain(company::plain(wider::plain(out, talk), talk), talk);"##,
-        &out,
-    );
     let out = terse::plain(exchanges::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = terse::plain(exchanges::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = reasons::plain(out, talk);
     let out = doers::plain(dealt::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = doers::plain(dealt::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = of_several::of_the_group(likewise::plain(out, talk), talk);
-    super::wording::zadbg(
-        r##"let out = of_several::of_the_group(likewise::plain(out, talk), talk);"##,
-        &out,
-    );
     let out = arrivals::plain(gifts::plain(turns::plain(out, talk), talk), talk);
-    super::wording::zadbg(
-        r##"let out = arrivals::plain(gifts::plain(turns::plain(out, talk), talk), talk);"##,
-        &out,
-    );
     if out.is_empty() {
         return stop.to_vec();
     }
     let out = exception::the_one_spared(out);
     let out = exception::all_stays_but(exception::cleared_but(out));
-    super::wording::zadbg(
-        r##"let out = exception::all_stays_but(exception::cleared_but(out));"##,
-        &out,
-    );
     let out = exception::everything_but(remaining::nobody_on_foot(out));
-    super::wording::zadbg(
-        r##"let out = exception::everything_but(remaining::nobody_on_foot(out));"##,
-        &out,
-    );
     let out = of_several::plain(out, talk);
     let mut out = totals::plain(out, talk);
     out.extend_from_slice(stop);

@@ -94,10 +94,6 @@ pub fn worded(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     }
     out = replaced(&out, IF_ONLY, "add");
     out = replaced(&out, "do without|dispense with|spare me|manage without", "remove");
-    super::super::wording::zadbg(
-        r##"out = replaced(&out, "do without|dispense with|spare me|manage without", "remove");"##,
-        &out,
-    );
     let whole = [
         "empty the scene",
         "clear the scene",
