@@ -98,7 +98,49 @@ const ONE_MORE: &[&str] = &[
 
 /// A sentence (without its stop) in its plain order.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    ordered(&tokens, talk).unwrap_or(tokens)
+    let out = held(&tokens).unwrap_or(tokens);
+    ordered(&out, talk).unwrap_or(out)
+}
+
+/// "the cross street gets one more truck": put it there.
+fn held(tokens: &[Token]) -> Option<Vec<Token>> {
+    const GETS: &[&str] = &[
+        "gets",
+        "should get",
+        "is to get",
+        "receives",
+        "should receive",
+        "is given",
+        "needs",
+        "could use",
+        "wants",
+        "should have",
+        "must have",
+        "should hold",
+        "should carry",
+        "must get",
+        "has to get",
+    ];
+    is(tokens.first(), &["the", "our"]).then_some(())?;
+    let own = usize::from(is(tokens.get(1), &["far", "near", "same"]));
+    let n = match longest(tokens.get(1 + own..)?) {
+        Some((Sense::Place(..), n)) => 1 + own + n,
+        _ if is(tokens.first(), &["our"]) && is(tokens.get(1), &["lane"]) => 2,
+        _ => return None,
+    };
+    let gets = n + leads(&tokens[n..], GETS)?;
+    let np = &tokens[gets..];
+    let fresh = is(np.first(), &["a", "an", "another"]) || np.first().and_then(number).is_some();
+    let (_, b) = first_noun(np).filter(|x| fresh && x.0 < 5)?;
+    (b == np.len()).then_some(())?;
+    let wide = tokens[..n].iter().any(|t| {
+        is(
+            Some(t),
+            &["sidewalk", "pavement", "crossing", "street", "road", "roadside", "zebra", "crosswalk", "footpath", "verge"],
+        )
+    });
+    let at = led(if wide { "on" } else { "in" }, &tokens[0], &[&tokens[..n]]);
+    Some(led("add", &tokens[0], &[np, &at]))
 }
 
 fn comma(t: &Token) -> bool {

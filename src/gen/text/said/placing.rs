@@ -64,7 +64,7 @@ const WHOLE: &[&str] = &[
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = still_so(in_ours(tokens), talk);
+    let out = still_so(in_ours(set_there(tokens)), talk);
     let out = shown(seen(out, talk), talk);
     let out = lifted(thrown(out, talk));
     past(until(out, talk), talk)
@@ -80,6 +80,23 @@ fn in_ours(tokens: Vec<Token>) -> Vec<Token> {
             i + 1
         })
     })
+}
+
+/// "set one cone between the two barriers": put it there, and do not make it so many.
+fn set_there(mut tokens: Vec<Token>) -> Vec<Token> {
+    let lead = leads(&tokens, &["and", "then", "please", "also", "now"]).unwrap_or(0);
+    let fresh = is(tokens.get(lead), &["set"])
+        && tokens
+            .get(lead + 1)
+            .is_some_and(|t| is(Some(t), &["a", "an", "another"]) || number(t).is_some());
+    let np = tokens.get(lead + 1..).and_then(first_noun).filter(|x| fresh && x.0 < 4);
+    if let Some((_, b)) = np {
+        let place = &tokens[lead + 1 + b..];
+        if is_place(place) && !is(place.first(), &["to", "up", "off", "out", "back", "down", "by"]) {
+            tokens[lead].text = "put".into();
+        }
+    }
+    tokens
 }
 
 /// Where the words end that name something known, which begin at `from`.
