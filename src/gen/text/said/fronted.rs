@@ -136,7 +136,18 @@ fn held(tokens: &[Token]) -> Option<Vec<Token>> {
     let wide = tokens[..n].iter().any(|t| {
         is(
             Some(t),
-            &["sidewalk", "pavement", "crossing", "street", "road", "roadside", "zebra", "crosswalk", "footpath", "verge"],
+            &[
+                "sidewalk",
+                "pavement",
+                "crossing",
+                "street",
+                "road",
+                "roadside",
+                "zebra",
+                "crosswalk",
+                "footpath",
+                "verge",
+            ],
         )
     });
     let at = led(if wide { "on" } else { "in" }, &tokens[0], &[&tokens[..n]]);

@@ -89,7 +89,10 @@ fn set_there(mut tokens: Vec<Token>) -> Vec<Token> {
         && tokens
             .get(lead + 1)
             .is_some_and(|t| is(Some(t), &["a", "an", "another"]) || number(t).is_some());
-    let np = tokens.get(lead + 1..).and_then(first_noun).filter(|x| fresh && x.0 < 4);
+    let np = tokens
+        .get(lead + 1..)
+        .and_then(first_noun)
+        .filter(|x| fresh && x.0 < 4);
     if let Some((_, b)) = np {
         let place = &tokens[lead + 1 + b..];
         if is_place(place) && !is(place.first(), &["to", "up", "off", "out", "back", "down", "by"]) {
