@@ -266,11 +266,31 @@ fn ordered(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     if several || rest.iter().any(|t| t.kind == TokenKind::Stop) || talk.text.len() > 400 {
         return None;
     }
+    // ("have been left" is no place)
+    let left = |k: usize| {
+        k > 0 && is(rest.get(k), &["left"]) && is(rest.get(k - 1), &["been", "is", "are", "was", "were"])
+    };
     let split = (0..rest.len())
-        .find(|k| comma(&rest[*k]) || is_place(&rest[*k..]))
+        .find(|k| comma(&rest[*k]) || is_place(&rest[*k..]) && !left(*k))
         .unwrap_or(rest.len());
-    let (verb, late) = rest.split_at(split);
+    // ("a courier on a motorbike" is one)
+    let mount = leads(&rest[split..], &["on a", "on an", "on his", "on her"])
+        .filter(|_| has_noun(&rest[split..]))
+        .map_or(0, |_| first_noun(&rest[split..]).map_or(0, |x| x.1));
+    let (verb, late) = rest.split_at(split + mount);
     let places: Vec<Token> = place.iter().filter(|t| !comma(t)).cloned().collect();
+    let set_off = late.first().is_some_and(comma)
+        && late.get(1..).is_some_and(|next| {
+            !is_place(next)
+                && !matches!(
+                    next.first().and_then(|t| look_up(text(t))),
+                    Some(Sense::State(..))
+                )
+        });
+    // (what is set off and is no place speaks of more than that)
+    if set_off {
+        return None;
+    }
     let late: Vec<Token> = late.iter().filter(|t| !comma(t)).cloned().collect();
     let lead = match there > 0 {
         true if number(&who[0]).is_some_and(|n| n > 1) => led("there should be", &tokens[at], &[]),

@@ -127,7 +127,13 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        let sure = (it || talk.tells(&tokens[from..end])) && (wish.is_none() || state > 0);
+        // ("have her stand beside it" is a command of its own)
+        let wished = state > 0
+            && !it
+            && tokens
+                .get(end)
+                .is_some_and(|t| text(t).ends_with("ing") || text(t).ends_with("ed"));
+        let sure = (it || talk.tells(&tokens[from..end])) && (wish.is_none() || wished);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {
