@@ -243,7 +243,7 @@ fn ordered(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         ],
     );
     let named = has_noun(place);
-    if open && !set_off || !(named || set_off) || !only_places(place) {
+    if !set_off && (open || !named) || !only_places(place) {
         return None;
     }
     let there = leads(&tokens[at..], THERE).unwrap_or(0);
