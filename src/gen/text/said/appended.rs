@@ -202,16 +202,16 @@ fn that_is(tokens: Vec<Token>) -> Vec<Token> {
         (mark(&tokens[i])).then_some(())?;
         let n = begins(&tokens[i + 1..], NAMELY)?;
         let rest = &tokens[i + 1 + n..];
-        let place = is_place(rest) && !is(rest.first(), &["not", "away"]);
+        // ("on our side, that is on the right pavement" corrects: what comes last holds)
+        let place = is(rest.first(), &["between"]);
         let whole = rest.iter().all(|t| !mark(t) && !is_verb_of_clause(t));
         (place && whole && out.len() > 2).then_some(())?;
         // whom "it" means there: what the place before names
         let at = (0..out.len()).rev().find(|k| is(out.get(*k), &["the", "that"]))?;
         let (_, b) = first_noun(&out[at..]).unwrap_or((0, 0));
         let anchor = out[at..at + b].to_vec();
-        let between = is(rest.first(), &["between"]);
         for t in rest {
-            if between && is(Some(t), &["it", "him", "her", "them"]) && !anchor.is_empty() {
+            if is(Some(t), &["it", "him", "her", "them"]) && !anchor.is_empty() {
                 out.extend_from_slice(&anchor);
             } else {
                 out.push(t.clone());
