@@ -258,6 +258,15 @@ impl Editor<'_> {
             };
             tries.push(free);
         }
+        // (in a car park, who stands finds a space where no lane is)
+        let stood = !moves && b.class.is_vehicle() && spec.state != Some(ObjectState::Parked);
+        if stood && !aside && self.layout.count(crate::scene::BevLayer::CarparkArea) > 200 {
+            let parked = ObjectSpec {
+                state: Some(ObjectState::Parked),
+                ..spec.clone()
+            };
+            tries.push(parked);
+        }
         for tried in &tries {
             let d = Description {
                 foreground: c.with_anchors(tried, b.class),
@@ -272,7 +281,7 @@ impl Editor<'_> {
                     if let Some(new) = new.first() {
                         let good = unmet.is_empty() && left_out.is_empty();
                         if good || found.is_none() {
-                            found = Some((*new, unmet));
+                            found = Some((*new, unmet, tried.state == Some(ObjectState::Parked)));
                         }
                         if good {
                             break;
@@ -282,7 +291,7 @@ impl Editor<'_> {
             }
         }
         self.boxes.extend(gone.map(|b| (b.id, b)));
-        let Some((new, unmet)) = found else {
+        let Some((new, unmet, parked)) = found else {
             self.note(format!("box {} finds no room there: not moved", b.id.0));
             return;
         };
@@ -298,7 +307,7 @@ impl Editor<'_> {
             yaw_rad,
         });
         // What stands at the roadside does not drive; what was told to drive does.
-        let stands = parks && b.class.is_vehicle()
+        let stands = (parks || parked) && b.class.is_vehicle()
             || matches!(told, Some(ObjectState::Parked | ObjectState::Waiting))
             || spec.relations.iter().any(|r| super::place::stands(r.relation));
         let goes = told == Some(ObjectState::Moving);

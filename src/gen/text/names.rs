@@ -175,7 +175,7 @@ pub fn are_of_two_kinds(one: &str, other: &str) -> bool {
 }
 
 /// True if a box of this name may be called by that noun.
-fn is_called(name: &str, noun: &str) -> bool {
+pub fn is_called(name: &str, noun: &str) -> bool {
     let part = |whole: &str, part: &str| {
         whole
             .strip_suffix(part)

@@ -361,7 +361,8 @@ impl Placer<'_> {
                     && (e.relation == RelationKind::Behind || follows(b)))
             });
             if beyond && s.p.x < 0.0 {
-                cost += 2.0;
+                // (however long the way there is)
+                cost += if self.from.is_some() { 10.0 } else { 2.0 };
             }
             // what comes towards the ego vehicle has not passed it yet
             let comes = stated.iter().any(|(e, t)| {

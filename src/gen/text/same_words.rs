@@ -99,7 +99,12 @@ const THINGS: &[(&str, &str)] = &[
         "opposite lane|opposing lane|opposing traffic lane|opposite traffic lane|opposite driving lane|oncoming traffic lane|lane of the oncoming traffic|lane of oncoming traffic|\
          lane for oncoming traffic|lane for the oncoming traffic|lane of opposing traffic|lane of the opposing traffic|lane coming towards us|\
          lane coming towards me|lane coming the other way|lane going the other way|lane in the opposite direction|lane in the other direction|\
-         lane of the opposite direction|lane for the opposite direction|contraflow lane|counter lane|lane for opposing traffic|lane coming toward us",
+         lane of the opposite direction|lane for the opposite direction|contraflow lane|counter lane|lane for opposing traffic|lane coming toward us|\
+         lane across from ours|lane across from our own|lane across from our lane|lane opposite ours|lane opposite our own|lane opposite to ours|\
+         lane opposite of ours|lane opposite our lane|lane facing ours|lane on the other side from ours|lane on the far side of ours|lane that runs against ours|\
+         lane beyond the centre line|lane beyond the center line|lane over the centre line|lane over the center line|lane on the other side of the centre line|\
+         lane on the other side of the center line|lane on the other side of the road|lane on the other side of the street|lane on the far side of the road|\
+         lane on the opposite side of the road|lane on the opposite side of the street",
     ),
 ];
 

@@ -88,7 +88,14 @@ pub fn tag(tokens: &[Token]) -> Vec<Item> {
             }
             let sense = sense?;
             // "parked across from a bus"
-            if n > 1 && words.ends_with(" across") && word(i + n) == Some("from") {
+            let across = n > 1 && words.ends_with(" across");
+            if across && word(i + n) == Some("from") {
+                return None;
+            }
+            // "parked across the street from a bus"
+            let road = word(i + n) == Some("the")
+                && word(i + n + 1).is_some_and(|w| matches!(w, "street" | "road" | "way"));
+            if across && road && word(i + n + 2) == Some("from") {
                 return None;
             }
             // "in our lane ahead of us"

@@ -13,9 +13,11 @@ pub fn plainly(tokens: &[Token]) -> Vec<Token> {
     put_up(&namely(&whom_we_follow(&out)))
 }
 
+/// What leads over to what is meant exactly.
+pub(super) const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|in the shape of|consisting of|made up of|composed of|comprising|which consists of|which consist of|that consists of|which is made up of|which is composed of|which comprises|meaning|that is|i e|ie|in other words|being";
+
 /// "traffic, namely four cars and a truck": what follows lists it.
 fn namely(tokens: &[Token]) -> Vec<Token> {
-    const NAMELY: &str = "namely|to wit|viz|that is to say|to be exact|specifically|in the form of|in the shape of|consisting of|made up of|composed of|comprising|which consists of|which consist of|that consists of|which is made up of|which is composed of|which comprises|meaning|that is|i e|ie|in other words|being";
     rewritten(tokens, |i, out| {
         let before = out.iter().rev().find(|t| t.kind != TokenKind::Comma);
         let sorts = before.is_some_and(|t| {

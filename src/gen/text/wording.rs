@@ -91,7 +91,7 @@ const NEXT: &str = "another|the other|the other one|another one|the next|the nex
 const TOGETHER: &str = "behind each other|behind one another|after each other|after one another|following each other|following one another|nose to tail|bumper to bumper|end to end|in a row|in single file|single file|in indian file|in one file|in a queue|in a line|in one line|in a column|in a convoy|in convoy|in a chain|in a string|in tandem|back to back|in a long line|in a long queue|one by one|in a straight line|lined up behind each other|lined up one behind the other";
 
 /// Length of a phrase that only says that those of a group stand one behind another.
-fn order(tokens: &[Token]) -> Option<usize> {
+pub fn order(tokens: &[Token]) -> Option<usize> {
     if let Some(n) = begins(tokens, TOGETHER) {
         return Some(n);
     }
@@ -126,6 +126,14 @@ pub fn without_order(tokens: &[Token]) -> Vec<Token> {
                     })
                 {
                     out.pop();
+                }
+                // ("two cyclists, one after the other, ride ahead of us" is one clause)
+                let verb = tokens.get(i + 1).is_some_and(|t| {
+                    super::said::words::is_finite(&t.text, true)
+                        || matches!(t.text.as_str(), "are" | "is" | "should" | "must")
+                });
+                if verb && tokens.get(i).is_some_and(|t| t.kind == TokenKind::Comma) {
+                    i += 1;
                 }
             }
             None => {

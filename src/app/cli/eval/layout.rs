@@ -83,6 +83,8 @@ const SETS: &[(&str, &str)] = sets![
     "strangers_34.jsonl",
     "strangers_38.jsonl",
     "causes_zb.jsonl",
+    "strangers_37.jsonl",
+    "causes_za.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",
     "variants.jsonl",

@@ -10,7 +10,7 @@ use super::headway::is_mark;
 use super::lists::IN_PLACE;
 use super::some_of::removes;
 use super::vacated::Room;
-use super::words::{first_noun, has_noun, is, is_place, leads, led, noun_at, number, trimmed};
+use super::words::{first_noun, has_noun, is, is_goal, is_place, leads, led, noun_at, number, trimmed};
 use crate::scene::Class;
 
 /// A sentence (without its stop) as what is asked for.
@@ -53,6 +53,11 @@ const SENT: &str = "sent|has sent|had sent|waved|has waved|ordered|has ordered|d
     moved|has moved|have moved|pushed|has pushed|walked|escorted|has escorted|told|steered|has steered|shifted|has shifted|took|has taken|sends|waves|moves|orders|directs|brings|guides|\
     leads|helped|has helped|carried|has carried|have sent|dragged|has dragged|rolled|has rolled|backed|has backed";
 
+/// What leaves it standing there.
+const LEFT: &str = "left|has left|have left|had left|parked|has parked|have parked|put|has put|have put|abandoned|has abandoned|have abandoned|placed|has placed|have placed|positioned|\
+    has positioned|have positioned|stood|has stood|have stood|dumped|has dumped|have dumped|deposited|has deposited|stopped|has stopped|ditched|has ditched|stranded|has stranded|\
+    dropped|has dropped|set|has set|have set|set down|has set down|has just left|has just parked|has just put|parks|leaves|puts|places";
+
 /// True for somebody who is said to do something.
 fn person(tokens: &[Token]) -> Option<usize> {
     const OTHERS: &str = "foreman|boss|supervisor|teacher|owner|driver|operator|dispatcher|controller|marshal|steward|warden|tow truck driver|recovery service|fire brigade|police|\
@@ -75,7 +80,11 @@ fn sent_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         &["the", "a", "an", "our", "my", "some", "his", "her", "its"],
     ));
     let who = tokens.get(the..).and_then(person).map(|n| the + n);
-    let Some(n) = who.and_then(|w| begins(&tokens[w..], SENT).map(|n| w + n)) else {
+    let left = who.and_then(|w| begins(&tokens[w..], LEFT).map(|n| w + n));
+    let Some(n) = who
+        .and_then(|w| begins(&tokens[w..], SENT).map(|n| w + n))
+        .or(left)
+    else {
         return tokens;
     };
     let np = &tokens[n..];
@@ -87,6 +96,10 @@ fn sent_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let to = &np[b..];
     if is_place(to) && !is(to.first(), &["away", "off", "out", "home"]) && talk.fits(&np[part..b]) > 0 {
+        if left.is_some() && part == 0 && !is_goal(to) {
+            let stands = led("should be standing", &tokens[0], &[to]);
+            return [&np[..b], &stands].concat();
+        }
         return led("move", &tokens[0], &[np]);
     }
     tokens

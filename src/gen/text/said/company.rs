@@ -470,7 +470,13 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     k += fellow;
     // ", who are also ahead of us"
     let also = super::words::leads(&rest[(k + 1).min(rest.len())..], WHO_ALSO).unwrap_or(0);
-    let place = &rest[(k + 1 + also).min(rest.len())..];
+    let state = usize::from(is(
+        rest.get(k + 1 + also),
+        &[
+            "riding", "driving", "walking", "standing", "waiting", "going", "parked", "coming", "running",
+        ],
+    ));
+    let place = &rest[(k + 1 + also + state).min(rest.len())..];
     let named = fellow > 0 || is(rest.get(k), &MATES);
     let mate = k > 0
         && named
@@ -487,7 +493,17 @@ fn companion(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         ),
         None => led("add another", &tokens[0], &[&one]),
     };
-    [&add[..], there, place].concat()
+    let parked = is(rest.get(k + 1 + also), &["parked", "standing", "waiting"]);
+    let verb = if parked { &rest[k + 1 + also..][..1] } else { &[] };
+    // ("a companion riding beside it")
+    let mut at: Vec<Token> = Vec::new();
+    for t in place {
+        match is(Some(t), &["it", "him", "her", "them"]) {
+            true => at.extend_from_slice(&tokens[n..n + b]),
+            false => at.push(t.clone()),
+        }
+    }
+    [&add[..], verb, there, &at].concat()
 }
 
 const WHO_ALSO: &[&str] = &[

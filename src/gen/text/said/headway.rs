@@ -104,6 +104,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .or_else(|| gap_shall(&out, talk))
         .or_else(|| gap_of(&out, talk))
         .or_else(|| metres_to(&out, talk))
+        .or_else(|| separated(&out, talk))
     {
         return new;
     }
@@ -372,6 +373,29 @@ fn gap_of(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         return None;
     }
     keeps(np, &tokens[a], &tokens[a + 1..b], talk)
+}
+
+/// "only 9 m should separate us from the bus", "the bus should be separated from us by 9 m".
+fn separated(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const SEPARATE: &str = "separate|separates|separating|should separate|must separate|have to separate|has to separate|shall separate|are to separate|may separate|ought to separate|\
+        will separate|should be separating|part|parts|should part|divide|divides|should divide|keep|keeps|should keep|should lie between|lie between";
+    const US_FROM: &str = "us from|me from|our car from|my car from|us and|me and|the ego from|our vehicle from|the ego vehicle from|ourselves and";
+    const APART: &str = "should be separated from us by|is separated from us by|must be separated from us by|has to be separated from us by|should be separated from me by|is to be separated from us by|\
+        is separated from me by|should be parted from us by";
+    if let Some((i, n)) = (1..tokens.len()).find_map(|i| begins(&tokens[i..], APART).map(|n| (i, n))) {
+        let (a, b) = measure(&tokens[i + n..]).map(|m| (i + n + m.0, i + n + m.1))?;
+        let about = tokens[i + n..a].iter().all(|t| ANSWER.contains(&text(t)));
+        return (about && b == tokens.len())
+            .then(|| keeps(&tokens[..i], &tokens[a], &tokens[a + 1..b], talk))
+            .flatten();
+    }
+    let (a, b) = measure(tokens).filter(|m| m.0 < 5)?;
+    let about = tokens[..a]
+        .iter()
+        .all(|t| ANSWER.contains(&text(t)) || is(Some(t), &["no", "than"]));
+    let n = begins(&tokens[b..], SEPARATE).filter(|_| about)?;
+    let from = begins(&tokens[b + n..], US_FROM)?;
+    keeps(&tokens[b + n + from..], &tokens[a], &tokens[a + 1..b], talk)
 }
 
 /// "only 17 m to the bus, not 25", "eight metres less to the bus".

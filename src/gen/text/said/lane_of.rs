@@ -13,7 +13,37 @@ const STRIP: &str = "lane|sidewalk|pavement|footpath|walkway|footway|kerb|curb|r
 /// A sentence in which they bear their names.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = goes_over(owners_lane(as_before(opposite_last(tokens)), talk), talk);
-    in_that(same_as(out, talk), talk)
+    in_that(same_as(in_theirs(out, talk), talk), talk)
+}
+
+/// "a car follows the two cyclists in their lane": where these are.
+fn in_theirs(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let fresh = is(
+        tokens.first(),
+        &[
+            "a", "an", "another", "add", "put", "make", "let", "have", "place", "two",
+        ],
+    );
+    rewritten(&tokens, |i, out| {
+        let own =
+            is(tokens.get(i), &["his", "her", "its", "their"]) && is(out.last(), &["in", "along", "on"]);
+        let n = begins(tokens.get(i + 1..)?, "lane|own lane|very lane").filter(|_| own && fresh)?;
+        let at = (0..out.len())
+            .rev()
+            .find(|k| is(out.get(*k), &["the", "that", "both", "those"]))?;
+        let (_, b) = first_noun(&out[at..]).filter(|x| x.0 < 4)?;
+        let name = name_of(&talk.boxes_of(&out[at..at + b]), talk).filter(|name| is_of_kind(true, name))?;
+        // (a comma parts nothing here)
+        let comma = out
+            .len()
+            .checked_sub(2)
+            .filter(|k| out[*k].kind == TokenKind::Comma);
+        if let Some(k) = comma {
+            out.remove(k);
+        }
+        out.extend(led(name, &tokens[i], &[]));
+        Some(i + 1 + n)
+    })
 }
 
 /// "only 7 m ahead, same lane as before": what is not told otherwise stays so.

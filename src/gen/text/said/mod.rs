@@ -6,6 +6,7 @@
 mod actors;
 mod acts;
 mod apart;
+mod appended;
 mod arrivals;
 mod as_now;
 mod asides;
@@ -28,6 +29,7 @@ mod exception;
 mod exchanges;
 mod forms;
 mod frame;
+mod fronted;
 mod gapped;
 mod gaps;
 mod gaze;
@@ -262,7 +264,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = speakers::plain(testimony::plain(body.to_vec()), talk);
+    let out = appended::plain(speakers::plain(testimony::plain(body.to_vec()), talk), talk);
+    let out = fronted::plain(out, talk);
     let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);

@@ -4,7 +4,7 @@
 use super::super::lexicon::plural;
 use super::super::names::singular;
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::rewritten;
+use super::super::wording::{order, rewritten};
 use super::Talk;
 use super::topics::singular_of;
 use super::words::{first_noun, is, is_finite, is_place, is_unit, leads, led, noun_at, number, text, word};
@@ -231,7 +231,8 @@ fn more_of_them(tokens: &[Token]) -> Vec<Token> {
             .is_some_and(|t| is_finite(text(t), true) || is(Some(t), &["is", "are"]));
         let placed = verb && (1..next.len().min(4)).any(|k| is_place(&next[k..]));
         let bare = is_place(next) && !is_unit(next.first()) && !is(next.first(), &["by", "off", "out", "to"]);
-        if !placed && !bare || noun_at(next).is_some() {
+        // ("one after the other" says only how they stand)
+        if !placed && !bare || noun_at(next).is_some() || order(&tokens[i..]).is_some() {
             return None;
         }
         // of the clause before, where its subject is new as well

@@ -22,6 +22,37 @@ const SHOWS: &[&str] = &[
     "spawn",
     "init",
 ];
+/// What wishes for the same, where a state follows: "I want the truck parked on the left".
+const WISHES: &[&str] = &[
+    "have",
+    "i want",
+    "i want to have",
+    "i want to see",
+    "i would like",
+    "i would like to have",
+    "i would like to see",
+    "id like",
+    "id like to have",
+    "id like to see",
+    "i would rather have",
+    "id rather have",
+    "i need",
+    "i prefer",
+    "i would prefer",
+    "id prefer",
+    "we want",
+    "we need",
+    "we would like",
+    "wed like",
+    "let us have",
+    "lets have",
+    "let me see",
+    "could we have",
+    "can we have",
+    "can i have",
+    "could i have",
+    "could you have",
+];
 const THROWS: &[&str] = &[
     "chuck", "throw", "toss", "fling", "sling", "kick", "dump", "lift", "haul", "tow", "heave", "cart",
     "boot", "sweep", "pluck", "yank", "lob", "bundle", "hoist", "fetch",
@@ -33,7 +64,7 @@ const WHOLE: &[&str] = &[
 
 /// A sentence (without its stop) in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = still_so(in_ours(tokens), talk);
+    let out = still_so(in_ours(set_there(tokens)), talk);
     let out = shown(seen(out, talk), talk);
     let out = lifted(thrown(out, talk));
     past(until(out, talk), talk)
@@ -49,6 +80,26 @@ fn in_ours(tokens: Vec<Token>) -> Vec<Token> {
             i + 1
         })
     })
+}
+
+/// "set one cone between the two barriers": put it there, and do not make it so many.
+fn set_there(mut tokens: Vec<Token>) -> Vec<Token> {
+    let lead = leads(&tokens, &["and", "then", "please", "also", "now"]).unwrap_or(0);
+    let fresh = is(tokens.get(lead), &["set"])
+        && tokens
+            .get(lead + 1)
+            .is_some_and(|t| is(Some(t), &["a", "an", "another"]) || number(t).is_some());
+    let np = tokens
+        .get(lead + 1..)
+        .and_then(first_noun)
+        .filter(|x| fresh && x.0 < 4);
+    if let Some((_, b)) = np {
+        let place = &tokens[lead + 1 + b..];
+        if is_place(place) && !is(place.first(), &["to", "up", "off", "out", "back", "down", "by"]) {
+            tokens[lead].text = "put".into();
+        }
+    }
+    tokens
 }
 
 /// Where the words end that name something known, which begin at `from`.
@@ -67,7 +118,8 @@ fn opens_with(tokens: &[Token], i: usize, verbs: &[&str]) -> Option<usize> {
 /// "show the pickup parked on the right roadside": it should be there.
 fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (0..tokens.len()).find_map(|i| {
-        let from = i + opens_with(&tokens, i, SHOWS)?;
+        let wish = opens_with(&tokens, i, WISHES);
+        let from = i + opens_with(&tokens, i, SHOWS).or(wish)?;
         let it = is(tokens.get(from), &["it", "him", "her", "them"]);
         let end = if it { from + 1 } else { known(&tokens, from)? };
         let state = usize::from(matches!(
@@ -75,7 +127,13 @@ fn shown(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             Some((Sense::State(..), 1))
         ));
         let place = tokens.get(end + state..)?;
-        let sure = it || talk.tells(&tokens[from..end]);
+        // ("have her stand beside it" is a command of its own)
+        let wished = state > 0
+            && !it
+            && tokens
+                .get(end)
+                .is_some_and(|t| text(t).ends_with("ing") || text(t).ends_with("ed"));
+        let sure = (it || talk.tells(&tokens[from..end])) && (wish.is_none() || wished);
         (is_place(place) && !is(place.first(), &["out", "off", "up"]) && sure).then_some((i, from, end))
     });
     match found {

@@ -1,7 +1,7 @@
 //! Who sits in or on something: "the lorry driver has climbed out and stands beside his lorry", "the cyclist should be riding a moped".
 
 use super::super::lexicon::{Sense, look_up};
-use super::super::tokens::Token;
+use super::super::tokens::{Token, TokenKind};
 use super::super::wording::rewritten;
 use super::words::{find, first_noun, is, is_place, leads, led, text};
 use crate::scene::Class;
@@ -205,6 +205,9 @@ fn climbs_out(tokens: Vec<Token>) -> Vec<Token> {
     const DRIVER: &[&str] = &[
         "driver", "drivers", "rider", "trucker", "s driver", "s rider", "' driver",
     ];
+    if let Some(out) = out_of_it(&tokens) {
+        return out;
+    }
     if !is(tokens.first(), &["the", "my", "that"]) {
         return tokens;
     }
@@ -267,6 +270,86 @@ fn climbs_out(tokens: Vec<Token>) -> Vec<Token> {
         None => out.extend(led("next to the", &tokens[0], &[&vehicle])),
     }
     out
+}
+
+/// "the driver has got out of the lorry and stands behind it": the lorry is named with what he did.
+fn out_of_it(tokens: &[Token]) -> Option<Vec<Token>> {
+    const WHO: &[&str] = &[
+        "the driver",
+        "its driver",
+        "a driver",
+        "the rider",
+        "its rider",
+        "someone",
+        "somebody",
+        "a passenger",
+        "one passenger",
+        "the passenger",
+        "its owner",
+        "the owner",
+        "a man",
+        "a woman",
+        "the trucker",
+    ];
+    const HAS: &[&str] = &[
+        "has just",
+        "has now",
+        "has already",
+        "had",
+        "has",
+        "just",
+        "is",
+        "is just",
+        "should have",
+        "must have",
+    ];
+    const OF: &[&str] = &[
+        "of the", "of that", "from the", "the", "of his", "of her", "from his",
+    ];
+    const OUT_OF: &[&str] = &[
+        "getting out",
+        "climbing out",
+        "stepping out",
+        "jumping out",
+        "exited",
+        "exits",
+        "has left",
+    ];
+    let who = leads(tokens, WHO)?;
+    let has = leads(&tokens[who..], HAS).unwrap_or(0);
+    let verb = who + has;
+    // ("has left the lorry in our lane" tells where the lorry is)
+    let left = leads(&tokens[verb..], &["left"]);
+    let n = leads(&tokens[verb..], OUT)
+        .or_else(|| leads(&tokens[verb..], OUT_OF))
+        .or(left)?;
+    let of = leads(&tokens[verb + n..], OF)?;
+    let np = &tokens[verb + n + of..];
+    let (a, b) = first_noun(np).filter(|x| x.0 < 3)?;
+    matches!(look_up(text(&np[b - 1])), Some(Sense::Noun(noun, false)) if noun.classes[0].is_vehicle())
+        .then_some(())?;
+    let rest = &np[b..];
+    let goes_on = is(rest.first(), &["and"]) || rest.first().is_some_and(|t| t.kind == TokenKind::Comma);
+    if !(goes_on || rest.is_empty() && left.is_none()) || a > 2 {
+        return None;
+    }
+    let vehicle = led("the", &tokens[0], &[&np[..b]]);
+    let place = (0..rest.len()).find(|i| is_place(&rest[*i..]));
+    let Some(i) = place else {
+        return rest
+            .iter()
+            .all(|t| !is(Some(t), &["and"]))
+            .then(|| led("add a man next to", &tokens[0], &[&vehicle]));
+    };
+    let mut out = led("add a man", &tokens[0], &[]);
+    for t in &rest[i..] {
+        if is(Some(t), &["it"]) {
+            out.extend_from_slice(&vehicle);
+        } else {
+            out.push(t.clone());
+        }
+    }
+    Some(out)
 }
 
 /// "the cyclist should be riding a moped, not a bicycle": it becomes one.

@@ -73,7 +73,12 @@ pub(super) fn sides_named(tokens: Vec<Token>) -> Vec<Token> {
                 "lane" | "sidewalk" | "pavement" | "side" | "kerb" | "curb" | "roadside" | "shoulder"
             )
         });
-        if let (true, true, Some(place)) = (side, is(out.get(i), &["one"]), place.cloned()) {
+        // ("the car goes to the left side, the other one stays": the other car)
+        let subject = is(out.get(i - 1), &["other"])
+            && out
+                .get(i + 1)
+                .is_some_and(|t| words::is_finite(text(t), false) || HELPERS.contains(&text(t)));
+        if let (true, false, true, Some(place)) = (side, subject, is(out.get(i), &["one"]), place.cloned()) {
             out[i] = words::word(text(&place), &out[i].clone());
         }
     }

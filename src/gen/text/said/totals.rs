@@ -89,7 +89,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
-    let out = so_many_of_them(in_all(out, talk));
+    let out = so_many_of_them(in_all(out, talk), talk);
     let out = not_but(out);
     from_to(not_enough(nicer(rather_than(out), talk), talk), talk)
 }
@@ -377,7 +377,7 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 }
 
 /// "pedestrians in greater number, five of them": five.
-fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
+fn so_many_of_them(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(i) = (2..tokens.len()).find(|i| {
         tokens[i - 1].kind == TokenKind::Comma
             && number(&tokens[*i]).is_some()
@@ -407,10 +407,14 @@ fn so_many_of_them(tokens: Vec<Token>) -> Vec<Token> {
         &[]
     };
     let mut out = tokens[..from].to_vec();
+    let fresh = talk.fits(&tokens[a..b]) == 0;
+    // ("cones, two of them, behind the truck")
+    let rest = &tokens[i + 3..];
+    let late = usize::from(rest.first().is_some_and(|t| t.kind == TokenKind::Comma) && is_place(&rest[1..]));
     out.extend(led(
-        "keep exactly",
+        if fresh { "add" } else { "keep exactly" },
         &tokens[from],
-        &[&tokens[i..=i], &tokens[a..b], place, &tokens[i + 3..]],
+        &[&tokens[i..=i], &tokens[a..b], place, &rest[late..]],
     ));
     out
 }
