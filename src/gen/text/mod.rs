@@ -50,6 +50,7 @@ mod said;
 mod same_words;
 mod select;
 mod shares;
+mod slips;
 mod spaces;
 mod spots;
 mod spots_strips;

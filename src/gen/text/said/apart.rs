@@ -260,7 +260,7 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
     if sentence.len() > 60 {
         return None;
     }
-    (2..sentence.len()).find_map(|a| {
+    (1..sentence.len()).find_map(|a| {
         if !is_link(&sentence[a]) || is_link(&sentence[a - 1]) {
             return None;
         }
@@ -305,8 +305,24 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
             && (wish || order)
             && !is(left.first(), LEANING)
             && !(points(left) || points(right));
-        (plain && told_apart || follows || begun).then_some((a, b))
+        // "the truck at 20 m, and at night"; "night, rain, and two people there": the sky is a matter of its own
+        let (dark, rest) = (sky(left), sky(right));
+        let mood = !odd
+            && dark != rest
+            && (rest && sentence[a].kind == TokenKind::Comma || dark && !is(left.first(), LEANING))
+            && !(points(left) || points(right));
+        (a > 1 && plain && told_apart || follows || begun || mood).then_some((a, b))
     })
+}
+
+/// "night", "at night", "in the rain": so short that nothing else is said.
+fn sky(part: &[Token]) -> bool {
+    const SMALL: &[&str] = &["at", "in", "the", "by", "a", "with", "it", "is", "make"];
+    part.len() < 4
+        && super::parting::only_sky(part)
+        && part.iter().all(|t| {
+            is(Some(t), SMALL) || matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)))
+        })
 }
 
 /// A clause that begins so leans on the next.

@@ -137,17 +137,33 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if tokens.len() > 40 {
         return tokens;
     }
-    let body = trimmed(&tokens);
+    let wish = leads(&tokens, WISHES).unwrap_or(0);
+    let each = both_out(&tokens[wish..]);
+    let body = trimmed(&each);
+    // ("barriers away, five cones instead")
+    let late = is(tokens.last(), &["instead"]) && !is(body.last(), &["instead"]);
     let mut out: Vec<Token> = Vec::new();
     let mut before = false;
-    for (k, p) in parts(body).into_iter().enumerate() {
+    let list = parts(body);
+    for (k, p) in list.iter().copied().enumerate() {
         let goes = leaves(p, before, talk);
         // ("cyclists off, mopeds on" is one for the other)
         if k == 0 && goes.is_none() || is(p.last(), &["on", "in"]) {
             return tokens;
         }
+        if let Some(who) = stays(p, talk) {
+            out.push(comma(&p[0]));
+            out.extend(led("leave", &p[0], &[&who, &led("alone", &p[0], &[])]));
+            before = false;
+            continue;
+        }
         let fresh = is(p.first(), &["a", "an", "another"]) || number(&p[0]).is_some();
-        let there = super::predicate::in_place(p).is_some() || is(p.last(), &["instead"]);
+        let last = k + 1 == list.len();
+        let placed = || first_noun(p).is_some_and(|n| n.0 < 4 && is_place(&p[n.1..]));
+        let there = super::predicate::in_place(p).is_some()
+            || is(p.last(), &["instead"])
+            || late && last
+            || is(p.first(), &["a", "an", "another"]) && placed();
         // ("motorcycle in its place")
         let bare = first_noun(p).filter(|n| n.0 == 0 && talk.fits(&p[..n.1]) == 0);
         let put = goes.is_none() && (fresh || bare.is_some()) && there && !p.iter().any(says);
@@ -169,11 +185,98 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                     out.extend(led(if fresh { "put" } else { "put a" }, &p[0], &[]));
                 }
                 out.extend_from_slice(p);
+                if put && late && last {
+                    out.extend(led("instead", &p[0], &[]));
+                }
                 before = false;
             }
         }
     }
     out
+}
+
+const WISHES: &[&str] = &[
+    "i want",
+    "we want",
+    "id like",
+    "i would like",
+    "wed like",
+    "we would like",
+    "i need",
+    "we need",
+    "id like to have",
+    "id like to see",
+    "i want to see",
+    "id prefer",
+    "i would prefer",
+];
+
+/// "car and truck both out": each of them out.
+fn both_out(tokens: &[Token]) -> Vec<Token> {
+    let found = (3..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["both", "all", "each"])
+            && is(tokens.get(i + 1), &["gone", "away", "out", "off"])
+            && tokens
+                .get(i + 2)
+                .is_none_or(|t| t.kind == TokenKind::Comma || text(t) == "and")
+    });
+    let Some(i) = found else { return tokens.to_vec() };
+    let from = tokens[..i]
+        .iter()
+        .rposition(|t| t.kind != TokenKind::Word)
+        .map_or(0, |k| k + 1);
+    let list: Vec<&[Token]> = tokens[from..i].split(|t| text(t) == "and").collect();
+    let bare = |np: &&[Token]| first_noun(np).is_some_and(|n| n.0 < 4 && n.1 == np.len());
+    if list.len() < 2 || !list.iter().all(bare) {
+        return tokens.to_vec();
+    }
+    let mut out = tokens[..from].to_vec();
+    for (k, np) in list.iter().enumerate() {
+        if k > 0 {
+            out.push(word("and", &tokens[i]));
+        }
+        out.extend_from_slice(np);
+        out.push(tokens[i + 1].clone());
+    }
+    out.extend_from_slice(&tokens[i + 2..]);
+    out
+}
+
+/// "parked cars stay", "the bus can stay": who stays as he is.
+fn stays(p: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const STAYING: &[&str] = &[
+        "stay",
+        "stays",
+        "remain",
+        "remains",
+        "can stay",
+        "may stay",
+        "should stay",
+        "to stay",
+        "is to stay",
+        "can remain",
+        "may remain",
+        "is fine",
+        "are fine",
+        "stay put",
+        "stays put",
+        "stay there",
+        "stays there",
+    ];
+    let (_, b) = first_noun(p).filter(|n| n.0 < 4)?;
+    (leads(&p[b..], STAYING) == Some(p.len() - b)).then_some(())?;
+    let who = &p[..b];
+    let all = number(&who[0]).is_none_or(|n| n.max(0) as usize == talk.fits(&who[1..]));
+    let the = is(
+        who.first(),
+        &["the", "both", "all", "my", "that", "these", "those"],
+    );
+    let np = if the {
+        who.to_vec()
+    } else {
+        led("the", &p[0], &[who])
+    };
+    (all && !is(who.first(), &["a", "an", "only", "just"]) && talk.fits(&np) > 0).then_some(np)
 }
 
 fn comma(at: &Token) -> Token {
