@@ -261,6 +261,13 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         return None;
     }
     (1..sentence.len()).find_map(|a| {
+        // "turn the motorcycle round: it's coming the wrong way": what for
+        let reason = text(&sentence[a]) == ":"
+            && is(sentence.first(), &["turn", "rotate", "spin", "flip", "swing"])
+            && leads(&sentence[a + 1..], HE_IS).is_some();
+        if reason && orders_something(&sentence[..a]) && !has_noun(&sentence[a + 1..]) {
+            return Some((a, a + 1));
+        }
         if !is_link(&sentence[a]) || is_link(&sentence[a - 1]) {
             return None;
         }
@@ -314,6 +321,20 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
         (a > 1 && plain && told_apart || follows || begun || mood).then_some((a, b))
     })
 }
+
+const HE_IS: &[&str] = &[
+    "its",
+    "it is",
+    "he is",
+    "hes",
+    "she is",
+    "shes",
+    "theyre",
+    "they are",
+    "it should",
+    "he should",
+    "it must",
+];
 
 /// "night", "at night", "in the rain": so short that nothing else is said.
 fn sky(part: &[Token]) -> bool {

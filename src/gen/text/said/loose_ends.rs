@@ -94,6 +94,29 @@ fn phrased(tokens: Vec<Token>) -> Vec<Token> {
             let and = usize::from(is(tokens.get(i + 1 + n + comma), &["and"]));
             return Some(i + 1 + n + comma + and);
         }
+        // "two more cars for the cross street": on it
+        let given = is(tokens.get(i), &["for"])
+            && is(tokens.get(i + 1), &["the", "our", "my"])
+            && tokens
+                .get(i + 2..)
+                .and_then(super::words::longest)
+                .is_some_and(|(s, n)| {
+                    use super::super::lexicon::Sense;
+                    let ends = tokens.get(i + 2 + n).is_none_or(|t| t.kind != TokenKind::Word);
+                    ends && matches!(s, Sense::Place(..))
+                });
+        let fresh = given
+            && i > 0
+            && super::words::noun_at(&tokens[i - 1..i]).is_some()
+            && out
+                .iter()
+                .rev()
+                .take(4)
+                .any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "more"]));
+        if fresh {
+            out.extend(led("on", &tokens[i], &[]));
+            return Some(i + 1);
+        }
         // "six cars parked here": in the scene
         let here =
             is(tokens.get(i), &["here"]) && out.last().is_some_and(|t| is(Some(t), &["parked", "standing"]));
@@ -159,6 +182,40 @@ const TAILS: &[&str] = &[
     "making that",
     "that makes",
     "so that makes",
+    "distances as they are",
+    "distance as it is",
+    "distances unchanged",
+    "distances stay as they are",
+    "distances staying as they are",
+    "the distances as they are",
+    "with distances as they are",
+    "with the distances as they are",
+    "doesnt matter which way",
+    "doesnt matter which direction",
+    "doesnt matter where exactly",
+    "does not matter which way",
+    "does not matter which direction",
+    "it doesnt matter which way",
+    "it doesnt matter which direction",
+    "no matter which way",
+    "no matter which direction",
+    "whichever way",
+    "in whichever direction",
+    "in either direction",
+    "either direction",
+    "either way",
+    "any direction",
+    "in any direction",
+    "in whatever direction",
+    "i dont care which way",
+    "i dont mind which way",
+    "i dont care which direction",
+    "i dont mind which direction",
+    "i dont care where exactly",
+    "direction doesnt matter",
+    "the direction doesnt matter",
+    "direction is up to you",
+    "direction does not matter",
     "so im alone",
     "so i am alone",
     "so we are alone",

@@ -383,7 +383,8 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
                         | "transfer"
                         | "park"
                         | "stand"
-                )
+                ) || matches!(text(v), "take" | "get" | "pull" | "push" | "steer" | "guide")
+                    && previous.iter().any(|t| is(Some(t), &["to", "into", "onto"]))
             })
             .or(told);
         let clause = &clause[..];

@@ -37,8 +37,41 @@ const STRIPS: &[&str] = &[
 /// A sentence (without its stop) with its verbs.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = all_of_them(their_own(same_strip(tokens, talk)));
-    let out = go_along(out, talk);
+    let out = go_along(some_over(out, talk), talk);
     sent(out, talk)
+}
+
+/// "two of the people over on the left sidewalk": so many of them go there.
+fn some_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const OF: &[&str] = &["of the", "of them", "of those", "of our", "of these"];
+    let body = trimmed(&tokens);
+    let wish = leads(body, WISHES).unwrap_or(0);
+    let body = &body[wish..];
+    let some = body
+        .first()
+        .is_some_and(|t| number(t).is_some() || is(Some(t), &["half", "some"]));
+    let of = some.then(|| leads(&body[1..], OF)).flatten();
+    let Some((of, (a, b))) = of.and_then(|n| Some((n, first_noun(&body[1 + n..])?))) else {
+        return tokens;
+    };
+    let end = 1 + of + b;
+    let place = &body[end..];
+    let over = leads(place, &["over there", "over", "across", "instead", "now"]).unwrap_or(0);
+    let place = &place[over..];
+    let onto = is(place.first(), &["on", "onto", "to", "in", "into", "at"]);
+    if a > 2
+        || !onto
+        || !is_place(place)
+        || has_noun(place)
+        || place.iter().any(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"]) || says(t))
+        || talk.fits(&body[of..end]) == 0
+        // (who is there already only says which are meant)
+        || over == 0 && talk.fits(&[&body[of..end], place].concat()) > 0
+    {
+        return tokens;
+    }
+    let to = led("to", &place[0], &[&place[1..]]);
+    led("move", &tokens[0], &[&body[..end], &to])
 }
 
 /// "..., but their lorry stays": the lorry.
@@ -166,7 +199,8 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             || is(p.first(), &["a", "an", "another"]) && placed();
         // ("motorcycle in its place")
         let bare = first_noun(p).filter(|n| n.0 == 0 && talk.fits(&p[..n.1]) == 0);
-        let put = goes.is_none() && (fresh || bare.is_some()) && there && !p.iter().any(says);
+        let verb = |i: usize| says(&p[i]) && super::words::noun_at(&p[i..=i]).is_none();
+        let put = goes.is_none() && (fresh || bare.is_some()) && there && !(0..p.len()).any(verb);
         if k > 0 {
             let and = goes.is_some() || put;
             out.push(if and { word("and", &p[0]) } else { comma(&p[0]) });

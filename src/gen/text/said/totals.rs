@@ -85,7 +85,7 @@ const SAME_PLACE: &[&str] = &[
 
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(doubled(tokens));
+    let out = same_place(same_there(doubled(tokens), talk));
     let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
@@ -96,6 +96,55 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 pub(super) fn links(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
+}
+
+/// "five children, same pavement": so many are to be where those stand that are there.
+fn same_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const SAME: &[&str] = &[
+        "same sidewalk",
+        "same pavement",
+        "same lane",
+        "same side",
+        "same place",
+        "same spot",
+        "same edge",
+        "same roadside",
+        "same kerb",
+        "same curb",
+        "same footpath",
+        "same strip",
+        "same side of the road",
+        "same side of the street",
+        "same edge of the road",
+    ];
+    let found = find(&tokens, SAME).filter(|(i, n)| {
+        let rest = trimmed(&tokens[i + n..]);
+        let rest = &rest[leads(rest, &["as now", "as before", "as they are", "still"]).unwrap_or(0)..];
+        *i > 2 && rest.is_empty()
+    });
+    let Some((i, _)) = found else { return tokens };
+    let Some(comma) = (2..i).rev().find(|k| tokens[*k].kind == TokenKind::Comma) else {
+        return tokens;
+    };
+    if !tokens[comma + 1..i]
+        .iter()
+        .all(|t| is(Some(t), &["on", "in", "at", "the", "all", "still"]))
+    {
+        return tokens;
+    }
+    let head = trimmed(&tokens[..comma]);
+    let wish = leads(head, WISHES).unwrap_or(0);
+    let head = &head[wish..];
+    let whole = first_noun(head).is_some_and(|x| x.0 < 4 && x.1 == head.len());
+    let adds = is(tokens.first(), &["add", "put", "place", "insert", "park"]);
+    if adds || !whole || !head.first().is_some_and(|t| number(t).is_some_and(|n| n > 1)) {
+        return tokens;
+    }
+    // ("two more" are told by how many come)
+    if is(head.get(1), &["more", "other", "further", "additional", "new"]) || talk.fits(&head[1..]) == 0 {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[head])
 }
 
 /// "five, all on the same sidewalk as before": more of a kind stand where the others are anyhow.
@@ -321,11 +370,19 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let tail = &tokens[i + n..];
     // whose number it is: named here, or in what is said before
     let np = match (own, lead_noun) {
-        (Some(_), _) => clause[k + 1..]
-            .iter()
-            .filter(|t| !plain_verb(t))
-            .cloned()
-            .collect(),
+        (Some(_), _) => {
+            // ("cars are parked": parked cars)
+            let mut np: Vec<Token> = Vec::new();
+            for t in clause[k + 1..].iter().filter(|t| !plain_verb(t)) {
+                match is(Some(t), &["parked", "standing", "waiting"])
+                    && first_noun(&np).is_some_and(|x| x.1 == np.len())
+                {
+                    true => np.insert(0, t.clone()),
+                    false => np.push(t.clone()),
+                }
+            }
+            np
+        }
         (None, Some(_)) => return tokens,
         (None, None) => {
             let before = &tokens[..from];
