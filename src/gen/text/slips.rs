@@ -18,6 +18,8 @@ const KEPT: &str = "keep it|keep them|keep him|keep her|leave it|leave them|leav
     leave them there|let it stay|let them stay|let him stay|let her stay|it stays|they stay|he stays|she stays|it can stay|they can stay|\
     it may stay|they may stay|it should stay|they should stay|keep it in|keep them in|leave it be|leave it alone|dont|do not|keep that|\
     keep it there|keep them there|keep it after all|let it be|leave it where it is|keep it where it is";
+/// What may follow the number that is right.
+const BETTER: &str = "is better|would be better|might be better|is nicer|is right|would be right|is enough|will do|would do|is more like it|please";
 const REMOVES: &str = "remove|delete|erase|take out|take away|take|forget|forget about|lose|drop|scrap|clear|bin|cancel|kill|discard|get rid of|\
     do away with|leave out|ditch|away with|out with";
 
@@ -35,10 +37,10 @@ pub(super) fn put_right(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&out.clone(), |i, to| kept_after_all(&out, i, to))
 }
 
-/// One past the words from here that take something back, with the marks about them.
-fn taken_back(tokens: &[Token], from: usize) -> Option<usize> {
+/// One past the words from here that take something back, with the marks about them, and whether they do more than pause.
+fn taken_back(tokens: &[Token], from: usize) -> Option<(usize, bool)> {
     let mut i = from;
-    let mut back = false;
+    let (mut back, mut paused) = (false, false);
     loop {
         if is_gap(tokens.get(i)) {
             i += 1;
@@ -46,9 +48,10 @@ fn taken_back(tokens: &[Token], from: usize) -> Option<usize> {
             back = true;
             i += n;
         } else if let Some(n) = tokens.get(i..).and_then(|t| begins(t, PAUSE)) {
+            paused = true;
             i += n;
         } else {
-            return (back && i < tokens.len()).then_some(i);
+            return ((back || paused) && i < tokens.len()).then_some((i, back));
         }
     }
 }
@@ -58,7 +61,7 @@ fn said_anew(tokens: &[Token], i: usize, out: &mut Vec<Token>) -> Option<usize> 
     if i == 0 || !is_gap(tokens.get(i)) {
         return None;
     }
-    let at = taken_back(tokens, i)?;
+    let (at, back) = taken_back(tokens, i)?;
     // ("at fifteen", "to fifteen", "only three")
     let at = at
         + begins(
@@ -71,6 +74,9 @@ fn said_anew(tokens: &[Token], i: usize, out: &mut Vec<Token>) -> Option<usize> 
         .find(|k| is_gap(tokens.get(*k)) || tokens[*k].text == "and")
         .unwrap_or(tokens.len());
     let late = &tokens[at + 1..end];
+    let better = (0..late.len()).find(|k| begins(&late[*k..], BETTER) == Some(late.len() - k));
+    let late = &late[..better.unwrap_or(late.len())];
+    (back || better.is_some()).then_some(())?;
     let from = out
         .iter()
         .rposition(|t| t.kind == TokenKind::Stop)
@@ -88,7 +94,7 @@ fn said_anew(tokens: &[Token], i: usize, out: &mut Vec<Token>) -> Option<usize> 
     // nothing else is new
     let told = late
         .iter()
-        .all(|t| is_unit(t) || out[old..].iter().any(|o| o.text == t.text) || t.text == "please");
+        .all(|t| is_unit(t) || out[old..].iter().any(|o| o.text == t.text));
     if !told || out.len() - old > 10 {
         return None;
     }
@@ -101,7 +107,7 @@ fn kept_after_all(tokens: &[Token], i: usize, out: &mut Vec<Token>) -> Option<us
     if i == 0 || !is_gap(tokens.get(i)) {
         return None;
     }
-    let at = taken_back(tokens, i)?;
+    let (at, _) = taken_back(tokens, i).filter(|x| x.1)?;
     let n = begins(&tokens[at..], KEPT)?;
     let end = at + n;
     is_gap(tokens.get(end))
@@ -163,6 +169,7 @@ mod tests {
             "three cars 20 m ahead ."
         );
         assert_eq!(said("A bus 20 m ahead. No wait, 25 m."), "a bus 25 m ahead .");
+        assert_eq!(said("moped 30 m ahead, hm, 25 is better"), "moped 25 m ahead");
         assert_eq!(
             said("two cars ahead, no three trucks"),
             "two cars ahead , no three trucks"

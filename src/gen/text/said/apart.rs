@@ -250,8 +250,27 @@ pub fn apart(mut tokens: Vec<Token>) -> Vec<Token> {
             None => from = end + 1,
         }
     }
-    tokens
+    without_complaint(tokens)
 }
+
+/// "Turn the bus round. It's facing the wrong way." is one turn.
+fn without_complaint(tokens: Vec<Token>) -> Vec<Token> {
+    let mut turned = false;
+    let mut out: Vec<Token> = Vec::with_capacity(tokens.len());
+    for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
+        let complains = leads(sentence, HE_IS).is_some()
+            && sentence.len() < 10
+            && !has_noun(sentence)
+            && find(sentence, &["wrong way", "wrong direction"]).is_some();
+        if !(turned && complains) {
+            out.extend_from_slice(sentence);
+        }
+        turned = is(sentence.first(), TURNS) && orders_something(sentence);
+    }
+    out
+}
+
+const TURNS: &[&str] = &["turn", "rotate", "spin", "flip", "swing"];
 
 /// The first link in a sentence with a clause of its own on both sides: its first token and one past its last.
 fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
@@ -263,7 +282,7 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
     (1..sentence.len()).find_map(|a| {
         // "turn the motorcycle round: it's coming the wrong way": what for
         let reason = text(&sentence[a]) == ":"
-            && is(sentence.first(), &["turn", "rotate", "spin", "flip", "swing"])
+            && is(sentence.first(), TURNS)
             && leads(&sentence[a + 1..], HE_IS).is_some();
         if reason && orders_something(&sentence[..a]) && !has_noun(&sentence[a + 1..]) {
             return Some((a, a + 1));

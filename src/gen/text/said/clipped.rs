@@ -232,7 +232,7 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
                 .iter()
                 .any(|t| t.kind != TokenKind::Word && number(t).is_none())
         {
-            return None;
+            return to(&several_parts(&np, rest, talk)?);
         }
         let Some(m) = m else { return to(place) };
         let after = &place[at + m..];

@@ -771,7 +771,8 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && first_noun(&body[k + 1..]).is_some_and(|x| x.0 < 3 && k + 1 + x.1 + 1 == body.len())
     });
     let body = &body[..stays.unwrap_or(body.len())];
-    let Some((_, b)) = first_noun(body).filter(|x| x.0 == 0 && x.1 < body.len()) else {
+    let the = usize::from(is(body.first(), &["the"]));
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 == the && x.1 < body.len()) else {
         return tokens;
     };
     let one = matches!(
@@ -802,9 +803,14 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !known || !place || talk.fits(body) > 0 {
         return tokens;
     }
+    // ("the cyclist 18 m ahead": told as where, not by how much)
+    let metres = number(&rest[0]).is_some() && is_unit(rest.get(1));
+    if the == 1 && !metres {
+        return tokens;
+    }
     led(
         "the",
         &tokens[0],
-        &[&body[..b], &led("should be", &tokens[0], &[rest])],
+        &[&body[the..b], &led("should be", &tokens[0], &[rest])],
     )
 }

@@ -492,6 +492,8 @@ fn noted_for(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let with = if article || many { "with" } else { "with a" };
     let more = old.get(end + 1..).unwrap_or(&[]);
     let more = trimmed(more);
+    let not = find(more, &["rather than", "instead of", "not"]).map_or(more.len(), |x| x.0);
+    let more = trimmed(&more[..not]);
     let at = usize::from(is(more.first(), &["at"]));
     let beside = is(more.first(), &["with"])
         && more
@@ -503,7 +505,7 @@ fn noted_for(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let tail = match far {
         _ if more.is_empty() => Vec::new(),
         _ if beside => led("and add", &more[0], &[&more[1..]]),
-        Some((_, m)) if !has_noun(&more[at..]) && is_place(&more[at + m..]) => led(
+        Some((_, m)) if !has_noun(&more[at..]) && (at + m == more.len() || is_place(&more[at + m..])) => led(
             if many {
                 "and move them to"
             } else {

@@ -366,27 +366,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         previous = unwrapped(&clause).0.to_vec();
         let verb = previous.first().cloned();
         let told = parting::carried_on(&clause, talk).then(|| words::word("put", &clause[0]));
-        lead = verb
-            .filter(|v| {
-                matches!(
-                    text(v),
-                    "put"
-                        | "move"
-                        | "place"
-                        | "set"
-                        | "bring"
-                        | "shift"
-                        | "send"
-                        | "position"
-                        | "reposition"
-                        | "relocate"
-                        | "transfer"
-                        | "park"
-                        | "stand"
-                ) || matches!(text(v), "take" | "get" | "pull" | "push" | "steer" | "guide")
-                    && previous.iter().any(|t| is(Some(t), &["to", "into", "onto"]))
-            })
-            .or(told);
+        lead = verb.filter(|_| parting::carrying(&previous)).or(told);
         let clause = &clause[..];
         let talk = Talk {
             last: before.clone(),

@@ -171,7 +171,7 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         return tokens;
     }
     let wish = leads(&tokens, WISHES).unwrap_or(0);
-    let each = both_out(&tokens[wish..]);
+    let each = each_out(&tokens[wish..], talk);
     let body = trimmed(&each);
     // ("barriers away, five cones instead")
     let late = is(tokens.last(), &["instead"]) && !is(body.last(), &["instead"]);
@@ -245,22 +245,28 @@ const WISHES: &[&str] = &[
     "i would prefer",
 ];
 
-/// "car and truck both out": each of them out.
-fn both_out(tokens: &[Token]) -> Vec<Token> {
+/// "car and truck both out", "cyclist and both women off, and a lorry behind us": each of them out.
+fn each_out(tokens: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     let found = (3..tokens.len()).find(|i| {
-        is(tokens.get(*i), &["both", "all", "each"])
-            && is(tokens.get(i + 1), &["gone", "away", "out", "off"])
+        is(tokens.get(*i), &["gone", "away", "out", "off"])
             && tokens
-                .get(i + 2)
+                .get(i + 1)
                 .is_none_or(|t| t.kind == TokenKind::Comma || text(t) == "and")
     });
     let Some(i) = found else { return tokens.to_vec() };
-    let from = tokens[..i]
+    let end = i - usize::from(is(tokens.get(i - 1), &["both", "all", "each"]));
+    let from = tokens[..end]
         .iter()
         .rposition(|t| t.kind != TokenKind::Word)
         .map_or(0, |k| k + 1);
-    let list: Vec<&[Token]> = tokens[from..i].split(|t| text(t) == "and").collect();
-    let bare = |np: &&[Token]| first_noun(np).is_some_and(|n| n.0 < 4 && n.1 == np.len());
+    let list: Vec<&[Token]> = tokens[from..end].split(|t| text(t) == "and").collect();
+    let bare = |np: &&[Token]| {
+        first_noun(np).is_some_and(|n| n.0 < 4 && n.1 == np.len())
+            && !is(np.first(), &["a", "an", "another"])
+            && !np.iter().any(says)
+            && !is_verb(&np[0])
+            && talk.fits(np) > 0
+    };
     if list.len() < 2 || !list.iter().all(bare) {
         return tokens.to_vec();
     }
@@ -270,9 +276,9 @@ fn both_out(tokens: &[Token]) -> Vec<Token> {
             out.push(word("and", &tokens[i]));
         }
         out.extend_from_slice(np);
-        out.push(tokens[i + 1].clone());
+        out.push(tokens[i].clone());
     }
-    out.extend_from_slice(&tokens[i + 2..]);
+    out.extend_from_slice(&tokens[i + 1..]);
     out
 }
 

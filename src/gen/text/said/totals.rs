@@ -85,7 +85,7 @@ const SAME_PLACE: &[&str] = &[
 
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(same_there(doubled(tokens), talk));
+    let out = same_place(same_there(down_to(doubled(tokens), talk), talk));
     let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
@@ -96,6 +96,41 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 pub(super) fn links(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
+}
+
+/// "parked cars down to two": so many of them are to be there.
+fn down_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let the = usize::from(is(tokens.first(), &["the"]));
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let np = &tokens[the..b];
+    let n = leads(
+        &tokens[b..],
+        &["down to", "up to", "back to", "back down to", "back up to"],
+    );
+    let many = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
+    let Some(k) = n
+        .map(|n| b + n)
+        .filter(|k| many && tokens.get(*k).is_some_and(|t| number(t).is_some()))
+    else {
+        return tokens;
+    };
+    // ("up to 20 m" is how far)
+    let said = np
+        .iter()
+        .any(|t| super::super::rephrase::is_verb(t) || number(t).is_some());
+    if said || !tokens.get(k + 1).is_none_or(links) || talk.fits(np) == 0 {
+        return tokens;
+    }
+    // ("and a second nurse there")
+    let rest = &tokens[k + 1..];
+    let new = is(rest.get(1), &["a", "an", "another"]);
+    let rest = match rest.split_first() {
+        Some((and, more)) if new => led("and add", and, &[more]),
+        _ => rest.to_vec(),
+    };
+    led("keep exactly", &tokens[0], &[&tokens[k..=k], np, &rest])
 }
 
 /// "five children, same pavement": so many are to be where those stand that are there.
@@ -134,7 +169,8 @@ fn same_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let head = trimmed(&tokens[..comma]);
     let wish = leads(head, WISHES).unwrap_or(0);
-    let head = &head[wish..];
+    let there = usize::from(is(head.last(), &["there", "here"]));
+    let head = &head[wish..head.len() - there];
     let whole = first_noun(head).is_some_and(|x| x.0 < 4 && x.1 == head.len());
     let adds = is(tokens.first(), &["add", "put", "place", "insert", "park"]);
     if adds || !whole || !head.first().is_some_and(|t| number(t).is_some_and(|n| n > 1)) {
