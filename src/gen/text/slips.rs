@@ -57,7 +57,7 @@ fn taken_back(tokens: &[Token], from: usize) -> Option<(usize, bool)> {
 }
 
 /// "twenty metres behind us, ah no, fifteen": fifteen metres behind us.
-fn said_anew(tokens: &[Token], i: usize, out: &mut Vec<Token>) -> Option<usize> {
+fn said_anew(tokens: &[Token], i: usize, out: &mut [Token]) -> Option<usize> {
     if i == 0 || !is_gap(tokens.get(i)) {
         return None;
     }

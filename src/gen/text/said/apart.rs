@@ -333,8 +333,10 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
             && !(points(left) || points(right));
         // "the truck at 20 m, and at night"; "night, rain, and two people there": the sky is a matter of its own
         let (dark, rest) = (sky(left), sky(right));
+        let all_sky = super::parting::only_sky(left) && super::parting::only_sky(right);
         let mood = !odd
             && dark != rest
+            && !all_sky
             && (rest && sentence[a].kind == TokenKind::Comma || dark && !is(left.first(), LEANING))
             && !(points(left) || points(right));
         (a > 1 && plain && told_apart || follows || begun || mood).then_some((a, b))

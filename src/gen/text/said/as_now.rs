@@ -117,7 +117,7 @@ fn one_as_now(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         Some(u) if rest.len() == 1 && number(&rest[0]).is_some() => vec![u.clone()],
         _ => Vec::new(),
     };
-    if talk.fits(noun) == 0 || has_noun(rest) || rest.is_empty() || !(is_place(rest) || !unit.is_empty()) {
+    if talk.fits(noun) == 0 || has_noun(rest) || rest.is_empty() || !is_place(rest) && unit.is_empty() {
         return tokens;
     }
     let one = super::topics::singular_of(noun);

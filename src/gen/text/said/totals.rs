@@ -173,7 +173,7 @@ fn same_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let head = &head[wish..head.len() - there];
     let whole = first_noun(head).is_some_and(|x| x.0 < 4 && x.1 == head.len());
     let adds = is(tokens.first(), &["add", "put", "place", "insert", "park"]);
-    if adds || !whole || !head.first().is_some_and(|t| number(t).is_some_and(|n| n > 1)) {
+    if adds || !whole || head.first().and_then(number).is_none_or(|n| n < 2) {
         return tokens;
     }
     // ("two more" are told by how many come)
