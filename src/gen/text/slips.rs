@@ -10,9 +10,9 @@ use super::wording::{begins, rewritten, word};
 /// What only marks a pause.
 const PAUSE: &str = "ah|oh|uh|um|er|erm|eh|hm|hmm|hmmm|well|oops|whoops";
 /// What takes back what was said last.
-const BACK: &str = "no|nope|wait|sorry|no wait|wait no|no sorry|sorry no|i mean|i meant|make that|make it|scratch that|strike that|\
-    correction|pardon|pardon me|excuse me|or rather|or better|better|actually|actually no|no actually|no make it|no make that|\
-    no better|no i mean|no i meant|on second thought|on second thoughts|no rather|sorry i mean|sorry i meant|sorry make that|\
+const BACK: &str = "no|nope|wait|sorry|no wait|wait no|no sorry|sorry no|i mean|i meant|scratch that|strike that|\
+    correction|pardon|pardon me|excuse me|or rather|or better|better|actually|actually no|no actually|\
+    no better|no i mean|no i meant|on second thought|on second thoughts|no rather|sorry i mean|sorry i meant|\
     let me correct that|let me correct myself|i take that back|no lets say|no let us say|lets rather say|or no";
 const KEPT: &str = "keep it|keep them|keep him|keep her|leave it|leave them|leave him|leave her|leave it in|leave them in|leave it there|\
     leave them there|let it stay|let them stay|let him stay|let her stay|it stays|they stay|he stays|she stays|it can stay|they can stay|\
@@ -45,6 +45,12 @@ fn taken_back(tokens: &[Token], from: usize) -> Option<(usize, bool)> {
         if is_gap(tokens.get(i)) {
             i += 1;
         } else if let Some(n) = tokens.get(i..).and_then(|t| begins(t, BACK)) {
+            back = true;
+            i += n;
+        } else if let Some(n) = tokens.get(i..).and_then(|t| begins(t, "make it|make that"))
+            && (back || paused)
+        {
+            // (alone it says how many there are to be now: "there are four, make it five")
             back = true;
             i += n;
         } else if let Some(n) = tokens.get(i..).and_then(|t| begins(t, PAUSE)) {
@@ -169,6 +175,11 @@ mod tests {
             "three cars 20 m ahead ."
         );
         assert_eq!(said("A bus 20 m ahead. No wait, 25 m."), "a bus 25 m ahead .");
+        assert_eq!(
+            said("there are four cars, make it five"),
+            "there are four cars , make it five"
+        );
+        assert_eq!(said("four cars, er, make it five"), "five cars");
         assert_eq!(said("moped 30 m ahead, hm, 25 is better"), "moped 25 m ahead");
         assert_eq!(
             said("two cars ahead, no three trucks"),

@@ -282,7 +282,12 @@ fn several_parts(np: &[Token], rest: &[Token], talk: &Talk<'_>) -> Option<Vec<To
     const SMALL: &[&str] = &[
         "now", "still", "then", "again", "please", "instead", "and", "but", "as", "before",
     ];
-    if has_noun(rest) || talk.fits(np) != 1 || rest.iter().any(|t| t.kind == TokenKind::Stop) {
+    // ("fire engine, 12 m behind us" is a new one)
+    if is(rest.first(), &[","])
+        || has_noun(rest)
+        || talk.fits(np) != 1
+        || rest.iter().any(|t| t.kind == TokenKind::Stop)
+    {
         return None;
     }
     let (mut far, mut way, mut strip) = (Vec::new(), Vec::new(), Vec::new());
