@@ -29,7 +29,8 @@ fn is_number(t: &Token) -> bool {
 
 /// A text in plain words.
 pub fn plain(tokens: &[Token]) -> Vec<Token> {
-    let out = super::same_words::plain(&ordinals(&paced(&halves(tokens))));
+    let out = super::same_words::plain(&ordinals(&paced(&halves(&tens(tokens)))));
+    let out = super::slips::put_right(out);
     let out = without_courtesy(&out);
     let out = replaced(&out, REMINDERS, "and");
     let out = replaced(&out, EXACTLY, "exactly");
@@ -50,6 +51,24 @@ pub fn plain(tokens: &[Token]) -> Vec<Token> {
     let out = sides_in_short(&out);
     let out = super::ellipsis_lanes::strip_named_before(&this_one(&out));
     super::carried::plain(this_side(&some_so_many(&part_for_whole(&out))))
+}
+
+/// "thirty-five": one number, as whoever looks for a number expects.
+fn tens(tokens: &[Token]) -> Vec<Token> {
+    const TENS: &str = "twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety";
+    const ONES: &str = "one|two|three|four|five|six|seven|eight|nine";
+    rewritten(tokens, |i, out| {
+        let next = tokens.get(i + 1)?;
+        begins(&tokens[i..], TENS)?;
+        begins(&tokens[i + 1..], ONES)?;
+        let sum = super::ellipsis::number(&tokens[i])? + super::ellipsis::number(next)?;
+        out.push(Token {
+            kind: TokenKind::Number(f64::from(sum)),
+            text: sum.to_string(),
+            span: tokens[i].span.to(next.span),
+        });
+        Some(i + 2)
+    })
 }
 
 /// "twelve and a half metres": 12.5 m.

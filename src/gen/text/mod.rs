@@ -51,6 +51,7 @@ mod same_words;
 mod second_look;
 mod select;
 mod shares;
+mod slips;
 mod spaces;
 mod spots;
 mod spots_strips;

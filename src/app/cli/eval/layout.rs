@@ -28,6 +28,8 @@ macro_rules! sets {
 /// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
 const SETS: &[(&str, &str)] = sets![
     "names.jsonl",
+    "strangers_36.jsonl",
+    "causes_z.jsonl",
     "causes_k.jsonl",
     "causes_o.jsonl",
     "strangers_24.jsonl",

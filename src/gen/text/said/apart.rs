@@ -250,8 +250,27 @@ pub fn apart(mut tokens: Vec<Token>) -> Vec<Token> {
             None => from = end + 1,
         }
     }
-    tokens
+    without_complaint(tokens)
 }
+
+/// "Turn the bus round. It's facing the wrong way." is one turn.
+fn without_complaint(tokens: Vec<Token>) -> Vec<Token> {
+    let mut turned = false;
+    let mut out: Vec<Token> = Vec::with_capacity(tokens.len());
+    for sentence in tokens.split_inclusive(|t| t.kind == TokenKind::Stop) {
+        let complains = leads(sentence, HE_IS).is_some()
+            && sentence.len() < 10
+            && !has_noun(sentence)
+            && find(sentence, &["wrong way", "wrong direction"]).is_some();
+        if !(turned && complains) {
+            out.extend_from_slice(sentence);
+        }
+        turned = is(sentence.first(), TURNS) && orders_something(sentence);
+    }
+    out
+}
+
+const TURNS: &[&str] = &["turn", "rotate", "spin", "flip", "swing"];
 
 /// The first link in a sentence with a clause of its own on both sides: its first token and one past its last.
 fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
@@ -260,7 +279,14 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
     if sentence.len() > 60 {
         return None;
     }
-    (2..sentence.len()).find_map(|a| {
+    (1..sentence.len()).find_map(|a| {
+        // "turn the motorcycle round: it's coming the wrong way": what for
+        let reason = text(&sentence[a]) == ":"
+            && is(sentence.first(), TURNS)
+            && leads(&sentence[a + 1..], HE_IS).is_some();
+        if reason && orders_something(&sentence[..a]) && !has_noun(&sentence[a + 1..]) {
+            return Some((a, a + 1));
+        }
         if !is_link(&sentence[a]) || is_link(&sentence[a - 1]) {
             return None;
         }
@@ -305,8 +331,40 @@ fn boundary(sentence: &[Token]) -> Option<(usize, usize)> {
             && (wish || order)
             && !is(left.first(), LEANING)
             && !(points(left) || points(right));
-        (plain && told_apart || follows || begun).then_some((a, b))
+        // "the truck at 20 m, and at night"; "night, rain, and two people there": the sky is a matter of its own
+        let (dark, rest) = (sky(left), sky(right));
+        let all_sky = super::parting::only_sky(left) && super::parting::only_sky(right);
+        let mood = !odd
+            && dark != rest
+            && !all_sky
+            && (rest && sentence[a].kind == TokenKind::Comma || dark && !is(left.first(), LEANING))
+            && !(points(left) || points(right));
+        (a > 1 && plain && told_apart || follows || begun || mood).then_some((a, b))
     })
+}
+
+const HE_IS: &[&str] = &[
+    "its",
+    "it is",
+    "he is",
+    "hes",
+    "she is",
+    "shes",
+    "theyre",
+    "they are",
+    "it should",
+    "he should",
+    "it must",
+];
+
+/// "night", "at night", "in the rain": so short that nothing else is said.
+fn sky(part: &[Token]) -> bool {
+    const SMALL: &[&str] = &["at", "in", "the", "by", "a", "with", "it", "is", "make"];
+    part.len() < 4
+        && super::parting::only_sky(part)
+        && part.iter().all(|t| {
+            is(Some(t), SMALL) || matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)))
+        })
 }
 
 /// A clause that begins so leans on the next.

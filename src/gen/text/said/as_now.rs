@@ -12,7 +12,8 @@ use super::words::{find, first_noun, has_noun, is, is_finite, is_place, leads, l
 
 /// A sentence (without its stop) with the number that is meant.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = nothing_there(enough_with(than_now(tokens), talk));
+    let out = one_as_now(tokens, talk);
+    let out = nothing_there(enough_with(than_now(as_far_as_now(out)), talk));
     let out = compared(out, talk);
     let out = in_place_of(out, talk);
     let opens = (0..out.len()).filter(|i| begins_at(&out, *i));
@@ -52,6 +53,75 @@ pub(super) fn all_of(noun: &[Token]) -> Vec<Token> {
 
 fn count(t: Option<&Token>) -> Option<i64> {
     t.filter(|t| !is(Some(t), &["a", "an"])).and_then(number)
+}
+
+/// "just as far behind us as before": at the same distance behind us.
+fn as_far_as_now(tokens: Vec<Token>) -> Vec<Token> {
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let lead = begins(
+            &tokens[i..],
+            "just as far|exactly as far|still as far|as far|equally far|just as close|as close",
+        )?;
+        let end = (i + lead..tokens.len().min(i + lead + 6)).find_map(|k| {
+            let n = begins(
+                &tokens[k..],
+                "as before|as now|as it is now|as it was|as it is|as it was before|as at present|as currently|as it was so far|as until now",
+            )?;
+            Some((k, k + n))
+        });
+        let (k, end) = end?;
+        let way = &tokens[i + lead..k];
+        if !(way.is_empty() || is_place(way) || is(way.first(), &["away", "off", "from", "to"]))
+            || has_noun(way)
+        {
+            return None;
+        }
+        out.extend(led("at the same distance", &tokens[i], &[]));
+        if is_place(way) && !is(way.first(), &["away", "off", "from", "to"]) {
+            out.extend_from_slice(way);
+        }
+        Some(end)
+    })
+}
+
+/// "two cars behind us, one at 12 m like now and another at 22": the one that is there is no new one.
+fn one_as_now(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const NOW: &str = "like now|as now|as it is now|as before|as it is|as at present|like before|as already there|like it is now|like the one now|where it is now|where it is|as is";
+    let one = (3..tokens.len()).find(|k| {
+        is(tokens.get(*k), &["one"]) && (is_mark(&tokens[k - 1]) || is(tokens.get(k - 1), &["and", "with"]))
+    });
+    let found = one.and_then(|k| {
+        let now =
+            (k + 1..tokens.len().min(k + 9)).find_map(|j| begins(&tokens[j..], NOW).map(|n| (j, j + n)))?;
+        let late = tokens.get(now.1..)?;
+        let and = late.iter().position(|t| !(is_mark(t) || is(Some(t), &["and"])))?;
+        let n = begins(
+            &late[and..],
+            "another one|another|the other one|the other|a second one|a second|the second|one|a further one",
+        )?;
+        (and > 0).then_some((k, &tokens[k + 1..now.0], &late[and + n..]))
+    });
+    let Some((k, old, new)) = found else { return tokens };
+    let head = &tokens[..k];
+    let head = &head[lead_of(head)..];
+    let head = super::words::trimmed(head);
+    let two = head.first().is_some_and(|t| number(t) == Some(2));
+    let Some((_, b)) = first_noun(head).filter(|x| two && x.0 < 4) else {
+        return tokens;
+    };
+    let noun = &head[1..b];
+    // ("and another at twenty-two": metres like the first)
+    let at = usize::from(is(new.first(), &["at"]));
+    let rest = &new[at..];
+    let unit: Vec<Token> = match old.iter().find(|t| super::words::is_unit(Some(t))) {
+        Some(u) if rest.len() == 1 && number(&rest[0]).is_some() => vec![u.clone()],
+        _ => Vec::new(),
+    };
+    if talk.fits(noun) == 0 || has_noun(rest) || rest.is_empty() || !is_place(rest) && unit.is_empty() {
+        return tokens;
+    }
+    let one = super::topics::singular_of(noun);
+    led("add another", &tokens[0], &[&one, rest, &unit, &head[b..]])
 }
 
 /// "10 metres further than now": further.

@@ -232,7 +232,7 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
                 .iter()
                 .any(|t| t.kind != TokenKind::Word && number(t).is_none())
         {
-            return None;
+            return to(&several_parts(&np, rest, talk)?);
         }
         let Some(m) = m else { return to(place) };
         let after = &place[at + m..];
@@ -256,6 +256,9 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
             None
         };
     }
+    if let Some(place) = several_parts(&np, rest, talk) {
+        return to(&place);
+    }
     // "kids on the left sidewalk, all four"
     let comma = rest.iter().rposition(|t| t.kind == TokenKind::Comma)?;
     let last = &rest[comma + 1..];
@@ -271,6 +274,113 @@ fn noted(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         && !place.iter().any(|t| t.kind == TokenKind::Comma))
     .then_some(())?;
     to(place)
+}
+
+/// "behind us now, 20 m, left lane still", "in front of us rather than behind, 20 m away", "at 35 m, not 25": where it should be,
+/// in parts, of which some may only tell where it is not.
+fn several_parts(np: &[Token], rest: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const SMALL: &[&str] = &[
+        "now", "still", "then", "again", "please", "instead", "and", "but", "as", "before",
+    ];
+    // ("fire engine, 12 m behind us" is a new one)
+    if is(rest.first(), &[","])
+        || has_noun(rest)
+        || talk.fits(np) != 1
+        || rest.iter().any(|t| t.kind == TokenKind::Stop)
+    {
+        return None;
+    }
+    let (mut far, mut way, mut strip) = (Vec::new(), Vec::new(), Vec::new());
+    let mut parts = 0;
+    for part in rest.split(|t| t.kind == TokenKind::Comma || text(t) == ":") {
+        // (where it is not)
+        let not = (0..part.len()).find_map(|k| leads(&part[k..], NOT_THERE).map(|n| (k, k + n)));
+        let told = match not {
+            Some((k, from)) => {
+                let old = &part[from..];
+                let at = usize::from(is(old.first(), &["at", "to"]));
+                let place = old.first().is_some_and(|t| number(t).is_some())
+                    || measure(&old[at..]).is_some()
+                    || is_place(old)
+                    || is(old.first(), &["behind", "ahead", "in", "left", "right", "the"]);
+                place.then_some(())?;
+                &part[..k]
+            }
+            None => part,
+        };
+        parts += 1 + usize::from(not.is_some());
+        let mut told: Vec<Token> = told.iter().filter(|t| !is(Some(t), SMALL)).cloned().collect();
+        let at = usize::from(is(told.first(), &["at"]));
+        if let Some(m) = measure(&told[at..]) {
+            far.is_empty().then_some(())?;
+            far = told[at..at + m].to_vec();
+            told.drain(..at + m);
+            if leads(&told, &["away", "off", "away from us", "from us", "distance"]) == Some(told.len()) {
+                told.clear();
+            }
+        }
+        if told.is_empty() {
+            continue;
+        }
+        // ("left lane", "same lane")
+        if leads(&told, SAME) == Some(told.len()) {
+            strip = led(strip_of(np, talk)?, &told[0], &[]);
+            continue;
+        }
+        let lane = |t: Option<&Token>| {
+            is(
+                t,
+                &["lane", "sidewalk", "pavement", "edge", "roadside", "shoulder"],
+            )
+        };
+        if lane(told.last())
+            && is(
+                told.first(),
+                &["left", "right", "our", "my", "middle", "oncoming", "the"],
+            )
+        {
+            strip = led(
+                "in",
+                &told[0].clone(),
+                &[&led("the", &told[0].clone(), &[]), &told],
+            );
+            strip = strip
+                .into_iter()
+                .enumerate()
+                .filter(|(i, t)| *i != 1 || !is(told.first(), &["our", "my", "the"]) || text(t) != "the")
+                .map(|x| x.1)
+                .collect();
+            continue;
+        }
+        let plain = told.iter().all(|t| t.kind == TokenKind::Word) && is_place(&told);
+        let goes = is(
+            told.first(),
+            &[
+                "to", "by", "until", "over", "out", "off", "away", "back", "onto", "into",
+            ],
+        );
+        (plain && !goes).then_some(())?;
+        if lane(told.last()) && strip.is_empty() {
+            strip = told;
+        } else {
+            way.is_empty().then_some(())?;
+            way = told;
+        }
+    }
+    // (one place alone is read well as it is)
+    (parts > 1 && !(far.is_empty() && way.is_empty() && strip.is_empty())).then_some(())?;
+    if way.is_empty() && !far.is_empty() {
+        let mut side = away(np, &rest[0], talk);
+        if !strip.is_empty() {
+            side.truncate(
+                side.iter()
+                    .position(|t| is(Some(t), &["in"]))
+                    .unwrap_or(side.len()),
+            );
+        }
+        way = side;
+    }
+    Some([far, way, strip].concat())
 }
 
 /// "have a road roller there instead of the excavator": that is where.

@@ -72,6 +72,51 @@ fn answer(part: &[Token]) -> Option<usize> {
     (numbers.next().is_none() && plain && !step && !is(part.get(at), &["one"])).then_some(at)
 }
 
+const NEARER: &[&str] = &[
+    "closer",
+    "nearer",
+    "further away",
+    "farther away",
+    "further off",
+    "farther off",
+    "further",
+    "farther",
+    "further ahead",
+    "farther ahead",
+    "further back",
+    "farther back",
+    "further up",
+    "closer to us",
+    "nearer to us",
+    "closer to me",
+    "nearer to me",
+    "further away from us",
+    "farther away from us",
+    "further from us",
+    "farther from us",
+    "further ahead of us",
+    "further behind us",
+    "further behind",
+];
+const AWAY: &[&str] = &[
+    "away",
+    "from us",
+    "away from us",
+    "ahead",
+    "behind",
+    "ahead of us",
+    "behind us",
+    "in front of us",
+    "will do",
+    "would do",
+    "would be good",
+    "please",
+    "is enough",
+    "is fine",
+    "would be right",
+    "or so",
+];
+
 /// A complaint about a distance and what follows in the next sentence are one sentence.
 pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
     let mut from = 0;
@@ -85,6 +130,18 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
         let far = measure(&tokens[from..i]).is_some();
         let complains = (from..i)
             .any(|k| too_at(&tokens[k..]).is_some_and(|n| far || NEAR_FAR.contains(&text(&tokens[k + n]))));
+        // "Bring the bus closer. Twenty metres."
+        let moved = super::super::rephrase::is_verb(&tokens[from])
+            && has_noun(&tokens[from..i])
+            && !far
+            && (from + 1..i).any(|k| leads(&tokens[k..i], NEARER) == Some(i - k));
+        if moved
+            && let Some((0, n)) = measure(&tokens[i + 1..end])
+            && leads(&tokens[i + 1 + n..end], AWAY).unwrap_or(0) == end - i - 1 - n
+        {
+            tokens[i].kind = TokenKind::Comma;
+            tokens[i].text = ",".into();
+        }
         if complains
             && !tokens[from..i].iter().any(|t| t.kind == TokenKind::Comma)
             && answer(&tokens[i + 1..end]).is_some()

@@ -94,6 +94,29 @@ fn phrased(tokens: Vec<Token>) -> Vec<Token> {
             let and = usize::from(is(tokens.get(i + 1 + n + comma), &["and"]));
             return Some(i + 1 + n + comma + and);
         }
+        // "two more cars for the cross street": on it
+        let given = is(tokens.get(i), &["for"])
+            && is(tokens.get(i + 1), &["the", "our", "my"])
+            && tokens
+                .get(i + 2..)
+                .and_then(super::words::longest)
+                .is_some_and(|(s, n)| {
+                    use super::super::lexicon::Sense;
+                    let ends = tokens.get(i + 2 + n).is_none_or(|t| t.kind != TokenKind::Word);
+                    ends && matches!(s, Sense::Place(..))
+                });
+        let fresh = given
+            && i > 0
+            && super::words::noun_at(&tokens[i - 1..i]).is_some()
+            && out
+                .iter()
+                .rev()
+                .take(4)
+                .any(|t| number(t).is_some() || is(Some(t), &["a", "an", "another", "more"]));
+        if fresh {
+            out.extend(led("on", &tokens[i], &[]));
+            return Some(i + 1);
+        }
         // "six cars parked here": in the scene
         let here =
             is(tokens.get(i), &["here"]) && out.last().is_some_and(|t| is(Some(t), &["parked", "standing"]));
@@ -159,6 +182,40 @@ const TAILS: &[&str] = &[
     "making that",
     "that makes",
     "so that makes",
+    "distances as they are",
+    "distance as it is",
+    "distances unchanged",
+    "distances stay as they are",
+    "distances staying as they are",
+    "the distances as they are",
+    "with distances as they are",
+    "with the distances as they are",
+    "doesnt matter which way",
+    "doesnt matter which direction",
+    "doesnt matter where exactly",
+    "does not matter which way",
+    "does not matter which direction",
+    "it doesnt matter which way",
+    "it doesnt matter which direction",
+    "no matter which way",
+    "no matter which direction",
+    "whichever way",
+    "in whichever direction",
+    "in either direction",
+    "either direction",
+    "either way",
+    "any direction",
+    "in any direction",
+    "in whatever direction",
+    "i dont care which way",
+    "i dont mind which way",
+    "i dont care which direction",
+    "i dont mind which direction",
+    "i dont care where exactly",
+    "direction doesnt matter",
+    "the direction doesnt matter",
+    "direction is up to you",
+    "direction does not matter",
     "so im alone",
     "so i am alone",
     "so we are alone",
@@ -714,7 +771,8 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             && first_noun(&body[k + 1..]).is_some_and(|x| x.0 < 3 && k + 1 + x.1 + 1 == body.len())
     });
     let body = &body[..stays.unwrap_or(body.len())];
-    let Some((_, b)) = first_noun(body).filter(|x| x.0 == 0 && x.1 < body.len()) else {
+    let the = usize::from(is(body.first(), &["the"]));
+    let Some((_, b)) = first_noun(body).filter(|x| x.0 == the && x.1 < body.len()) else {
         return tokens;
     };
     let one = matches!(
@@ -745,9 +803,14 @@ fn noted(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if !known || !place || talk.fits(body) > 0 {
         return tokens;
     }
+    // ("the cyclist 18 m ahead": told as where, not by how much)
+    let metres = number(&rest[0]).is_some() && is_unit(rest.get(1));
+    if the == 1 && !metres {
+        return tokens;
+    }
     led(
         "the",
         &tokens[0],
-        &[&body[..b], &led("should be", &tokens[0], &[rest])],
+        &[&body[the..b], &led("should be", &tokens[0], &[rest])],
     )
 }

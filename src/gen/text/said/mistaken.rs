@@ -57,6 +57,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         .or_else(|| it_was_there(rest, talk))
         .or_else(|| belongs_there(rest, talk))
         .or_else(|| rides_other(rest, talk))
+        .or_else(|| noted_for(rest, talk))
         .unwrap_or(tokens)
 }
 
@@ -272,7 +273,12 @@ fn denied_last(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         stood(late, verb)?
     };
     // (a full sentence about a new place is more than a slip)
-    (meant > 0 || place.is_empty() || which || verb).then_some(())?;
+    // ("a bus, not a pickup, in the junction", where the pickup is)
+    let stands = || {
+        let bare = &old[usize::from(is(old.first(), &["a", "an"]))..e];
+        !late.is_empty() && talk.fits(&led("the", &old[0], &[bare, place])) > 0
+    };
+    (meant > 0 || place.is_empty() || which || verb || stands()).then_some(())?;
     exchange(&old[..e], place, &new[..b], talk)
 }
 
@@ -448,6 +454,74 @@ fn belongs_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let new = new_there(tokens.get(n..)?)?;
     let np = &tokens[..end];
     (talk.fits(np) > 0).then(|| led("replace", &tokens[0], &[np, &led("with", &tokens[0], &[new])]))
+}
+
+/// "road roller instead of the digger, with a third worker beside it", "scooter for the grey car, and 9 m behind us": the one
+/// for the other, and what more is told of it.
+fn noted_for(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    let (a, b) = first_noun(tokens).filter(|x| x.0 < 4)?;
+    let article = is(tokens.first(), &["a", "an"]);
+    let described = |t: &Token| {
+        use super::Sense::{Attribute, Color, Size};
+        matches!(super::look_up(text(t)), Some(Color(_) | Size(_) | Attribute(_))) || number(t).is_some()
+    };
+    (article || tokens[..a].iter().all(described)).then_some(())?;
+    let n = leads(
+        &tokens[b..],
+        &[
+            "instead of",
+            "rather than",
+            "in place of",
+            "in lieu of",
+            "for",
+            "and not",
+            "replacing",
+            "replaces",
+        ],
+    )?;
+    let old = &tokens[b + n..];
+    is(old.first(), &["the", "that", "both", "all", "my", "our"]).then_some(())?;
+    let (_, e) = first_noun(old).filter(|x| x.0 < 4)?;
+    let comma = (e..old.len()).find(|k| old[*k].kind == TokenKind::Comma);
+    let end = comma.unwrap_or(old.len());
+    // (the place tells which)
+    let np = &old[..end];
+    (end == e || is_place(&np[e..]) && !has_noun(&np[e..])).then_some(())?;
+    (talk.fits(np) > 0 && talk.fits(np) == talk.fits(&[&old[..1], &np[1..]].concat())).then_some(())?;
+    let many = many(&tokens[a..b]) || tokens[..a].iter().any(|t| number(t).is_some());
+    let with = if article || many { "with" } else { "with a" };
+    let more = old.get(end + 1..).unwrap_or(&[]);
+    let more = trimmed(more);
+    let not = find(more, &["rather than", "instead of", "not"]).map_or(more.len(), |x| x.0);
+    let more = trimmed(&more[..not]);
+    let at = usize::from(is(more.first(), &["at"]));
+    let beside = is(more.first(), &["with"])
+        && more
+            .get(1)
+            .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "another"]))
+        && has_noun(more)
+        && is(more.last(), &["it", "them", "him", "her"]);
+    let far = super::headway::measure(&more[at..]).filter(|m| m.0 == 0);
+    let tail = match far {
+        _ if more.is_empty() => Vec::new(),
+        _ if beside => led("and add", &more[0], &[&more[1..]]),
+        Some((_, m)) if !has_noun(&more[at..]) && (at + m == more.len() || is_place(&more[at + m..])) => led(
+            if many {
+                "and move them to"
+            } else {
+                "and move it to"
+            },
+            &more[0],
+            &[&more[at..]],
+        ),
+        _ => return None,
+    };
+    // (alone it is read well as it is)
+    let whole = end == old.len() && !is(tokens.get(b), &["for", "replacing", "replaces"]);
+    (!whole).then(|| {
+        let new = led(with, &tokens[0], &[&tokens[..b], &tail]);
+        led("replace", &tokens[0], &[np, &new])
+    })
 }
 
 /// "the suspect's vehicle was not a bus but a lorry": whose it was tells no place.

@@ -373,26 +373,7 @@ pub fn said(sentence: &[Token], talk: &Talk<'_>) -> Vec<Piece> {
         previous = unwrapped(&clause).0.to_vec();
         let verb = previous.first().cloned();
         let told = parting::carried_on(&clause, talk).then(|| words::word("put", &clause[0]));
-        lead = verb
-            .filter(|v| {
-                matches!(
-                    text(v),
-                    "put"
-                        | "move"
-                        | "place"
-                        | "set"
-                        | "bring"
-                        | "shift"
-                        | "send"
-                        | "position"
-                        | "reposition"
-                        | "relocate"
-                        | "transfer"
-                        | "park"
-                        | "stand"
-                )
-            })
-            .or(told);
+        lead = verb.filter(|_| parting::carrying(&previous)).or(told);
         let clause = &clause[..];
         let talk = Talk {
             last: before.clone(),

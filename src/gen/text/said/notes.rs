@@ -37,8 +37,41 @@ const STRIPS: &[&str] = &[
 /// A sentence (without its stop) with its verbs.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = all_of_them(their_own(same_strip(tokens, talk)));
-    let out = go_along(out, talk);
+    let out = go_along(some_over(out, talk), talk);
     sent(out, talk)
+}
+
+/// "two of the people over on the left sidewalk": so many of them go there.
+fn some_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const OF: &[&str] = &["of the", "of them", "of those", "of our", "of these"];
+    let body = trimmed(&tokens);
+    let wish = leads(body, WISHES).unwrap_or(0);
+    let body = &body[wish..];
+    let some = body
+        .first()
+        .is_some_and(|t| number(t).is_some() || is(Some(t), &["half", "some"]));
+    let of = some.then(|| leads(&body[1..], OF)).flatten();
+    let Some((of, (a, b))) = of.and_then(|n| Some((n, first_noun(&body[1 + n..])?))) else {
+        return tokens;
+    };
+    let end = 1 + of + b;
+    let place = &body[end..];
+    let over = leads(place, &["over there", "over", "across", "instead", "now"]).unwrap_or(0);
+    let place = &place[over..];
+    let onto = is(place.first(), &["on", "onto", "to", "in", "into", "at"]);
+    if a > 2
+        || !onto
+        || !is_place(place)
+        || has_noun(place)
+        || place.iter().any(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"]) || says(t))
+        || talk.fits(&body[of..end]) == 0
+        // (who is there already only says which are meant)
+        || over == 0 && talk.fits(&[&body[of..end], place].concat()) > 0
+    {
+        return tokens;
+    }
+    let to = led("to", &place[0], &[&place[1..]]);
+    led("move", &tokens[0], &[&body[..end], &to])
 }
 
 /// "..., but their lorry stays": the lorry.
@@ -137,20 +170,37 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     if tokens.len() > 40 {
         return tokens;
     }
-    let body = trimmed(&tokens);
+    let wish = leads(&tokens, WISHES).unwrap_or(0);
+    let each = each_out(&tokens[wish..], talk);
+    let body = trimmed(&each);
+    // ("barriers away, five cones instead")
+    let late = is(tokens.last(), &["instead"]) && !is(body.last(), &["instead"]);
     let mut out: Vec<Token> = Vec::new();
     let mut before = false;
-    for (k, p) in parts(body).into_iter().enumerate() {
+    let list = parts(body);
+    for (k, p) in list.iter().copied().enumerate() {
         let goes = leaves(p, before, talk);
         // ("cyclists off, mopeds on" is one for the other)
         if k == 0 && goes.is_none() || is(p.last(), &["on", "in"]) {
             return tokens;
         }
+        if let Some(who) = stays(p, talk) {
+            out.push(comma(&p[0]));
+            out.extend(led("leave", &p[0], &[&who, &led("alone", &p[0], &[])]));
+            before = false;
+            continue;
+        }
         let fresh = is(p.first(), &["a", "an", "another"]) || number(&p[0]).is_some();
-        let there = super::predicate::in_place(p).is_some() || is(p.last(), &["instead"]);
+        let last = k + 1 == list.len();
+        let placed = || first_noun(p).is_some_and(|n| n.0 < 4 && is_place(&p[n.1..]));
+        let there = super::predicate::in_place(p).is_some()
+            || is(p.last(), &["instead"])
+            || late && last
+            || is(p.first(), &["a", "an", "another"]) && placed();
         // ("motorcycle in its place")
         let bare = first_noun(p).filter(|n| n.0 == 0 && talk.fits(&p[..n.1]) == 0);
-        let put = goes.is_none() && (fresh || bare.is_some()) && there && !p.iter().any(says);
+        let verb = |i: usize| says(&p[i]) && super::words::noun_at(&p[i..=i]).is_none();
+        let put = goes.is_none() && (fresh || bare.is_some()) && there && !(0..p.len()).any(verb);
         if k > 0 {
             let and = goes.is_some() || put;
             out.push(if and { word("and", &p[0]) } else { comma(&p[0]) });
@@ -169,11 +219,104 @@ pub(super) fn gone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
                     out.extend(led(if fresh { "put" } else { "put a" }, &p[0], &[]));
                 }
                 out.extend_from_slice(p);
+                if put && late && last {
+                    out.extend(led("instead", &p[0], &[]));
+                }
                 before = false;
             }
         }
     }
     out
+}
+
+const WISHES: &[&str] = &[
+    "i want",
+    "we want",
+    "id like",
+    "i would like",
+    "wed like",
+    "we would like",
+    "i need",
+    "we need",
+    "id like to have",
+    "id like to see",
+    "i want to see",
+    "id prefer",
+    "i would prefer",
+];
+
+/// "car and truck both out", "cyclist and both women off, and a lorry behind us": each of them out.
+fn each_out(tokens: &[Token], talk: &Talk<'_>) -> Vec<Token> {
+    let found = (3..tokens.len()).find(|i| {
+        is(tokens.get(*i), &["gone", "away", "out", "off"])
+            && tokens
+                .get(i + 1)
+                .is_none_or(|t| t.kind == TokenKind::Comma || text(t) == "and")
+    });
+    let Some(i) = found else { return tokens.to_vec() };
+    let end = i - usize::from(is(tokens.get(i - 1), &["both", "all", "each"]));
+    let from = tokens[..end]
+        .iter()
+        .rposition(|t| t.kind != TokenKind::Word)
+        .map_or(0, |k| k + 1);
+    let list: Vec<&[Token]> = tokens[from..end].split(|t| text(t) == "and").collect();
+    let bare = |np: &&[Token]| {
+        first_noun(np).is_some_and(|n| n.0 < 4 && n.1 == np.len())
+            && !is(np.first(), &["a", "an", "another"])
+            && !np.iter().any(says)
+            && !is_verb(&np[0])
+            && talk.fits(np) > 0
+    };
+    if list.len() < 2 || !list.iter().all(bare) {
+        return tokens.to_vec();
+    }
+    let mut out = tokens[..from].to_vec();
+    for (k, np) in list.iter().enumerate() {
+        if k > 0 {
+            out.push(word("and", &tokens[i]));
+        }
+        out.extend_from_slice(np);
+        out.push(tokens[i].clone());
+    }
+    out.extend_from_slice(&tokens[i + 1..]);
+    out
+}
+
+/// "parked cars stay", "the bus can stay": who stays as he is.
+fn stays(p: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
+    const STAYING: &[&str] = &[
+        "stay",
+        "stays",
+        "remain",
+        "remains",
+        "can stay",
+        "may stay",
+        "should stay",
+        "to stay",
+        "is to stay",
+        "can remain",
+        "may remain",
+        "is fine",
+        "are fine",
+        "stay put",
+        "stays put",
+        "stay there",
+        "stays there",
+    ];
+    let (_, b) = first_noun(p).filter(|n| n.0 < 4)?;
+    (leads(&p[b..], STAYING) == Some(p.len() - b)).then_some(())?;
+    let who = &p[..b];
+    let all = number(&who[0]).is_none_or(|n| n.max(0) as usize == talk.fits(&who[1..]));
+    let the = is(
+        who.first(),
+        &["the", "both", "all", "my", "that", "these", "those"],
+    );
+    let np = if the {
+        who.to_vec()
+    } else {
+        led("the", &p[0], &[who])
+    };
+    (all && !is(who.first(), &["a", "an", "only", "just"]) && talk.fits(&np) > 0).then_some(np)
 }
 
 fn comma(at: &Token) -> Token {

@@ -232,24 +232,30 @@ pub(super) fn starts_where(tokens: &[Token]) -> bool {
 /// True if a clause is "put the truck in the left lane".
 pub(super) fn carries(clause: &[Token]) -> bool {
     let (inner, _) = unwrapped(clause);
-    is(
-        inner.first(),
-        &[
-            "put",
-            "move",
-            "place",
-            "set",
-            "bring",
-            "shift",
-            "send",
-            "position",
-            "reposition",
-            "relocate",
-            "transfer",
-            "park",
-            "stand",
-        ],
-    ) && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
+    carrying(inner)
+        && first_noun(inner).is_some_and(|n| n.0 < 6 && (n.1..inner.len()).any(|i| is_place(&inner[i..])))
+}
+
+/// True if the verb that begins these words may hold for the next clause, too: "put ...", "take ... to ...".
+pub(super) fn carrying(inner: &[Token]) -> bool {
+    const SENDS: &[&str] = &[
+        "put",
+        "move",
+        "place",
+        "set",
+        "bring",
+        "shift",
+        "send",
+        "position",
+        "reposition",
+        "relocate",
+        "transfer",
+        "park",
+        "stand",
+    ];
+    const TAKES: &[&str] = &["take", "get", "pull", "push", "steer", "guide", "slide", "drag"];
+    let goal = || inner.iter().any(|t| is(Some(t), &["to", "into", "onto"]));
+    is(inner.first(), SENDS) || is(inner.first(), TAKES) && goal()
 }
 
 /// True if a clause is "the truck goes over to the left lane": who is known is elsewhere.

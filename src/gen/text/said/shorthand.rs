@@ -135,7 +135,7 @@ pub(super) fn became_with(tokens: Vec<Token>) -> Vec<Token> {
             && tokens[..*k].iter().any(|t| {
                 matches!(
                     text(t),
-                    "into" | "become" | "becomes" | "replace" | "swap" | "turn" | "be"
+                    "into" | "become" | "becomes" | "replace" | "swap" | "turn" | "be" | "instead"
                 )
             })
             && first_noun(&tokens[k + 1..]).is_some_and(|x| x.0 < 4 && is_place(&tokens[k + 1 + x.1..]))

@@ -383,17 +383,19 @@ fn too_many(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .filter(|t| number(t).is_some() && be + 2 == i)?;
     let (a, _) = first_noun(&tokens[..be]).filter(|x| x.0 < 4)?;
     let rest = trimmed(tokens.get(i + n..)?);
-    let takes = rest.is_empty() || removes(rest.first()) || leads(rest, &["get rid", "one", "so"]).is_some();
-    let left = talk
-        .fits(&tokens[a..be])
-        .checked_sub(number(many)?.max(0) as usize)?;
-    takes.then(|| {
-        led(
-            "keep exactly",
-            &tokens[0],
-            &[&[digits(left, many)], &tokens[a..be]],
-        )
-    })
+    let np = bare_np(&tokens[..be]);
+    let np = if talk.fits(&np) > 0 {
+        &np[..]
+    } else {
+        &tokens[a..be]
+    };
+    let left = talk.fits(np).checked_sub(number(many)?.max(0) as usize)?;
+    // ("two will do", "make it two": said twice)
+    let said =
+        rest.iter().find_map(number) == Some(left as i64) && first_noun(rest).is_none() && rest.len() < 7;
+    let takes =
+        rest.is_empty() || removes(rest.first()) || leads(rest, &["get rid", "one", "so"]).is_some() || said;
+    takes.then(|| led("keep exactly", &tokens[0], &[&[digits(left, many)], np]))
 }
 
 /// "only one of the two cars should stay".

@@ -85,7 +85,7 @@ const SAME_PLACE: &[&str] = &[
 
 /// The sentence with such a number as a command.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = same_place(doubled(tokens));
+    let out = same_place(same_there(down_to(doubled(tokens), talk), talk));
     let out = exceeds(place_then_only(out, talk), talk);
     let out = times_as_many(out);
     let out = until(out, talk);
@@ -96,6 +96,91 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 pub(super) fn links(t: &Token) -> bool {
     t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || matches!(text(t), "and" | "but")
+}
+
+/// "parked cars down to two": so many of them are to be there.
+fn down_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let the = usize::from(is(tokens.first(), &["the"]));
+    let Some((_, b)) = first_noun(&tokens).filter(|x| x.0 < 4) else {
+        return tokens;
+    };
+    let np = &tokens[the..b];
+    let n = leads(
+        &tokens[b..],
+        &["down to", "up to", "back to", "back down to", "back up to"],
+    );
+    let many = matches!(look_up(text(&tokens[b - 1])), Some(Sense::Noun(_, true)));
+    let Some(k) = n
+        .map(|n| b + n)
+        .filter(|k| many && tokens.get(*k).is_some_and(|t| number(t).is_some()))
+    else {
+        return tokens;
+    };
+    // ("up to 20 m" is how far)
+    let said = np
+        .iter()
+        .any(|t| super::super::rephrase::is_verb(t) || number(t).is_some());
+    if said || !tokens.get(k + 1).is_none_or(links) || talk.fits(np) == 0 {
+        return tokens;
+    }
+    // ("and a second nurse there")
+    let rest = &tokens[k + 1..];
+    let new = is(rest.get(1), &["a", "an", "another"]);
+    let rest = match rest.split_first() {
+        Some((and, more)) if new => led("and add", and, &[more]),
+        _ => rest.to_vec(),
+    };
+    led("keep exactly", &tokens[0], &[&tokens[k..=k], np, &rest])
+}
+
+/// "five children, same pavement": so many are to be where those stand that are there.
+fn same_there(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const SAME: &[&str] = &[
+        "same sidewalk",
+        "same pavement",
+        "same lane",
+        "same side",
+        "same place",
+        "same spot",
+        "same edge",
+        "same roadside",
+        "same kerb",
+        "same curb",
+        "same footpath",
+        "same strip",
+        "same side of the road",
+        "same side of the street",
+        "same edge of the road",
+    ];
+    let found = find(&tokens, SAME).filter(|(i, n)| {
+        let rest = trimmed(&tokens[i + n..]);
+        let rest = &rest[leads(rest, &["as now", "as before", "as they are", "still"]).unwrap_or(0)..];
+        *i > 2 && rest.is_empty()
+    });
+    let Some((i, _)) = found else { return tokens };
+    let Some(comma) = (2..i).rev().find(|k| tokens[*k].kind == TokenKind::Comma) else {
+        return tokens;
+    };
+    if !tokens[comma + 1..i]
+        .iter()
+        .all(|t| is(Some(t), &["on", "in", "at", "the", "all", "still"]))
+    {
+        return tokens;
+    }
+    let head = trimmed(&tokens[..comma]);
+    let wish = leads(head, WISHES).unwrap_or(0);
+    let there = usize::from(is(head.last(), &["there", "here"]));
+    let head = &head[wish..head.len() - there];
+    let whole = first_noun(head).is_some_and(|x| x.0 < 4 && x.1 == head.len());
+    let adds = is(tokens.first(), &["add", "put", "place", "insert", "park"]);
+    if adds || !whole || head.first().and_then(number).is_none_or(|n| n < 2) {
+        return tokens;
+    }
+    // ("two more" are told by how many come)
+    if is(head.get(1), &["more", "other", "further", "additional", "new"]) || talk.fits(&head[1..]) == 0 {
+        return tokens;
+    }
+    led("keep exactly", &tokens[0], &[head])
 }
 
 /// "five, all on the same sidewalk as before": more of a kind stand where the others are anyhow.
@@ -321,11 +406,19 @@ fn in_all(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let tail = &tokens[i + n..];
     // whose number it is: named here, or in what is said before
     let np = match (own, lead_noun) {
-        (Some(_), _) => clause[k + 1..]
-            .iter()
-            .filter(|t| !plain_verb(t))
-            .cloned()
-            .collect(),
+        (Some(_), _) => {
+            // ("cars are parked": parked cars)
+            let mut np: Vec<Token> = Vec::new();
+            for t in clause[k + 1..].iter().filter(|t| !plain_verb(t)) {
+                match is(Some(t), &["parked", "standing", "waiting"])
+                    && first_noun(&np).is_some_and(|x| x.1 == np.len())
+                {
+                    true => np.insert(0, t.clone()),
+                    false => np.push(t.clone()),
+                }
+            }
+            np
+        }
         (None, Some(_)) => return tokens,
         (None, None) => {
             let before = &tokens[..from];
