@@ -81,6 +81,8 @@ const SETS: &[(&str, &str)] = sets![
     "strangers_30.jsonl",
     "causes_t.jsonl",
     "strangers_34.jsonl",
+    "strangers_35.jsonl",
+    "causes_y.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",
     "variants.jsonl",
