@@ -13,7 +13,7 @@ const STRIP: &str = "lane|sidewalk|pavement|footpath|walkway|footway|kerb|curb|r
 /// A sentence in which they bear their names.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = goes_over(owners_lane(as_before(opposite_last(tokens)), talk), talk);
-    in_that(same_as(out, talk), talk)
+    own_lane(in_that(same_as(out, talk), talk), talk)
 }
 
 /// "only 7 m ahead, same lane as before": what is not told otherwise stays so.
@@ -56,6 +56,33 @@ fn owners_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             out.extend_from_slice(&tokens[i..i + b]);
         }
         Some(it.map_or(end, |k| k + 1))
+    })
+}
+
+/// "the van is 15 m behind us in its lane": the lane where it drives now.
+fn own_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const OWN: &str = "in its lane|in its own lane|to its lane|to its own lane|within its lane|in his lane|in his own lane|in her lane|in their lane|\
+        in their own lane|along its lane|along its own lane|on its lane|on its own lane|in its current lane|in its present lane|to his lane";
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], OWN)?;
+        // (who goes back to it is not in it)
+        (!is(out.last(), &["back", "return", "returns", "returned", "again", "over"])).then_some(())?;
+        let named = (0..out.len()).rev().find_map(|k| {
+            let the = is(out.get(k), &["the", "that", "both", "my", "our"]);
+            let (a, b) = first_noun(&out[k..]).filter(|x| x.0 < 4 && (the || k == 0))?;
+            Some((k + usize::from(!the) * a, k + b))
+        });
+        let name = match named {
+            Some((a, b)) => name_of(&talk.boxes_of(&out[a..b]), talk)?,
+            None => {
+                let np = led(&format!("the {}", talk.last.as_deref()?), &tokens[i], &[]);
+                name_of(&talk.boxes_of(&np), talk)?
+            }
+        };
+        is_of_kind(true, name).then_some(())?;
+        out.push(tokens[i].clone());
+        out.extend(led(name, &tokens[i], &[]));
+        Some(i + n)
     })
 }
 

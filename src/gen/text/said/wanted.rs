@@ -379,11 +379,18 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         .filter(|t| !plain_verb(t))
         .cloned()
         .collect();
+    // "behind us there have to be two rather than one": two there
+    let lead = &tokens[from..many];
+    let verb = lead
+        .iter()
+        .position(|t| plain_verb(t) || is(Some(t), &["there", "i", "we", "id", "wed"]))
+        .unwrap_or(lead.len());
+    let place = if is_place(&lead[..verb]) { &lead[..verb] } else { &[] };
     let mut out = tokens[..from].to_vec();
     out.extend(led(
         "keep exactly",
         &tokens[from],
-        &[&tokens[many..=many], &np, &tokens[end..]],
+        &[&tokens[many..=many], &np, place, &tokens[end..]],
     ));
     out
 }
