@@ -4,7 +4,7 @@ use super::super::holds::role_of;
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, rewritten};
 use super::Talk;
-use super::words::{first_noun, is, led};
+use super::words::{first_noun, is, led, text};
 use crate::scene::SceneBox;
 use crate::scene::graph::LaneRole as L;
 
@@ -65,6 +65,16 @@ fn own_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         in their own lane|along its lane|along its own lane|on its lane|on its own lane|in its current lane|in its present lane|to his lane";
     rewritten(&tokens, |i, out| {
         let n = begins(&tokens[i..], OWN)?;
+        // ("it keeps to its lane" asks for nothing)
+        if is(out.last(), &["keep", "keeps", "keeping", "sticks", "stick"]) {
+            let verb = if text(out.last()?).ends_with('s') { "stays" } else { "stay" };
+            out.pop();
+            out.extend(led(verb, &tokens[i], &[]));
+            out.extend(led("in its lane", &tokens[i], &[]));
+            return Some(i + n);
+        }
+        const STAYS: &[&str] = &["stay", "stays", "staying", "remain", "remains", "remaining", "left", "it", "him", "them"];
+        (!is(out.last(), STAYS)).then_some(())?;
         // (who goes back to it is not in it)
         (!is(out.last(), &["back", "return", "returns", "returned", "again", "over"])).then_some(())?;
         let named = (0..out.len()).rev().find_map(|k| {
@@ -95,7 +105,7 @@ fn goes_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let goes = begins(&tokens[i..], GOES)?;
         let over = is(tokens.get(i + goes), &["over", "across"]);
         let at = i + goes + begins(&tokens[i + goes..], TO)?;
-        let side = super::words::text(tokens.get(at)?).to_string();
+        let side = text(tokens.get(at)?).to_string();
         let n = begins(&tokens[at + 1..], SIDE).filter(|_| is(tokens.get(at), &["left", "right"]));
         (over || n.is_some()).then_some(())?;
         let end = at + 1 + n.unwrap_or(0);

@@ -390,6 +390,7 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
     };
     let ends = |t: &Token| !matches!(t.kind, TokenKind::Word | TokenKind::Number(_));
     let mut out: Vec<Token> = Vec::new();
+    let mut cleared = false;
     let mut i = 0;
     while i < tokens.len() {
         let opens = i == 0 || ends(&tokens[i - 1]);
@@ -397,7 +398,11 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
         let clause = &tokens[i..close];
         let where_ = clause.iter().any(|t| is(Some(t), WHERE));
         let clears = begins(clause, EMPTIES).is_some() && where_ && clause.len() < 6;
-        let nobody = begins(clause, NOBODY).is_some() && clause.len() < 11 && (where_ || is(clause.get(2), &["crossing"]));
+        let nobody = begins(clause, NOBODY).is_some()
+            && clause.len() < 11
+            && (where_ || cleared || is(clause.get(2), &["crossing"]));
+        // ("nobody is on it now", after what is to be clear)
+        cleared = false;
         if !(opens && (clears || nobody) && close < tokens.len()) {
             out.push(tokens[i].clone());
             i += 1;
@@ -416,6 +421,7 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
         };
         let there = rest[told.min(rest.len())..].iter().any(|t| is(Some(t), SIDES));
         if again {
+            cleared = true;
             i = from;
         } else if they && there {
             // ("they" are the people who were named)

@@ -396,6 +396,13 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         .get(end + helped)
         .is_some_and(|t| helped > 0 && super::words::is_finite(text(t), true));
     let end = end + helped + usize::from(rides && is_place(&tokens[end + helped + 1..]));
+    // ("... should follow us")
+    let after = leads(&tokens[end..], &["follow us", "follow me", "following us", "following me"]);
+    let behind = led("behind us", &tokens[from], &[]);
+    let (end, place) = match after {
+        Some(n) => (end + n, &behind[..]),
+        None => (end, place),
+    };
     let mut out = tokens[..from].to_vec();
     out.extend(led(
         "keep exactly",
