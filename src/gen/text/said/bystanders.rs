@@ -14,8 +14,27 @@ use crate::scene::Class;
 
 /// Words that begin what somebody is to do something with.
 const DETERMINERS: &[&str] = &[
-    "the", "all", "both", "that", "those", "these", "a", "an", "another", "it", "them", "him", "her", "our", "my",
-    "every", "everything", "everybody", "everyone", "some", "more",
+    "the",
+    "all",
+    "both",
+    "that",
+    "those",
+    "these",
+    "a",
+    "an",
+    "another",
+    "it",
+    "them",
+    "him",
+    "her",
+    "our",
+    "my",
+    "every",
+    "everything",
+    "everybody",
+    "everyone",
+    "some",
+    "more",
 ];
 
 /// A sentence (without its stop) in plainer words.
@@ -36,8 +55,8 @@ fn asked_of_somebody(tokens: Vec<Token>) -> Vec<Token> {
     const SHOULD: &str = "should please|should|must|has to|have to|needs to|ought to|shall|had better|better|please|is to|will have to|could|can|may|might|would|to|needs";
     // (what somebody does himself brings him into the scene)
     const HIMSELF: &[&str] = &[
-        "walk", "ride", "drive", "guide", "lead", "face", "sit", "stand", "hold", "push", "pull", "leave", "point",
-        "direct", "keep",
+        "walk", "ride", "drive", "guide", "lead", "face", "sit", "stand", "hold", "push", "pull", "leave",
+        "point", "direct", "keep",
     ];
     rewritten(&tokens, |i, out| {
         begins_at(&tokens, i).then_some(())?;
@@ -47,10 +66,14 @@ fn asked_of_somebody(tokens: Vec<Token>) -> Vec<Token> {
         let should = begins(tokens.get(at..)?, SHOULD).unwrap_or(0);
         (ask + should > 0).then_some(())?;
         let rest = &tokens[at + should..];
-        let also = usize::from(is(rest.first(), &["also", "now", "please", "just", "quickly", "kindly"]));
+        let also = usize::from(is(
+            rest.first(),
+            &["also", "now", "please", "just", "quickly", "kindly"],
+        ));
         let rest = &rest[also..];
         let verb = verb_of(rest).filter(|v| *v != Verb::Keep && !is(rest.first(), HIMSELF))?;
-        let upon = (1..4).any(|k| is(rest.get(k), DETERMINERS) || rest.get(k).is_some_and(|t| number(t).is_some()));
+        let upon =
+            (1..4).any(|k| is(rest.get(k), DETERMINERS) || rest.get(k).is_some_and(|t| number(t).is_some()));
         (upon && verb != Verb::Note).then_some(())?;
         let _ = out;
         Some(at + should + also)
@@ -63,13 +86,16 @@ fn for_what(tokens: Vec<Token>) -> Vec<Token> {
         for the sake of completeness|for safetys sake|in the interest of safety|as a precaution|as a safety measure|as a warning|by way of precaution|\
         be safe|be on the safe side|for reasons of safety|for safety reasons";
     // (what is for these is no aim)
-    const OTHERS: &[&str] = &["every", "each", "all", "now", "that", "this", "the", "a", "an", "us", "me", "it", "once", "good", "both"];
+    const OTHERS: &[&str] = &[
+        "every", "each", "all", "now", "that", "this", "the", "a", "an", "us", "me", "it", "once", "good",
+        "both",
+    ];
     rewritten(&tokens, |i, _| {
         begins_at(&tokens, i).then_some(())?;
         let new = |k: usize| {
-            tokens
-                .get(k)
-                .is_some_and(|t| number(t).is_some() || is(Some(t), &["a", "an", "the", "another", "some", "more"]))
+            tokens.get(k).is_some_and(|t| {
+                number(t).is_some() || is(Some(t), &["a", "an", "the", "another", "some", "more"])
+            })
         };
         if let Some(n) = begins(&tokens[i..], AIMS) {
             return (new(i + n) || ends(tokens.get(i + n)) && i + n < tokens.len()).then_some(i + n);
@@ -77,7 +103,9 @@ fn for_what(tokens: Vec<Token>) -> Vec<Token> {
         is(tokens.get(i), &["for"]).then_some(())?;
         let n = (2..5).find(|k| new(i + k))?;
         let aim = &tokens[i + 1..i + n];
-        let plain = aim.iter().all(|t| t.kind == TokenKind::Word && number(t).is_none())
+        let plain = aim
+            .iter()
+            .all(|t| t.kind == TokenKind::Word && number(t).is_none())
             && !is(aim.first(), OTHERS)
             && !has_noun(aim)
             && !is_place(aim);
@@ -90,13 +118,19 @@ fn as_if(tokens: Vec<Token>) -> Vec<Token> {
     const AS_IF: &str = "as if|as though|like as if|just as if|just as though|almost as if";
     // (how it stands or is turned may be told so)
     const TELLS: &[&str] = &[
-        "park", "parked", "stand", "standing", "wait", "waiting", "stop", "stopped", "look", "looking", "face", "facing",
-        "cross", "crossing", "turn", "turning", "not", "never", "no", "only",
+        "park", "parked", "stand", "standing", "wait", "waiting", "stop", "stopped", "look", "looking",
+        "face", "facing", "cross", "crossing", "turn", "turning", "not", "never", "no", "only",
     ];
     let found = (4..tokens.len()).find_map(|i| {
         let n = begins(&tokens[i..], AS_IF)?;
-        is(tokens.get(i + n), &["it", "he", "she", "they", "we", "i", "someone", "the"]).then_some(())?;
-        let close = (i + n..tokens.len()).find(|k| ends(tokens.get(*k))).unwrap_or(tokens.len());
+        is(
+            tokens.get(i + n),
+            &["it", "he", "she", "they", "we", "i", "someone", "the"],
+        )
+        .then_some(())?;
+        let close = (i + n..tokens.len())
+            .find(|k| ends(tokens.get(*k)))
+            .unwrap_or(tokens.len());
         let before = tokens[..i].len() - usize::from(ends(tokens.get(i - 1)));
         let b = first_noun(&tokens[..before])?.1;
         let placed = (b..before).any(|k| is_place(&tokens[k..before]));
@@ -111,14 +145,19 @@ fn as_if(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "a bus stands behind us, add it to the sketch": said twice.
 fn added_again(tokens: Vec<Token>) -> Vec<Token> {
-    const ADDS: &str = "add|put|draw|place|insert|include|bring|sketch|show|paint|enter|mark|note|take|write|pop|set|get";
+    const ADDS: &str =
+        "add|put|draw|place|insert|include|bring|sketch|show|paint|enter|mark|note|take|write|pop|set|get";
     const INTO: &str = "to|into|in|on|onto";
     const WHOLE: &str = "sketch|scene|picture|drawing|plan|map|diagram|layout|image|scenario|situation|report|list|model|view|frame|file|setup|record|\
         panel|plot|chart|figure|screen|canvas|simulation|illustration|page|paper|board|protocol|record|test|set";
     let found = (4..tokens.len()).find_map(|i| {
         let linked = ends(tokens.get(i - 1)) || is(tokens.get(i - 1), &["and", "so", "please", "then"]);
         let n = begins(&tokens[i..], ADDS).filter(|_| linked)?;
-        is(tokens.get(i + n), &["it", "him", "her", "them", "this", "that", "those", "these"]).then_some(())?;
+        is(
+            tokens.get(i + n),
+            &["it", "him", "her", "them", "this", "that", "those", "these"],
+        )
+        .then_some(())?;
         let mut k = i + n + 1;
         if let Some(m) = begins(&tokens[k..], INTO) {
             let the = usize::from(is(tokens.get(k + m), &["the", "my", "our", "your", "this"]));
@@ -170,7 +209,8 @@ fn stays_put(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             None => {
                 let (a, b) = first_noun(rest)?;
                 let other = class_of(rest).is_some_and(|c| c != before) && talk.fits(&rest[..b]) > 0;
-                (other && (a == 0 || a == 1 && is(rest.first(), &["the", "my", "our", "both"]))).then_some(b)?
+                (other && (a == 0 || a == 1 && is(rest.first(), &["the", "my", "our", "both"])))
+                    .then_some(b)?
             }
         };
         (from + end + begins(rest.get(end..)?, STAYS)? == tokens.len()).then_some(i)
@@ -179,7 +219,20 @@ fn stays_put(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let whole = |t: &Token| {
         is(
             Some(t),
-            &["all", "everything", "everybody", "everyone", "every", "only", "nothing", "else", "gone", "out", "off", "away"],
+            &[
+                "all",
+                "everything",
+                "everybody",
+                "everyone",
+                "every",
+                "only",
+                "nothing",
+                "else",
+                "gone",
+                "out",
+                "off",
+                "away",
+            ],
         )
     };
     // (who goes somewhere, and is not gone)
@@ -187,7 +240,14 @@ fn stays_put(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let body = &tokens[..i];
         first_noun(body).is_some_and(|x| {
             x.0 < 4
-                && (x.1..body.len()).any(|k| is(body.get(k), &["to", "onto", "into", "behind", "in", "on", "ahead", "beside", "at"]))
+                && (x.1..body.len()).any(|k| {
+                    is(
+                        body.get(k),
+                        &[
+                            "to", "onto", "into", "behind", "in", "on", "ahead", "beside", "at",
+                        ],
+                    )
+                })
         })
     };
     match found {
@@ -229,8 +289,32 @@ fn in_vehicle(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         driving the|who drives the|who is driving the|steering the|sitting in the|who sits in the|who is sitting in the|at the controls of the";
     // (who gets out is a person again)
     const OUT: &[&str] = &[
-        "out", "climbs", "climbed", "alights", "leaves", "leave", "left", "lane", "stop", "s", "shelter", "park", "queue", "steps",
-        "stepped", "exits", "exit", "wants", "says", "said", "told", "reports", "reported", "saw", "complains", "complained",
+        "out",
+        "climbs",
+        "climbed",
+        "alights",
+        "leaves",
+        "leave",
+        "left",
+        "lane",
+        "stop",
+        "s",
+        "shelter",
+        "park",
+        "queue",
+        "steps",
+        "stepped",
+        "exits",
+        "exit",
+        "wants",
+        "says",
+        "said",
+        "told",
+        "reports",
+        "reported",
+        "saw",
+        "complains",
+        "complained",
     ];
     rewritten(&tokens, |i, out| {
         is(tokens.get(i), &["the", "that"]).then_some(())?;
@@ -240,18 +324,37 @@ fn in_vehicle(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             Some((k, n, place))
         })?;
         let who = &tokens[i + 1..at];
-        let person = who.iter().all(|t| t.kind == TokenKind::Word && number(t).is_none())
+        let person = who
+            .iter()
+            .all(|t| t.kind == TokenKind::Word && number(t).is_none())
             && who.last().is_some_and(|t| match look_up(text(t)) {
                 Some(Sense::Noun(n, _)) => n.classes.first() == Some(&Class::Pedestrian),
-                _ => is(Some(t), &["learner", "driver", "beginner", "novice", "chauffeur", "colleague", "guy", "chap"]),
+                _ => is(
+                    Some(t),
+                    &[
+                        "learner",
+                        "driver",
+                        "beginner",
+                        "novice",
+                        "chauffeur",
+                        "colleague",
+                        "guy",
+                        "chap",
+                    ],
+                ),
             });
         let what = at + place + n;
         let (a, b) = first_noun(&tokens[what..]).filter(|x| x.0 < 3)?;
         let wheels = class_of(&tokens[what + a..what + b]).is_some_and(|c| {
-            matches!(c, Class::Car | Class::Truck | Class::Bus | Class::ConstructionVehicle)
+            matches!(
+                c,
+                Class::Car | Class::Truck | Class::Bus | Class::ConstructionVehicle
+            )
         });
         let end = what + b;
-        let gets_out = tokens[end..tokens.len().min(end + 4)].iter().any(|t| is(Some(t), OUT));
+        let gets_out = tokens[end..tokens.len().min(end + 4)]
+            .iter()
+            .any(|t| is(Some(t), OUT));
         let np = [&[word("the", &tokens[i])], &tokens[what..end]].concat();
         (person && wheels && !gets_out && talk.fits(&np) > 0).then(|| {
             out.extend(np);

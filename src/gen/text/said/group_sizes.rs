@@ -415,11 +415,14 @@ fn so_long(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         "queue", "row", "line", "column", "convoy", "string", "chain", "tailback", "jam", "file",
     ];
     static LONGER: &[&str] = &["longer", "shorter"];
-    static MORE: &[&str] = &["lengthen", "extend", "expand", "prolong", "grow", "increase", "enlarge"];
+    static MORE: &[&str] = &[
+        "lengthen", "extend", "expand", "prolong", "grow", "increase", "enlarge",
+    ];
     static AROUND: &[&str] = &[
-        "make", "let", "have", "be", "is", "are", "should", "must", "shall", "has", "to", "now", "only", "just", "gets", "get",
-        "becomes", "become", "grows", "grow", "by", "lengthen", "extend", "expand", "prolong", "increase", "enlarge", "out", "up",
-        "could", "can", "needs", "ought", "of", "will", "i", "want", "would", "like", "need", "it", "a", "total", "further",
+        "make", "let", "have", "be", "is", "are", "should", "must", "shall", "has", "to", "now", "only",
+        "just", "gets", "get", "becomes", "become", "grows", "grow", "by", "lengthen", "extend", "expand",
+        "prolong", "increase", "enlarge", "out", "up", "could", "can", "needs", "ought", "of", "will", "i",
+        "want", "would", "like", "need", "it", "a", "total", "further",
     ];
     let line = tokens
         .iter()
@@ -445,12 +448,17 @@ fn so_long(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         (None, None) => return None,
     };
     let longer = |w: &str| tokens.iter().any(|t| text(t) == w);
-    let by = longer("longer") || is(tokens.get(n.checked_sub(1)?), &["by"]) && tokens.iter().any(|t| MORE.contains(&text(t)));
+    let by = longer("longer")
+        || is(tokens.get(n.checked_sub(1)?), &["by"]) && tokens.iter().any(|t| MORE.contains(&text(t)));
     let told = long || by || longer("shorter") || tokens[..line].iter().any(|t| MORE.contains(&text(t)));
     (told && rest.is_empty()).then_some(())?;
     let many = &tokens[n..=n];
     if longer("shorter") {
-        return Some(led("remove", &tokens[0], &[many, &led("of the", &tokens[0], &[noun])]));
+        return Some(led(
+            "remove",
+            &tokens[0],
+            &[many, &led("of the", &tokens[0], &[noun])],
+        ));
     }
     let place = led(of_the_line(talk, noun)?, &tokens[0], &[]);
     let verb = if by { "add" } else { "keep exactly" };
@@ -462,7 +470,11 @@ fn so_long(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 fn of_the_line(talk: &Talk<'_>, noun: &[Token]) -> Option<&'static str> {
     use crate::scene::graph::LaneRole as L;
     let there = talk.boxes_of(&led("all", &noun[0], &[noun]));
-    let there = if there.is_empty() { talk.boxes_of(noun) } else { there };
+    let there = if there.is_empty() {
+        talk.boxes_of(noun)
+    } else {
+        there
+    };
     let lanes: Vec<L> = there
         .iter()
         .filter_map(|b| super::super::holds::role_of(talk.map, b))
@@ -471,7 +483,11 @@ fn of_the_line(talk: &Talk<'_>, noun: &[Token]) -> Option<&'static str> {
     let role = *lanes
         .iter()
         .max_by_key(|r| lanes.iter().filter(|o| o == r).count())?;
-    let in_line = || there.iter().filter(|b| super::super::holds::role_of(talk.map, b) == Some(role));
+    let in_line = || {
+        there
+            .iter()
+            .filter(|b| super::super::holds::role_of(talk.map, b) == Some(role))
+    };
     let ahead = in_line().all(|b| b.center_m.x > 0.0);
     let behind = in_line().all(|b| b.center_m.x < 0.0);
     Some(match (role, ahead, behind) {

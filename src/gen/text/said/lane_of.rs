@@ -67,16 +67,35 @@ fn own_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let n = begins(&tokens[i..], OWN)?;
         // ("it keeps to its lane" asks for nothing)
         if is(out.last(), &["keep", "keeps", "keeping", "sticks", "stick"]) {
-            let verb = if text(out.last()?).ends_with('s') { "stays" } else { "stay" };
+            let verb = if text(out.last()?).ends_with('s') {
+                "stays"
+            } else {
+                "stay"
+            };
             out.pop();
             out.extend(led(verb, &tokens[i], &[]));
             out.extend(led("in its lane", &tokens[i], &[]));
             return Some(i + n);
         }
-        const STAYS: &[&str] = &["stay", "stays", "staying", "remain", "remains", "remaining", "left", "it", "him", "them"];
+        const STAYS: &[&str] = &[
+            "stay",
+            "stays",
+            "staying",
+            "remain",
+            "remains",
+            "remaining",
+            "left",
+            "it",
+            "him",
+            "them",
+        ];
         (!is(out.last(), STAYS)).then_some(())?;
         // (who goes back to it is not in it)
-        (!is(out.last(), &["back", "return", "returns", "returned", "again", "over"])).then_some(())?;
+        (!is(
+            out.last(),
+            &["back", "return", "returns", "returned", "again", "over"],
+        ))
+        .then_some(())?;
         let named = (0..out.len()).rev().find_map(|k| {
             let the = is(out.get(k), &["the", "that", "both", "my", "our"]);
             let (a, b) = first_noun(&out[k..]).filter(|x| x.0 < 4 && (the || k == 0))?;

@@ -461,7 +461,10 @@ fn to_lane(s: &Subject, pred: &[Token], talk: &Talk<'_>) -> bool {
     };
     let rest = &pred[lane + 1..];
     let closes = rest.first().is_none_or(|t| {
-        t.kind != TokenKind::Word || text(t).ends_with("ing") || is_place(rest) || is(Some(t), &["and", "now"])
+        t.kind != TokenKind::Word
+            || text(t).ends_with("ing")
+            || is_place(rest)
+            || is(Some(t), &["and", "now"])
     });
     closes && !has_noun(&pred[..lane]) && talk.fits(&[&s.np, &pred[..=lane]].concat()) == 0
 }
@@ -659,7 +662,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     // "fire engine in" of one that is there: more of it is not meant
     // ("I want it in our lane" says where)
-    let where_to = pred.len() > 1 && (matches!(s.kind, Kind::Back(_)) || mood.caused && to_lane(&s, pred, talk));
+    let where_to =
+        pred.len() > 1 && (matches!(s.kind, Kind::Back(_)) || mood.caused && to_lane(&s, pred, talk));
     if is(pred.first(), &["in"]) && !where_to {
         return None;
     }

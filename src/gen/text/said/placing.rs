@@ -300,7 +300,9 @@ fn past(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "take the bicycle from the sidewalk and have it ride in our lane": it should ride there.
 fn had_doing(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const TAKES: &[&str] = &["take", "get", "bring", "fetch", "pull", "lift", "grab", "remove", "pick"];
+    const TAKES: &[&str] = &[
+        "take", "get", "bring", "fetch", "pull", "lift", "grab", "remove", "pick",
+    ];
     const FROM: &[&str] = &["from", "off", "out of"];
     const HAS: &[&str] = &["have", "let", "make"];
     let found = (0..tokens.len()).find_map(|i| {
@@ -311,7 +313,9 @@ fn had_doing(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let it = and + 1 + leads(tokens.get(and + 1..)?, HAS)?;
         is(tokens.get(it), &["it", "him", "her", "them"]).then_some(())?;
         // (what comes from one of several places must still be told by it)
-        let does = tokens.get(it + 1).is_some_and(|t| super::words::is_finite(text(t), true));
+        let does = tokens
+            .get(it + 1)
+            .is_some_and(|t| super::words::is_finite(text(t), true));
         let goes_on = (it + 2..tokens.len()).any(|k| is_place(&tokens[k..]));
         let place = is_place(&led("on", &tokens[i], &[&tokens[away..and]]));
         let all = place && talk.tells(&tokens[from..end]);
@@ -330,7 +334,15 @@ fn had_doing(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 
 /// "place the bus directly to our left": beside us.
 fn abreast(tokens: Vec<Token>) -> Vec<Token> {
-    const CLOSE: &[&str] = &["directly", "immediately", "right", "straight", "just", "exactly", "precisely"];
+    const CLOSE: &[&str] = &[
+        "directly",
+        "immediately",
+        "right",
+        "straight",
+        "just",
+        "exactly",
+        "precisely",
+    ];
     const SIDE: &[(&str, &str)] = &[
         ("to our left", "left"),
         ("to the left of us", "left"),
@@ -360,8 +372,9 @@ fn abreast(tokens: Vec<Token>) -> Vec<Token> {
             is(
                 Some(t),
                 &[
-                    "put", "place", "move", "bring", "set", "position", "should", "is", "are", "drives", "rides", "stands",
-                    "shift", "draw", "send", "add", "must", "be", "have", "want", "need", "comes", "let",
+                    "put", "place", "move", "bring", "set", "position", "should", "is", "are", "drives",
+                    "rides", "stands", "shift", "draw", "send", "add", "must", "be", "have", "want", "need",
+                    "comes", "let",
                 ],
             )
         });
@@ -374,7 +387,13 @@ fn abreast(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "a barrier behind the cones, 20 m ahead of us": what the metres say is behind them as we see it.
 fn side_by_metres(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const AHEAD: &[&str] = &["ahead of us", "in front of us", "ahead of me", "in front of me", "ahead"];
+    const AHEAD: &[&str] = &[
+        "ahead of us",
+        "in front of us",
+        "ahead of me",
+        "in front of me",
+        "ahead",
+    ];
     const BACK: &[&str] = &["behind us", "behind me"];
     let metres = (0..tokens.len()).find_map(|i| {
         let m = number(&tokens[i])? as f64;

@@ -84,6 +84,14 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..start], &out, &tokens[metres + 2..]].concat()
 }
 
+const CROSSINGS: &[&str] = &[
+    "the crossing",
+    "the zebra",
+    "the zebra crossing",
+    "the pedestrian crossing",
+    "the crosswalk",
+];
+
 /// "so empty the pavement": who is on it goes.
 fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
     for i in 0..tokens.len() {
@@ -91,6 +99,19 @@ fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
         let frees = verb || is(tokens.get(i), &["clear", "free", "vacate"]) && begins_at(&tokens, i);
         if let Some(new) = frees.then(|| car_park_emptied(&tokens, i)).flatten() {
             return new;
+        }
+        // ("clear the crossing": those who walk there)
+        let on = frees
+            .then(|| leads(&tokens[i + 1..], CROSSINGS).map(|n| i + 1 + n))
+            .flatten()
+            .filter(|end| {
+                tokens.get(*end).is_none_or(|t| {
+                    t.kind != TokenKind::Word || is(Some(t), &["and", "now", "please", "completely"])
+                })
+            });
+        if let Some(end) = on {
+            let all = led("remove all the objects on", &tokens[i], &[&tokens[i + 1..end]]);
+            return [&tokens[..i], &all, &tokens[end..]].concat();
         }
         let the = is(tokens.get(i + 1), &["the", "our", "my", "both"]);
         let place = tokens.get(i + 2..).and_then(longest);
@@ -380,9 +401,19 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
     const EMPTIES: &str = "clear the|empty the|free the|vacate the";
     const NOBODY: &str = "nobody|no one|noone|there is nobody|there is no one|theres nobody|theres no one|none of them|no pedestrian|no person|no people|\
         there are no people|there are no pedestrians|no pedestrians|neither of them|neither";
-    const WHERE: &[&str] = &["crossing", "zebra", "crosswalk", "road", "street", "roadway", "carriageway"];
+    const WHERE: &[&str] = &[
+        "crossing",
+        "zebra",
+        "crosswalk",
+        "road",
+        "street",
+        "roadway",
+        "carriageway",
+    ];
     const THEY: &str = "both|the two|the three|the four|all|all the|all of them|both of them|they|the";
-    const SIDES: &[&str] = &["sidewalk", "pavement", "footpath", "footway", "walkway", "kerb", "curb", "side"];
+    const SIDES: &[&str] = &[
+        "sidewalk", "pavement", "footpath", "footway", "walkway", "kerb", "curb", "side",
+    ];
     let person = |np: &[Token]| {
         let (a, b) = first_noun(np).filter(|x| x.0 < 5)?;
         matches!(longest(&np[a..b]), Some((Sense::Noun(n, _), _)) if n.classes[0] == Class::Pedestrian)
@@ -394,7 +425,9 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
     let mut i = 0;
     while i < tokens.len() {
         let opens = i == 0 || ends(&tokens[i - 1]);
-        let close = (i..tokens.len()).find(|k| ends(&tokens[*k])).unwrap_or(tokens.len());
+        let close = (i..tokens.len())
+            .find(|k| ends(&tokens[*k]))
+            .unwrap_or(tokens.len());
         let clause = &tokens[i..close];
         let where_ = clause.iter().any(|t| is(Some(t), WHERE));
         let clears = begins(clause, EMPTIES).is_some() && where_ && clause.len() < 6;
@@ -410,11 +443,15 @@ pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
         }
         // what follows may say the same once more before it says where they are
         let from = close + 1 + usize::from(is(tokens.get(close + 1), &["and", "because", "since", "as"]));
-        let next = (from..tokens.len()).find(|k| ends(&tokens[*k])).unwrap_or(tokens.len());
+        let next = (from..tokens.len())
+            .find(|k| ends(&tokens[*k]))
+            .unwrap_or(tokens.len());
         let rest = &tokens[from.min(next)..next];
         let again = clears && begins(rest, NOBODY).is_some() && rest.len() < 11;
-        let they = begins(rest, THEY).is_some_and(|n| person(rest).is_some() || n == 1 && is(rest.first(), &["they", "both"]));
-        let told = if is(rest.first(), &["they", "all"]) || begins(rest, "both of them|all of them").is_some() {
+        let they = begins(rest, THEY)
+            .is_some_and(|n| person(rest).is_some() || n == 1 && is(rest.first(), &["they", "both"]));
+        let told = if is(rest.first(), &["they", "all"]) || begins(rest, "both of them|all of them").is_some()
+        {
             0
         } else {
             person(rest).unwrap_or(0)

@@ -254,16 +254,20 @@ fn closed_with(tokens: Vec<Token>) -> Vec<Token> {
     const THERE: &str = "at the same place|in the same place|at the same spot|in the same spot|at that place|at that spot|there|in its place|instead|\
         at the same position|in the same position|exactly there|where it was|where it stood";
     rewritten(&tokens, |i, out| {
-        let linked = i > 2 && (is(tokens.get(i - 1), &["and", "then"]) || tokens[i - 1].kind == TokenKind::Comma);
-        let removed = (0..out.len()).any(|k| removes(out.get(k)) || is(out.get(k), &["dismantle", "gone", "away"]));
+        let linked =
+            i > 2 && (is(tokens.get(i - 1), &["and", "then"]) || tokens[i - 1].kind == TokenKind::Comma);
+        let removed =
+            (0..out.len()).any(|k| removes(out.get(k)) || is(out.get(k), &["dismantle", "gone", "away"]));
         let verb = begins(&tokens[i..], CLOSES).filter(|_| linked && removed && has_noun(out))?;
         let place = begins(tokens.get(i + verb..)?, PLACES)?;
         let with = i + verb + place;
         is(tokens.get(with), &["with", "using", "by"]).then_some(())?;
         let what = &tokens[with + 1..];
         let (_, b) = first_noun(what).filter(|x| x.0 < 4)?;
-        (what.first()?.kind != TokenKind::Word || number(&what[0]).is_some() || is(what.first(), &["a", "an", "some"]))
-            .then_some(())?;
+        (what.first()?.kind != TokenKind::Word
+            || number(&what[0]).is_some()
+            || is(what.first(), &["a", "an", "some"]))
+        .then_some(())?;
         out.extend(led("put", &tokens[i], &[&what[..b]]));
         let end = with + 1 + b;
         let there = begins(&tokens[end..], THERE);

@@ -389,7 +389,11 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         .iter()
         .position(|t| plain_verb(t) || is(Some(t), &["there", "i", "we", "id", "wed"]))
         .unwrap_or(lead.len());
-    let place = if is_place(&lead[..verb]) { &lead[..verb] } else { &[] };
+    let place = if is_place(&lead[..verb]) {
+        &lead[..verb]
+    } else {
+        &[]
+    };
     let helped = tokens[end..].iter().take_while(|t| plain_verb(t)).count();
     // ("... should ride behind us")
     let rides = tokens
@@ -397,7 +401,10 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         .is_some_and(|t| helped > 0 && super::words::is_finite(text(t), true));
     let end = end + helped + usize::from(rides && is_place(&tokens[end + helped + 1..]));
     // ("... should follow us")
-    let after = leads(&tokens[end..], &["follow us", "follow me", "following us", "following me"]);
+    let after = leads(
+        &tokens[end..],
+        &["follow us", "follow me", "following us", "following me"],
+    );
     let behind = led("behind us", &tokens[from], &[]);
     let (end, place) = match after {
         Some(n) => (end + n, &behind[..]),
