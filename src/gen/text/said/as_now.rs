@@ -365,7 +365,10 @@ const THERE: &[&str] = &[
 /// What is said before, with a comma for its "and": a statement that a command follows.
 fn apart_from_it(before: &[Token]) -> Vec<Token> {
     let mut out = before.to_vec();
-    let and = out.len().checked_sub(1).filter(|k| is(out.get(*k), &["and"]));
+    let and = out
+        .len()
+        .checked_sub(1)
+        .filter(|k| is(out.get(*k), &["and"]) && has_noun(before));
     if let Some(k) = and {
         match k.checked_sub(1).filter(|j| is_mark(&out[*j])) {
             Some(_) => out.truncate(k),
@@ -438,7 +441,8 @@ fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         )
         .unwrap_or(0);
         // ("one cone is left in our lane": of those there)
-        let place = match tokens.get(end + left).filter(|_| left > 0) {
+        let opens = out.last().is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
+        let place = match tokens.get(end + left).filter(|_| left > 0 && opens) {
             Some(_) if is_place(&tokens[end + left..]) => (end + left..tokens.len())
                 .find(|k| is_mark(&tokens[*k]) || is(tokens.get(*k), &["and"]))
                 .unwrap_or(tokens.len()),

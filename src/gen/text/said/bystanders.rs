@@ -58,7 +58,7 @@ fn asked_of_somebody(tokens: Vec<Token>) -> Vec<Token> {
         "walk", "ride", "drive", "guide", "lead", "face", "sit", "stand", "hold", "push", "pull", "leave",
         "point", "direct", "keep",
     ];
-    rewritten(&tokens, |i, out| {
+    rewritten(&tokens, |i, _| {
         begins_at(&tokens, i).then_some(())?;
         let ask = begins(&tokens[i..], ASK).unwrap_or(0);
         let who = begins(tokens.get(i + ask..)?, WHO)?;
@@ -75,7 +75,6 @@ fn asked_of_somebody(tokens: Vec<Token>) -> Vec<Token> {
         let upon =
             (1..4).any(|k| is(rest.get(k), DETERMINERS) || rest.get(k).is_some_and(|t| number(t).is_some()));
         (upon && verb != Verb::Note).then_some(())?;
-        let _ = out;
         Some(at + should + also)
     })
 }
@@ -102,6 +101,8 @@ fn for_what(tokens: Vec<Token>) -> Vec<Token> {
         }
         is(tokens.get(i), &["for"]).then_some(())?;
         let n = (2..5).find(|k| new(i + k))?;
+        // ("for take two the bus is out" counts the takes)
+        (!is(tokens.get(i + n + 1), &["the", "a", "an", "both", "all"])).then_some(())?;
         let aim = &tokens[i + 1..i + n];
         let plain = aim
             .iter()
@@ -162,7 +163,7 @@ fn added_again(tokens: Vec<Token>) -> Vec<Token> {
         if let Some(m) = begins(&tokens[k..], INTO) {
             let the = usize::from(is(tokens.get(k + m), &["the", "my", "our", "your", "this"]));
             k += m + the + begins(tokens.get(k + m + the..)?, WHOLE)?;
-        } else if !begins(&tokens[i..], "add|draw|include|insert|sketch").is_some_and(|m| m == n) {
+        } else if begins(&tokens[i..], "add|draw|include|insert|sketch") != Some(n) {
             return None;
         }
         k += begins(&tokens[k..], "too|please|as well|also|for me|then|now").unwrap_or(0);
@@ -235,20 +236,11 @@ fn stays_put(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             ],
         )
     };
-    // (who goes somewhere, and is not gone)
+    // (who goes somewhere, and is not gone; "kids on the left sidewalk, bus stays" is read whole)
     let goes = |i: usize| {
         let body = &tokens[..i];
-        first_noun(body).is_some_and(|x| {
-            x.0 < 4
-                && (x.1..body.len()).any(|k| {
-                    is(
-                        body.get(k),
-                        &[
-                            "to", "onto", "into", "behind", "in", "on", "ahead", "beside", "at",
-                        ],
-                    )
-                })
-        })
+        first_noun(body)
+            .is_some_and(|x| x.0 < 4 && (x.1..body.len()).any(|k| is(body.get(k), &["to", "onto", "into"])))
     };
     match found {
         Some(i) if !tokens[..i].iter().any(whole) && goes(i) => tokens[..i].to_vec(),

@@ -43,6 +43,7 @@ mod lane_of;
 mod left;
 mod likewise;
 mod limits;
+mod lines;
 pub(super) mod lists;
 mod loose_ends;
 mod mistaken;
