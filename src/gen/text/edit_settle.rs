@@ -37,6 +37,7 @@ impl Editor<'_> {
             let told = b.verb == Verb::Keep
                 && a.verb == Verb::Remove
                 && !a.targets.iter().any(means_all)
+                && !self.fewer_of_others(a, b)
                 && ["only ", "just "]
                     .iter()
                     .any(|w| b.text.to_lowercase().starts_with(w));
@@ -69,6 +70,15 @@ impl Editor<'_> {
                 }
             }
         }
+    }
+
+    /// "the worker is gone and only one cone is left", where there are four: no cones are gone yet.
+    fn fewer_of_others(&self, gone: &Command, kept: &Command) -> bool {
+        let Some(m) = kept.targets.first().filter(|m| !m.uncounted) else {
+            return false;
+        };
+        let there = self.boxes.values().filter(|b| b.class == m.spec.class).count();
+        gone.targets.iter().all(|t| t.spec.class != m.spec.class) && there > m.spec.count.n as usize
     }
 
     /// True if a command that adds, without a word for that, names what is there already: it is not put in a second time.

@@ -87,6 +87,8 @@ const SETS: &[(&str, &str)] = sets![
     "causes_zb.jsonl",
     "strangers_37.jsonl",
     "causes_za.jsonl",
+    "strangers_35.jsonl",
+    "causes_y.jsonl",
     "composed.jsonl",
     "wrapped.jsonl",
     "variants.jsonl",

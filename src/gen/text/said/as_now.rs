@@ -19,7 +19,7 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let opens = (0..out.len()).filter(|i| begins_at(&out, *i));
     let found = opens
         .into_iter()
-        .find_map(|i| still_there(&out[i..], talk).map(|new| [&out[..i], &new[..]].concat()));
+        .find_map(|i| still_there(&out[i..], talk).map(|new| [&apart_from_it(&out[..i]), &new[..]].concat()));
     so_many_left(same_with(found.unwrap_or(out)), talk)
 }
 
@@ -432,6 +432,25 @@ const THERE: &[&str] = &[
     "are left over",
 ];
 
+/// What is said before, with a comma for its "and": a statement that a command follows.
+fn apart_from_it(before: &[Token]) -> Vec<Token> {
+    let mut out = before.to_vec();
+    let and = out
+        .len()
+        .checked_sub(1)
+        .filter(|k| is(out.get(*k), &["and"]) && has_noun(before));
+    if let Some(k) = and {
+        match k.checked_sub(1).filter(|j| is_mark(&out[*j])) {
+            Some(_) => out.truncate(k),
+            None => {
+                out[k].kind = TokenKind::Comma;
+                out[k].text = ",".into();
+            }
+        }
+    }
+    out
+}
+
 /// "besides the pickup just one of the cars is still there": the other cars go.
 fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let spared =
@@ -474,26 +493,48 @@ fn still_there(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
 fn so_many_left(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let mut listed = false;
     super::super::wording::rewritten(&tokens, |i, out| {
-        let n = count(tokens.get(i)).filter(|_| begins_at(&tokens, i))?;
+        begins_at(&tokens, i).then_some(())?;
+        // ("a single cone is left")
+        let lone = begins(&tokens[i..], "a single|a lone|a sole|a solitary|one single").unwrap_or(0);
+        let one = led("one", &tokens[i], &[]);
+        let (many, i) = match lone {
+            0 => (&tokens[i..=i], i),
+            n => (&one[..], i + n - 1),
+        };
+        let n = count(many.first())?;
         let (_, b) = first_noun(&tokens[i + 1..]).filter(|x| x.0 < 2)?;
         let noun = &tokens[i + 1..=i + b];
         let end = i + 1 + b;
-        let left = usize::from(is(tokens.get(end), &["left", "remaining"]));
+        let left = begins(
+            tokens.get(end..)?,
+            "left|remaining|is left|are left|remains|remain|is still left|are still left|is left over|are left over",
+        )
+        .unwrap_or(0);
+        // ("one cone is left in our lane": of those there)
+        let opens = out.last().is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
+        let place = match tokens.get(end + left).filter(|_| left > 0 && opens) {
+            Some(_) if is_place(&tokens[end + left..]) => (end + left..tokens.len())
+                .find(|k| is_mark(&tokens[*k]) || is(tokens.get(*k), &["and"]))
+                .unwrap_or(tokens.len()),
+            _ => end + left,
+        };
+        let place = &tokens[end + left..place];
+        let plain = place.is_empty() || !has_noun(place) && !place.iter().any(|t| number(t).is_some());
         let closes = tokens
-            .get(end + left)
+            .get(end + left + place.len())
             .is_none_or(|t| is_mark(t) || is(Some(t), &["and"]));
         // ("... left, one worker": the others of a list, too)
-        let the = all_of(noun);
-        if !closes || !(left > 0 || listed) || talk.fits(&the) as i64 <= n {
+        let the = [&all_of(noun), place].concat();
+        if !closes || !plain || !(left > 0 || listed) || talk.fits(&the) as i64 <= n {
             return None;
         }
         listed = true;
         out.extend(led(
             "keep only",
             &tokens[i],
-            &[&tokens[i..=i], &led("of", &tokens[i], &[&the])],
+            &[many, &led("of", &tokens[i], &[&the])],
         ));
-        Some(end + left)
+        Some(end + left + place.len())
     })
 }
 

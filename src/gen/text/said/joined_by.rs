@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 /// A sentence (without its stop) as the command that adds who comes.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = super::group_sizes::plain(tokens, talk);
+    let out = super::group_sizes::plain(super::lines::plain(tokens, talk), talk);
     // ("the bus is gone, and the woman gets a companion")
     let links = (2..out.len()).filter(|k| {
         (mark(&out[k - 1]) || is(out.get(k - 1), &["and"]))

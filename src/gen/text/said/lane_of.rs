@@ -4,7 +4,7 @@ use super::super::holds::role_of;
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, rewritten};
 use super::Talk;
-use super::words::{first_noun, is, led};
+use super::words::{first_noun, is, led, text};
 use crate::scene::SceneBox;
 use crate::scene::graph::LaneRole as L;
 
@@ -13,7 +13,7 @@ const STRIP: &str = "lane|sidewalk|pavement|footpath|walkway|footway|kerb|curb|r
 /// A sentence in which they bear their names.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = goes_over(owners_lane(as_before(opposite_last(tokens)), talk), talk);
-    in_that(same_as(in_theirs(out, talk), talk), talk)
+    own_lane(in_that(same_as(in_theirs(out, talk), talk), talk), talk)
 }
 
 /// "a car follows the two cyclists in their lane": where these are.
@@ -89,6 +89,62 @@ fn owners_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     })
 }
 
+/// "the van is 15 m behind us in its lane": the lane where it drives now.
+fn own_lane(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const OWN: &str = "in its lane|in its own lane|to its lane|to its own lane|within its lane|in his lane|in his own lane|in her lane|in their lane|\
+        in their own lane|along its lane|along its own lane|on its lane|on its own lane|in its current lane|in its present lane|to his lane";
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], OWN)?;
+        // ("it keeps to its lane" asks for nothing)
+        if is(out.last(), &["keep", "keeps", "keeping", "sticks", "stick"]) {
+            let verb = if text(out.last()?).ends_with('s') {
+                "stays"
+            } else {
+                "stay"
+            };
+            out.pop();
+            out.extend(led(verb, &tokens[i], &[]));
+            out.extend(led("in its lane", &tokens[i], &[]));
+            return Some(i + n);
+        }
+        const STAYS: &[&str] = &[
+            "stay",
+            "stays",
+            "staying",
+            "remain",
+            "remains",
+            "remaining",
+            "left",
+            "it",
+            "him",
+            "them",
+        ];
+        (!is(out.last(), STAYS)).then_some(())?;
+        // (who goes back to it is not in it)
+        (!is(
+            out.last(),
+            &["back", "return", "returns", "returned", "again", "over"],
+        ))
+        .then_some(())?;
+        let named = (0..out.len()).rev().find_map(|k| {
+            let the = is(out.get(k), &["the", "that", "both", "my", "our"]);
+            let (a, b) = first_noun(&out[k..]).filter(|x| x.0 < 4 && (the || k == 0))?;
+            Some((k + usize::from(!the) * a, k + b))
+        });
+        let name = match named {
+            Some((a, b)) => name_of(&talk.boxes_of(&out[a..b]), talk)?,
+            None => {
+                let np = led(&format!("the {}", talk.last.as_deref()?), &tokens[i], &[]);
+                name_of(&talk.boxes_of(&np), talk)?
+            }
+        };
+        is_of_kind(true, name).then_some(())?;
+        out.push(tokens[i].clone());
+        out.extend(led(name, &tokens[i], &[]));
+        Some(i + n)
+    })
+}
+
 /// "the vans go over to the right", who stand at the left kerb: to the kerb there.
 fn goes_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     const GOES: &str = "go|goes|move|moves|come|comes|cross|crosses|change|changes|swing|swings|switch|switches|went|moved|crossed|should go|should move|should cross|must go|shift|shifts|get|gets";
@@ -98,7 +154,7 @@ fn goes_over(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let goes = begins(&tokens[i..], GOES)?;
         let over = is(tokens.get(i + goes), &["over", "across"]);
         let at = i + goes + begins(&tokens[i + goes..], TO)?;
-        let side = super::words::text(tokens.get(at)?).to_string();
+        let side = text(tokens.get(at)?).to_string();
         let n = begins(&tokens[at + 1..], SIDE).filter(|_| is(tokens.get(at), &["left", "right"]));
         (over || n.is_some()).then_some(())?;
         let end = at + 1 + n.unwrap_or(0);

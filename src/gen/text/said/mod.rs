@@ -17,6 +17,7 @@ mod brief_places;
 mod brief_turns;
 mod brief_wholes;
 mod briefs;
+mod bystanders;
 mod causing;
 mod clipped;
 mod colours;
@@ -45,6 +46,7 @@ mod lane_of;
 mod left;
 mod likewise;
 mod limits;
+mod lines;
 mod links;
 pub(super) mod lists;
 mod loose_ends;
@@ -264,8 +266,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = appended::plain(speakers::plain(testimony::plain(body.to_vec()), talk), talk);
-    let out = fronted::plain(out, talk);
+    let out = testimony::plain(bystanders::plain(body.to_vec(), talk));
+    let out = fronted::plain(appended::plain(speakers::plain(out, talk), talk), talk);
     let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
     let out = actors::unseen(out);
@@ -311,7 +313,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
     group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(
-        paired::joined(paired::of_two(tokens)),
+        paired::joined(paired::of_two(spaces::crossed(tokens))),
     ))))
 }
 
@@ -439,6 +441,21 @@ fn remembered(np: &[Token], talk: &Talk<'_>) -> Piece {
     target_part(talk.text, &tag(np), &mut c);
     let noun = first_noun(np).map(|n| np[n.0..n.1].to_vec());
     Piece::Meant(Box::new(c), noun)
+}
+
+/// "I need the truck in our lane" where it is not there yet: the lane is where it shall be.
+fn to_lane(s: &Subject, pred: &[Token], talk: &Talk<'_>) -> bool {
+    let Some(lane) = pred.iter().take(5).position(|t| is(Some(t), &["lane", "lanes"])) else {
+        return false;
+    };
+    let rest = &pred[lane + 1..];
+    let closes = rest.first().is_none_or(|t| {
+        t.kind != TokenKind::Word
+            || text(t).ends_with("ing")
+            || is_place(rest)
+            || is(Some(t), &["and", "now"])
+    });
+    closes && !has_noun(&pred[..lane]) && talk.fits(&[&s.np, &pred[..=lane]].concat()) == 0
 }
 
 /// One clause; `None` if it is left to the grammar of imperatives.
@@ -634,7 +651,8 @@ fn clause_of(clause: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     }
     // "fire engine in" of one that is there: more of it is not meant
     // ("I want it in our lane" says where)
-    let where_to = matches!(s.kind, Kind::Back(_)) && pred.len() > 1;
+    let where_to =
+        pred.len() > 1 && (matches!(s.kind, Kind::Back(_)) || mood.caused && to_lane(&s, pred, talk));
     if is(pred.first(), &["in"]) && !where_to {
         return None;
     }

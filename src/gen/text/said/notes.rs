@@ -353,6 +353,11 @@ fn leaves<'t>(p: &'t [Token], before: bool, talk: &Talk<'_>) -> Option<&'t [Toke
     (!fresh && plain && !who.iter().any(says) && talk.fits(who) > 0).then_some(who)
 }
 
+/// "cones", which may be a verb, too.
+fn names(t: &Token) -> bool {
+    super::words::noun_at(std::slice::from_ref(t)).is_some()
+}
+
 /// One of a note's parts: who, where to.
 struct Part<'t> {
     who: Vec<Token>,
@@ -382,7 +387,7 @@ fn part<'t>(tokens: &'t [Token], noun: Option<&[Token]>, talk: &Talk<'_>) -> Opt
         || number(&who[0]).is_some()
         || who
             .iter()
-            .any(|t| is_verb(t) || HELPERS.contains(&text(t)) || is_finite(text(t), false));
+            .any(|t| is_verb(t) || HELPERS.contains(&text(t)) || is_finite(text(t), false) && !names(t));
     let also = leads(&tokens[b..], ALSO).unwrap_or(0);
     let to = &tokens[b + also..];
     if fresh || leads(to, TO).is_none() || talk.fits(&who) == 0 {
@@ -413,7 +418,7 @@ fn sent(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let Some(first) = list.first().and_then(|p| part(p, None, talk)) else {
         return tokens;
     };
-    let verb = |t: &Token| HELPERS.contains(&text(t)) || is_finite(text(t), false);
+    let verb = |t: &Token| HELPERS.contains(&text(t)) || is_finite(text(t), false) && !names(t);
     let state = |t: &Token| is(Some(t), &["parked", "stopped", "standing"]);
     if list.iter().any(|p| p.iter().any(|t| verb(t) && !state(t))) {
         return tokens;

@@ -157,6 +157,7 @@ pub(super) fn clauses<'t>(body: &'t [Token], talk: &Talk<'_>) -> Vec<&'t [Token]
                 && !therefore
                 && spoken
                 && (instead
+                    || keeps_others(rest, &body[from..i])
                     || tells_of_new(rest, &body[from..i], talk)
                     || opens(
                         rest,
@@ -302,6 +303,21 @@ fn tells_of_new(rest: &[Token], before: &[Token], talk: &Talk<'_>) -> bool {
             HELPERS.contains(&verb) || words::is_finite(verb, base)
         });
     does && whole
+}
+
+/// "the worker is gone, keep only one of the cones": so many of another kind.
+fn keeps_others(rest: &[Token], before: &[Token]) -> bool {
+    let class = |np: &[Token]| {
+        let (a, b) = first_noun(np)?;
+        match words::longest(&np[a..b]).map(|l| l.0) {
+            Some(Sense::Noun(n, _)) => n.classes.first().copied(),
+            _ => None,
+        }
+    };
+    let keep = leads(rest, &["keep only", "keep exactly", "keep just", "keep"]);
+    let counted = keep.is_some_and(|n| rest.get(n).is_some_and(|t| number(t).is_some()));
+    let states = has_verb(before) && !before.first().is_some_and(super::super::rephrase::is_verb);
+    counted && states && class(rest).is_some() && class(rest) != class(before)
 }
 
 /// "so let the bus stand there": what stands before only says why.

@@ -66,7 +66,7 @@ const WHOLE: &[&str] = &[
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let out = still_so(in_ours(set_there(tokens)), talk);
     let out = shown(seen(out, talk), talk);
-    let out = lifted(thrown(out, talk));
+    let out = side_by_metres(abreast(had_doing(lifted(thrown(out, talk)), talk)), talk);
     past(until(out, talk), talk)
 }
 
@@ -362,4 +362,135 @@ fn past(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         Some((i, np, rel)) => [&tokens[..i], &led(rel, &tokens[i], &[&tokens[np..]])].concat(),
         None => tokens,
     }
+}
+
+/// "take the bicycle from the sidewalk and have it ride in our lane": it should ride there.
+fn had_doing(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const TAKES: &[&str] = &[
+        "take", "get", "bring", "fetch", "pull", "lift", "grab", "remove", "pick",
+    ];
+    const FROM: &[&str] = &["from", "off", "out of"];
+    const HAS: &[&str] = &["have", "let", "make"];
+    let found = (0..tokens.len()).find_map(|i| {
+        let from = i + opens_with(&tokens, i, TAKES)?;
+        let end = known(&tokens, from)?;
+        let away = end + leads(&tokens[end..], FROM)?;
+        let and = (away + 1..tokens.len().min(away + 7)).find(|k| is(tokens.get(*k), &["and"]))?;
+        let it = and + 1 + leads(tokens.get(and + 1..)?, HAS)?;
+        is(tokens.get(it), &["it", "him", "her", "them"]).then_some(())?;
+        // (what comes from one of several places must still be told by it)
+        let does = tokens
+            .get(it + 1)
+            .is_some_and(|t| super::words::is_finite(text(t), true));
+        let goes_on = (it + 2..tokens.len()).any(|k| is_place(&tokens[k..]));
+        let place = is_place(&led("on", &tokens[i], &[&tokens[away..and]]));
+        let all = place && talk.tells(&tokens[from..end]);
+        (does && goes_on && all).then_some((i, from, end, it + 1))
+    });
+    match found {
+        Some((i, from, end, does)) => [
+            &tokens[..i],
+            &tokens[from..end],
+            &led("should", &tokens[i], &[&tokens[does..]]),
+        ]
+        .concat(),
+        None => tokens,
+    }
+}
+
+/// "place the bus directly to our left": beside us.
+fn abreast(tokens: Vec<Token>) -> Vec<Token> {
+    const CLOSE: &[&str] = &[
+        "directly",
+        "immediately",
+        "right",
+        "straight",
+        "just",
+        "exactly",
+        "precisely",
+    ];
+    const SIDE: &[(&str, &str)] = &[
+        ("to our left", "left"),
+        ("to the left of us", "left"),
+        ("on our left", "left"),
+        ("to my left", "left"),
+        ("on my left", "left"),
+        ("at our left", "left"),
+        ("to the left of me", "left"),
+        ("to our right", "right"),
+        ("to the right of us", "right"),
+        ("on our right", "right"),
+        ("to my right", "right"),
+        ("on my right", "right"),
+        ("at our right", "right"),
+        ("to the right of me", "right"),
+    ];
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let close = leads(&tokens[i..], CLOSE)?;
+        let (n, side) = SIDE
+            .iter()
+            .find_map(|(words, side)| Some((leads(&tokens[i + close..], &[words])?, *side)))?;
+        let end = i + close + n;
+        let hand = leads(tokens.get(end..)?, &["hand side", "side", "flank"]).unwrap_or(0);
+        // ("5 m directly to our left" is no one beside us; "delete the car directly to our left" says which)
+        let measured = out.last().is_some_and(|t| super::words::is_unit(Some(t)));
+        let puts = out.iter().any(|t| {
+            is(
+                Some(t),
+                &[
+                    "put", "place", "move", "bring", "set", "position", "should", "is", "are", "drives",
+                    "rides", "stands", "shift", "draw", "send", "add", "must", "be", "have", "want", "need",
+                    "comes", "let",
+                ],
+            )
+        });
+        (!measured && puts && super::words::has_noun(out)).then(|| {
+            out.extend(led(&format!("beside us on our {side}"), &tokens[i], &[]));
+            end + hand
+        })
+    })
+}
+
+/// "a barrier behind the cones, 20 m ahead of us": what the metres say is behind them as we see it.
+fn side_by_metres(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    const AHEAD: &[&str] = &[
+        "ahead of us",
+        "in front of us",
+        "ahead of me",
+        "in front of me",
+        "ahead",
+    ];
+    const BACK: &[&str] = &["behind us", "behind me"];
+    let metres = (0..tokens.len()).find_map(|i| {
+        let m = number(&tokens[i])? as f64;
+        let unit = super::words::unit_at(tokens.get(i + 1..)?)?;
+        let rest = &tokens[i + 1 + unit..];
+        let far = if leads(rest, AHEAD).is_some_and(|n| n > 1 || !is(rest.get(1), &["of"])) {
+            m
+        } else if leads(rest, BACK).is_some() {
+            -m
+        } else {
+            return None;
+        };
+        Some(far)
+    });
+    let Some(far) = metres else {
+        return tokens;
+    };
+    super::super::wording::rewritten(&tokens, |i, out| {
+        let rel = leads(&tokens[i..], &["behind", "in front of", "ahead of", "before"])?;
+        // ("5 m behind the cones" counts from them)
+        let counted = out.last().is_some_and(|t| super::words::is_unit(Some(t)));
+        let np = i + rel;
+        let end = known(&tokens, np).filter(|_| !counted)?;
+        let boxes = talk.boxes_of(&tokens[np..end]);
+        let front = boxes.first()?.yaw_rad.cos();
+        let behind = is(tokens.get(i), &["behind"]);
+        let wanted = if behind == (front > 0.0) { -1.0 } else { 1.0 };
+        let against = boxes.iter().all(|b| (far - b.center_m.x) * wanted < -1.0);
+        against.then(|| {
+            out.extend(led(if behind { "ahead of" } else { "behind" }, &tokens[i], &[]));
+            np
+        })
+    })
 }

@@ -2,10 +2,11 @@
 
 use super::super::lexicon::Sense;
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::{replaced, rewritten};
+use super::super::wording::{begins, replaced, rewritten};
 use super::Talk;
 use super::gifts::begins_at;
 use super::words::{find, first_noun, has_noun, is, is_unit, leads, led, longest, number, text, trimmed};
+use crate::scene::Class;
 
 /// "increase the distance to the car behind to 20 m", "reduce the gap to the bus by 5 m".
 pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
@@ -83,6 +84,14 @@ pub(super) fn distance_to(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     [&tokens[..start], &out, &tokens[metres + 2..]].concat()
 }
 
+const CROSSINGS: &[&str] = &[
+    "the crossing",
+    "the zebra",
+    "the zebra crossing",
+    "the pedestrian crossing",
+    "the crosswalk",
+];
+
 /// "so empty the pavement": who is on it goes.
 fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
     for i in 0..tokens.len() {
@@ -90,6 +99,19 @@ fn empties(mut tokens: Vec<Token>) -> Vec<Token> {
         let frees = verb || is(tokens.get(i), &["clear", "free", "vacate"]) && begins_at(&tokens, i);
         if let Some(new) = frees.then(|| car_park_emptied(&tokens, i)).flatten() {
             return new;
+        }
+        // ("clear the crossing": those who walk there)
+        let on = frees
+            .then(|| leads(&tokens[i + 1..], CROSSINGS).map(|n| i + 1 + n))
+            .flatten()
+            .filter(|end| {
+                tokens.get(*end).is_none_or(|t| {
+                    t.kind != TokenKind::Word || is(Some(t), &["and", "now", "please", "completely"])
+                })
+            });
+        if let Some(end) = on {
+            let all = led("remove all the objects on", &tokens[i], &[&tokens[i + 1..end]]);
+            return [&tokens[..i], &all, &tokens[end..]].concat();
         }
         let the = is(tokens.get(i + 1), &["the", "our", "my", "both"]);
         let place = tokens.get(i + 2..).and_then(longest);
@@ -372,4 +394,85 @@ pub(super) fn emptied(tokens: Vec<Token>) -> Vec<Token> {
         Some(_) => led("remove all the", &body[0], &[what, &at]),
         None => led("remove all the objects", &body[0], &[&at]),
     }
+}
+
+/// "clear the zebra: nobody is crossing now, both people are on the right sidewalk": they are not gone, but there.
+pub(super) fn crossed(tokens: Vec<Token>) -> Vec<Token> {
+    const EMPTIES: &str = "clear the|empty the|free the|vacate the";
+    const NOBODY: &str = "nobody|no one|noone|there is nobody|there is no one|theres nobody|theres no one|none of them|no pedestrian|no person|no people|\
+        there are no people|there are no pedestrians|no pedestrians|neither of them|neither";
+    const WHERE: &[&str] = &[
+        "crossing",
+        "zebra",
+        "crosswalk",
+        "road",
+        "street",
+        "roadway",
+        "carriageway",
+    ];
+    const THEY: &str = "both|the two|the three|the four|all|all the|all of them|both of them|they|the";
+    const SIDES: &[&str] = &[
+        "sidewalk", "pavement", "footpath", "footway", "walkway", "kerb", "curb", "side",
+    ];
+    let person = |np: &[Token]| {
+        let (a, b) = first_noun(np).filter(|x| x.0 < 5)?;
+        matches!(longest(&np[a..b]), Some((Sense::Noun(n, _), _)) if n.classes[0] == Class::Pedestrian)
+            .then_some(b)
+    };
+    let ends = |t: &Token| !matches!(t.kind, TokenKind::Word | TokenKind::Number(_));
+    let mut out: Vec<Token> = Vec::new();
+    let mut cleared = false;
+    let mut i = 0;
+    while i < tokens.len() {
+        let opens = i == 0 || ends(&tokens[i - 1]);
+        let close = (i..tokens.len())
+            .find(|k| ends(&tokens[*k]))
+            .unwrap_or(tokens.len());
+        let clause = &tokens[i..close];
+        let where_ = clause.iter().any(|t| is(Some(t), WHERE));
+        let clears = begins(clause, EMPTIES).is_some() && where_ && clause.len() < 6;
+        let nobody = begins(clause, NOBODY).is_some()
+            && clause.len() < 11
+            && (where_ || cleared || is(clause.get(2), &["crossing"]));
+        // ("nobody is on it now", after what is to be clear)
+        cleared = false;
+        if !(opens && (clears || nobody) && close < tokens.len()) {
+            out.push(tokens[i].clone());
+            i += 1;
+            continue;
+        }
+        // what follows may say the same once more before it says where they are
+        let from = close + 1 + usize::from(is(tokens.get(close + 1), &["and", "because", "since", "as"]));
+        let next = (from..tokens.len())
+            .find(|k| ends(&tokens[*k]))
+            .unwrap_or(tokens.len());
+        let rest = &tokens[from.min(next)..next];
+        let again = clears && begins(rest, NOBODY).is_some() && rest.len() < 11;
+        let they = begins(rest, THEY)
+            .is_some_and(|n| person(rest).is_some() || n == 1 && is(rest.first(), &["they", "both"]));
+        let told = if is(rest.first(), &["they", "all"]) || begins(rest, "both of them|all of them").is_some()
+        {
+            0
+        } else {
+            person(rest).unwrap_or(0)
+        };
+        let there = rest[told.min(rest.len())..].iter().any(|t| is(Some(t), SIDES));
+        if again {
+            cleared = true;
+            i = from;
+        } else if they && there {
+            // ("they" are the people who were named)
+            if is(rest.first(), &["they"]) || begins(rest, "both of them|all of them").is_some() {
+                let n = begins(rest, "both of them|all of them").unwrap_or(1);
+                out.extend(led("the pedestrians", &rest[0], &[]));
+                i = from + n;
+            } else {
+                i = from;
+            }
+        } else {
+            out.extend_from_slice(&tokens[i..=close]);
+            i = close + 1;
+        }
+    }
+    out
 }

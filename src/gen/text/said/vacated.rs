@@ -30,6 +30,7 @@ const INSTEAD_OF_IT: &str = "instead of it|instead of him|instead of her|instead
 
 /// "put a truck instead of it", "add a truck instead", once what was there is gone: in its place.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let tokens = closed_with(tokens);
     let out = rewritten(&tokens, |i, out| {
         let n = begins(&tokens[i..], INSTEAD_OF_IT)?;
         let goes = |k: usize| {
@@ -243,4 +244,39 @@ pub fn filled(inner: &[Token], talk: &Talk<'_>) -> Option<Vec<Piece>> {
     c.in_place = true;
     c.by = c.targets.first().cloned();
     Some(vec![Piece::Meant(Box::new(c), Some(head[a..b].to_vec()))])
+}
+
+/// "take the barrier down and close our lane with six cones": put them there, or where it stood.
+fn closed_with(tokens: Vec<Token>) -> Vec<Token> {
+    const CLOSES: &str = "close off|close|block off|block|seal off|seal|shut off|shut|cordon off|barricade|fence off|cone off|secure|obstruct|bar";
+    const PLACES: &str = "our lane|our own lane|my lane|the ego lane|the left lane|the right lane|the oncoming lane|the lane|the road|our side of the road|\
+        the left sidewalk|the right sidewalk|the crossing|the lane ahead of us|our lane ahead of us|it|that lane|this lane|the place|the spot|the gap";
+    const THERE: &str = "at the same place|in the same place|at the same spot|in the same spot|at that place|at that spot|there|in its place|instead|\
+        at the same position|in the same position|exactly there|where it was|where it stood";
+    rewritten(&tokens, |i, out| {
+        let linked =
+            i > 2 && (is(tokens.get(i - 1), &["and", "then"]) || tokens[i - 1].kind == TokenKind::Comma);
+        let removed =
+            (0..out.len()).any(|k| removes(out.get(k)) || is(out.get(k), &["dismantle", "gone", "away"]));
+        let verb = begins(&tokens[i..], CLOSES).filter(|_| linked && removed && has_noun(out))?;
+        let place = begins(tokens.get(i + verb..)?, PLACES)?;
+        let with = i + verb + place;
+        is(tokens.get(with), &["with", "using", "by"]).then_some(())?;
+        let what = &tokens[with + 1..];
+        let (_, b) = first_noun(what).filter(|x| x.0 < 4)?;
+        (what.first()?.kind != TokenKind::Word
+            || number(&what[0]).is_some()
+            || is(what.first(), &["a", "an", "some"]))
+        .then_some(())?;
+        out.extend(led("put", &tokens[i], &[&what[..b]]));
+        let end = with + 1 + b;
+        let there = begins(&tokens[end..], THERE);
+        let it = is(tokens.get(i + verb), &["it"]) || text(&tokens[with - 1]) != "lane" && there.is_some();
+        if there.is_some() || it {
+            out.extend(led("in the same place", &tokens[i], &[]));
+        } else {
+            out.extend(led("in", &tokens[i], &[&tokens[i + verb..with]]));
+        }
+        Some(end + there.unwrap_or(0))
+    })
 }

@@ -375,7 +375,11 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         )
         .unwrap_or(0);
         let end = i + n + 1 + of;
-        (text(few) != "a" && tokens.get(end).is_none_or(links)).then_some((i, end))
+        // ("two cars rather than one have to be in the left lane")
+        let goes_on = tokens
+            .get(end)
+            .is_none_or(|t| links(t) || super::lists::HELPERS.contains(&text(t)));
+        (text(few) != "a" && goes_on).then_some((i, end))
     });
     let Some((i, end)) = found.filter(|_| prefers) else {
         return tokens;
@@ -394,11 +398,38 @@ pub(super) fn rather_than(tokens: Vec<Token>) -> Vec<Token> {
         .filter(|t| !plain_verb(t))
         .cloned()
         .collect();
+    // "behind us there have to be two rather than one": two there
+    let lead = &tokens[from..many];
+    let verb = lead
+        .iter()
+        .position(|t| plain_verb(t) || is(Some(t), &["there", "i", "we", "id", "wed"]))
+        .unwrap_or(lead.len());
+    let place = if is_place(&lead[..verb]) {
+        &lead[..verb]
+    } else {
+        &[]
+    };
+    let helped = tokens[end..].iter().take_while(|t| plain_verb(t)).count();
+    // ("... should ride behind us")
+    let rides = tokens
+        .get(end + helped)
+        .is_some_and(|t| helped > 0 && super::words::is_finite(text(t), true));
+    let end = end + helped + usize::from(rides && is_place(&tokens[end + helped + 1..]));
+    // ("... should follow us")
+    let after = leads(
+        &tokens[end..],
+        &["follow us", "follow me", "following us", "following me"],
+    );
+    let behind = led("behind us", &tokens[from], &[]);
+    let (end, place) = match after {
+        Some(n) => (end + n, &behind[..]),
+        None => (end, place),
+    };
     let mut out = tokens[..from].to_vec();
     out.extend(led(
         "keep exactly",
         &tokens[from],
-        &[&tokens[many..=many], &np, &tokens[end..]],
+        &[&tokens[many..=many], &np, place, &tokens[end..]],
     ));
     out
 }
