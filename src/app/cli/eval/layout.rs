@@ -80,6 +80,7 @@ const SETS: &[(&str, &str)] = sets![
     "exam_9.jsonl",
     "exam_10.jsonl",
     "exam_11.jsonl",
+    "exam_12.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",
     "strangers_34.jsonl",

@@ -59,9 +59,18 @@ impl Parser<'_> {
             self.last.clear();
             self.list.clear();
         }
+        // ("the ego vehicle in the middle lane: ..." says where we are)
+        let ours = self.items[..self.at.min(self.items.len())]
+            .iter()
+            .rev()
+            .take_while(|n| !matches!(n.tag, Tag::Stop | Tag::Comma))
+            .any(|n| matches!(n.tag, Tag::Is(Sense::Ego)));
         // "Left pavement: two ladies."
         if let Some((anchor, span)) = self.topic.filter(|_| {
-            self.head.is_empty() && self.pending.is_none() && (listed || self.noun_ahead(self.at + 1))
+            !ours
+                && self.head.is_empty()
+                && self.pending.is_none()
+                && (listed || self.noun_ahead(self.at + 1))
         }) && matches!(anchor, Anchor::Lane(_))
             && !matches!(anchor, Anchor::Lane(crate::scene::graph::LaneRole::Road))
         {
