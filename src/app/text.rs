@@ -11,7 +11,7 @@ use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
 use crate::generation::text::{self};
 use crate::generation::world::World;
 use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Frame, Scene, SensorRig};
+use crate::scene::{Frame, Polyline, PolylineKind, Scene, SensorRig};
 
 /// A scene made from a description.
 pub struct Made {
@@ -106,6 +106,12 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
         TextEdit::Label { id, label } => vec![Edit::LabelBox {
             id: *id,
             label: *label,
+        }],
+        TextEdit::Crossing { outline_m } => vec![Edit::AddPolylines {
+            lines: vec![Polyline {
+                kind: PolylineKind::PedCrossing,
+                points_m: outline_m.clone(),
+            }],
         }],
         TextEdit::Style { prompt } => vec![Edit::SetPrompt {
             prompt: prompt.clone(),

@@ -58,6 +58,11 @@ pub enum TextEdit {
         /// Its name and paint from now on.
         label: BoxLabel,
     },
+    /// Paints a pedestrian crossing.
+    Crossing {
+        /// Its corners, m.
+        outline_m: Vec<DVec2>,
+    },
     /// Sets the text that describes the style.
     Style {
         /// `night, rain`.
@@ -131,7 +136,13 @@ pub(super) struct Editor<'a> {
 }
 
 /// Reads an edit text for a scene. Commands are carried out one after another, each on what the one before left.
+/// Where it needs a crossing that the map does not have, one is put in.
 pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
+    super::edit_crossing::with_crossing(text, scene, |scene| read_on(text, scene, seed))
+        .unwrap_or_else(|| read_on(text, scene, seed))
+}
+
+fn read_on(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     let mut editor = Editor {
         map: LaneMap::new(scene.layout),
         layout: scene.layout,
@@ -269,6 +280,7 @@ impl Editor<'_> {
                 }
             }
             TextEdit::Style { prompt } => self.style.clone_from(prompt),
+            TextEdit::Crossing { .. } => {}
         }
         self.out.edits.push(edit);
     }

@@ -13,6 +13,7 @@ pub mod description;
 pub mod edit;
 mod edit_command;
 mod edit_count;
+mod edit_crossing;
 mod edit_grammar;
 mod edit_move;
 mod edit_moving;

@@ -36,7 +36,7 @@ fn changes(text: &str) -> (Vec<Class>, Vec<Class>, usize, EditReading) {
                 after.insert(*id, *object);
             }
             TextEdit::Move { id, .. } => moved.push(*id),
-            TextEdit::Style { .. } | TextEdit::Label { .. } => {}
+            TextEdit::Style { .. } | TextEdit::Label { .. } | TextEdit::Crossing { .. } => {}
         }
     }
     moved.sort_unstable();
