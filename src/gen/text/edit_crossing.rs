@@ -46,11 +46,18 @@ pub(super) fn with_crossing(
         return None;
     }
     let boxes: Vec<SceneBox> = scene.boxes.values().copied().collect();
+    // (over the parking strips too, to the sidewalks, unless somebody is parked there)
+    let road = BevLayer::DrivableArea.bit();
+    let kerb_to_kerb = road | BevLayer::CarparkArea.bit();
+    let at = |m: f64| {
+        let wide = outline(&map, m, kerb_to_kerb).filter(|o| is_free(o, &boxes));
+        wide.or_else(|| outline(&map, m, road))
+    };
     let (ahead_m, outline_m) = match spoken.ahead_m {
-        Some(m) => (m, outline(&map, m)?),
+        Some(m) => (m, at(m)?),
         None => TRIED_M.iter().find_map(|m| {
-            let outline = outline(&map, *m)?;
-            is_free(&outline, &boxes).then_some((*m, outline))
+            let outline = at(*m).filter(|o| is_free(o, &boxes))?;
+            Some((*m, outline))
         })?,
     };
     let line = Polyline {
@@ -79,15 +86,14 @@ pub(super) fn with_crossing(
         .notes
         .retain(|n| !(n.contains("was not understood") && about(n)));
     let side = if ahead_m < 0.0 { "behind" } else { "ahead" };
-    reading.notes.push(format!(
-        "{}a crossing is put in {:.0} m {side}",
-        if map.crossings.is_empty() {
-            "the scene had none: "
-        } else {
-            ""
-        },
-        ahead_m.abs()
-    ));
+    let what = if map.crossings.is_empty() {
+        "the scene had no crossing: one is put in"
+    } else {
+        "a crossing is put in"
+    };
+    reading
+        .notes
+        .push(format!("{what}, {:.0} m {side}", ahead_m.abs()));
     Some(reading)
 }
 
@@ -171,10 +177,9 @@ fn spoken(text: &str) -> Option<Spoken> {
     })
 }
 
-/// The outline of a crossing over the whole road at a distance ahead along our course, m; `None` where there is no road of
-/// a fitting width, or a junction.
-fn outline(map: &LaneMap<'_>, ahead_m: f64) -> Option<Vec<DVec2>> {
-    let road = BevLayer::DrivableArea.bit();
+/// The outline of a crossing over all that is of the layers `road`, at a distance ahead along our course, m; `None` where it
+/// is not of a fitting width, or a junction.
+fn outline(map: &LaneMap<'_>, ahead_m: f64, road: u32) -> Option<Vec<DVec2>> {
     let near = |p: DVec2| map.course(p).is_some_and(|c| (c.0 - ahead_m).abs() < 0.75);
     let (p, d) = map.ego_path.iter().copied().find(|(p, _)| near(*p))?;
     if map.junction.is_some_and(|j| j.distance(p) < JUNCTION_M) || p.abs().max_element() > 37.0 {
