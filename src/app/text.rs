@@ -5,13 +5,13 @@ use std::sync::Arc;
 use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
-use crate::editor::Edit;
+use crate::editor::{Edit, Shape};
 use crate::generation::text::description::{Description, Reading};
 use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
 use crate::generation::text::{self};
 use crate::generation::world::World;
 use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Frame, Polyline, PolylineKind, Scene, SensorRig};
+use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene, SensorRig};
 
 /// A scene made from a description.
 pub struct Made {
@@ -112,6 +112,13 @@ pub fn edits(edit: &TextEdit) -> Vec<Edit> {
                 kind: PolylineKind::PedCrossing,
                 points_m: outline_m.clone(),
             }],
+        }],
+        TextEdit::EraseCrossing { outline_m } => vec![Edit::PaintBev {
+            layer: BevLayer::PedCrossing,
+            shape: Shape::Polygon {
+                points_m: outline_m.clone(),
+            },
+            value: false,
         }],
         TextEdit::Style { prompt } => vec![Edit::SetPrompt {
             prompt: prompt.clone(),

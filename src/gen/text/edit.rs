@@ -63,6 +63,11 @@ pub enum TextEdit {
         /// Its corners, m.
         outline_m: Vec<DVec2>,
     },
+    /// Takes a pedestrian crossing away.
+    EraseCrossing {
+        /// Its corners, m.
+        outline_m: Vec<DVec2>,
+    },
     /// Sets the text that describes the style.
     Style {
         /// `night, rain`.
@@ -138,8 +143,13 @@ pub(super) struct Editor<'a> {
 /// Reads an edit text for a scene. Commands are carried out one after another, each on what the one before left.
 /// Where it needs a crossing that the map does not have, one is put in.
 pub fn read_edit(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
-    super::edit_crossing::with_crossing(text, scene, |scene| read_on(text, scene, seed))
-        .unwrap_or_else(|| read_on(text, scene, seed))
+    super::edit_crossing::with_crossing(text, scene, |scene| read_on(text, scene, seed)).unwrap_or_else(
+        || {
+            let mut reading = read_on(text, scene, seed);
+            super::edit_crossing::without_crossing(text, scene, &mut reading);
+            reading
+        },
+    )
 }
 
 fn read_on(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
@@ -280,7 +290,7 @@ impl Editor<'_> {
                 }
             }
             TextEdit::Style { prompt } => self.style.clone_from(prompt),
-            TextEdit::Crossing { .. } => {}
+            TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => {}
         }
         self.out.edits.push(edit);
     }

@@ -1,4 +1,4 @@
-//! Edits that speak of a pedestrian crossing where the map has none: one is put in.
+//! Edits that speak of a pedestrian crossing where the map has none: one is put in. A crossing may be taken away, too.
 
 use glam::DVec2;
 
@@ -95,6 +95,42 @@ pub(super) fn with_crossing(
         .notes
         .push(format!("{what}, {:.0} m {side}", ahead_m.abs()));
     Some(reading)
+}
+
+/// "Remove the zebra crossing": the one that is meant goes, or all of them. Only where nothing else was read.
+pub(super) fn without_crossing(text: &str, scene: &OpenScene<'_>, reading: &mut EditReading) {
+    const ERASE: [&str; 8] = [
+        "remove", "delete", "erase", "scrap", "rid", "away", "ditch", "out",
+    ];
+    let words = tokens(text);
+    let items = tag(&words);
+    let said = |list: &[&str]| words.iter().any(|t| list.contains(&t.text.as_str()));
+    let things = items.iter().any(|i| matches!(i.tag, Tag::Is(Sense::Noun(..))));
+    if text.len() > LONGEST
+        || !reading.edits.is_empty()
+        || !reading.questions.is_empty()
+        || things
+        || spoken_in(&items).is_none()
+        || !said(&ERASE)
+        || said(&["not", "never", "dont", "keep"])
+    {
+        return;
+    }
+    let map = LaneMap::new(scene.layout);
+    let all = said(&["all", "both", "every", "crossings", "crosswalks", "zebras", "any"]);
+    let gone: Vec<Vec<DVec2>> = match all {
+        true => map.crossings.clone(),
+        false => map.crossing().cloned().into_iter().collect(),
+    };
+    reading.notes.clear();
+    if gone.is_empty() {
+        reading.notes.push("no crossing is in the scene".into());
+    }
+    if let Some(phrase) = reading.phrases.first_mut().filter(|_| !gone.is_empty()) {
+        phrase.meaning = format!("removed: {} changes", gone.len());
+    }
+    let erase = |outline_m| TextEdit::EraseCrossing { outline_m };
+    reading.edits.extend(gone.into_iter().map(erase));
 }
 
 /// True if metres were said where there is no crossing yet.

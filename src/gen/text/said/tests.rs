@@ -36,7 +36,10 @@ fn changes(text: &str) -> (Vec<Class>, Vec<Class>, usize, EditReading) {
                 after.insert(*id, *object);
             }
             TextEdit::Move { id, .. } => moved.push(*id),
-            TextEdit::Style { .. } | TextEdit::Label { .. } | TextEdit::Crossing { .. } => {}
+            TextEdit::Style { .. }
+            | TextEdit::Label { .. }
+            | TextEdit::Crossing { .. }
+            | TextEdit::EraseCrossing { .. } => {}
         }
     }
     moved.sort_unstable();

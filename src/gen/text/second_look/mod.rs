@@ -123,6 +123,6 @@ fn touched_by(edit: &TextEdit) -> Option<BoxId> {
     match edit {
         TextEdit::Add { object } | TextEdit::Replace { object, .. } => Some(object.id),
         TextEdit::Remove { id } | TextEdit::Move { id, .. } | TextEdit::Label { id, .. } => Some(*id),
-        TextEdit::Style { .. } | TextEdit::Crossing { .. } => None,
+        TextEdit::Style { .. } | TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => None,
     }
 }
