@@ -7,7 +7,7 @@ use super::holds::{Target, holds, overlap_m};
 use super::lanes::LaneMap;
 use super::lexicon::Sense;
 use super::tag::{Item, Tag, tag};
-use super::tokens::{LONGEST, tokens};
+use super::tokens::{LONGEST, Token, TokenKind, tokens};
 use crate::scene::graph::RelationKind;
 use crate::scene::raster::draw_polyline;
 use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Polyline, PolylineKind, SceneBox};
@@ -42,7 +42,8 @@ pub(super) fn with_crossing(
         return None;
     }
     let spoken = spoken(text)?;
-    if !map.crossings.is_empty() && !(spoken.ordered && is_elsewhere(&map, spoken.ahead_m)) {
+    let wanted = map.crossings.is_empty() || spoken.ordered && is_elsewhere(&map, spoken.ahead_m);
+    if !wanted {
         return None;
     }
     let boxes: Vec<SceneBox> = scene.boxes.values().copied().collect();
@@ -167,11 +168,24 @@ fn spoken(text: &str) -> Option<Spoken> {
     let words = tokens(text);
     let items = tag(&words);
     let at = spoken_in(&items)?;
-    let said = |list: &[&str]| words.iter().any(|t| list.contains(&t.text.as_str()));
-    if said(&DENIED) {
+    let start = items[at].span.start;
+    // Denied in its own clause.
+    let parts =
+        |t: &&Token| t.kind != TokenKind::Word && !matches!(t.kind, TokenKind::Number(_)) || t.text == "and";
+    let clause = words
+        .iter()
+        .filter(|t| t.span.start < start)
+        .rev()
+        .take_while(|t| !parts(t))
+        .chain(
+            words
+                .iter()
+                .filter(|t| t.span.start >= start)
+                .take_while(|t| !parts(t)),
+        );
+    if clause.into_iter().any(|t| DENIED.contains(&t.text.as_str())) {
         return None;
     }
-    let start = items[at].span.start;
     let before: Vec<&str> = words
         .iter()
         .filter(|t| t.span.start < start)
@@ -307,10 +321,12 @@ mod tests {
     }
 
     fn painted(reading: &EditReading) -> Vec<&Vec<DVec2>> {
-        let of = |e| match e {
-            &TextEdit::Crossing { ref outline_m } => Some(outline_m),
-            _ => None,
-        };
+        fn of(e: &TextEdit) -> Option<&Vec<DVec2>> {
+            match e {
+                TextEdit::Crossing { outline_m } => Some(outline_m),
+                _ => None,
+            }
+        }
         reading.edits.iter().filter_map(of).collect()
     }
 
