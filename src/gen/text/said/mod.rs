@@ -82,6 +82,7 @@ mod small_turns;
 mod some_of;
 mod spaces;
 mod speakers;
+mod stead;
 mod splits;
 mod spoken;
 mod steps;
@@ -266,7 +267,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = testimony::plain(bystanders::plain(body.to_vec(), talk));
+    let out = stead::plain(body.to_vec(), talk);
+    let out = testimony::plain(bystanders::plain(out, talk));
     let out = fronted::plain(appended::plain(speakers::plain(out, talk), talk), talk);
     let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
