@@ -40,6 +40,7 @@ mod halves;
 mod happier;
 mod headway;
 mod idioms;
+mod in_passing;
 mod joined_by;
 mod kept;
 mod lane_of;
@@ -267,7 +268,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = stead::plain(body.to_vec(), talk);
+    let out = in_passing::plain(stead::plain(body.to_vec(), talk), talk);
     let out = testimony::plain(bystanders::plain(out, talk));
     let out = fronted::plain(appended::plain(speakers::plain(out, talk), talk), talk);
     let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
@@ -315,7 +316,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
     group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(
-        paired::joined(paired::of_two(spaces::crossed(tokens))),
+        in_passing::joined(paired::joined(paired::of_two(spaces::crossed(tokens)))),
     ))))
 }
 
