@@ -11,7 +11,7 @@ use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
     Left, Piece, Room, Talk, apart, as_orders, chosen, except, parted_at_links, plain_beside, pointed_back,
-    rejoined, room_of, said, told_once, unasked, without_asides, worded,
+    facts, rejoined, room_of, said, told_once, unasked, without_asides, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -272,7 +272,7 @@ impl<'t> Reader<'t> {
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
                         super::said::whole(super::said::cut(parted_at_links(plain_beside(
-                            super::same_words::commands(&super::common::plain(&tokens(text))),
+                            facts(super::same_words::commands(&super::common::plain(&tokens(text)))),
                         )))),
                         text,
                     ))),

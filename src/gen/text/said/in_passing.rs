@@ -11,13 +11,27 @@ use super::super::lexicon::{Sense, look_up, plural};
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let out = farther_than(hides_view(because_sky(tokens)));
-    let out = turned_and_comes(number_of(own_lane_still(out)));
+    let out = farther_than(hides_view(tokens));
+    let out = at_all(turned_and_comes(number_of(out)));
     let out = not_alone(same_again(on_each_side(out, talk), talk), talk);
     let out = extra(wrong_side(out, talk));
     none_left(&out)
         .or_else(|| of_these_only(&out, talk))
         .unwrap_or(out)
+}
+
+/// What is told beside it, before remarks are cut off.
+pub fn facts(tokens: Vec<Token>) -> Vec<Token> {
+    own_lane_still(because_sky(tokens))
+}
+
+/// "no oncoming traffic at all": none.
+fn at_all(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], "at all|whatsoever|of any kind")?;
+        let none = out.iter().any(|t| is(Some(t), &["no", "none", "nobody", "nothing"]));
+        (none && tokens.get(i + n).is_none_or(mark)).then_some(i + n)
+    })
 }
 
 /// "the bus has pulled out; it is now driving in our lane" is one sentence; "only one of the officers stays, and he stands
@@ -26,6 +40,12 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
     const SET_OFF: &str = "has pulled out|has pulled off|has set off|has driven off|has moved off|has started|has pulled away|has started moving|has started off|pulled out|set off|has left its stop|has left the stop|has left its place|has left the kerb|has left the curb|pulls out|sets off|moves off|drives off";
     let mut i = 0;
     while i < tokens.len() {
+        // ("...; same lane, same distance")
+        let again = begins(tokens.get(i + 1..).unwrap_or(&[]), "same lane|same distance|the same lane|in the same lane").is_some();
+        let lasts = tokens[i + 1..].iter().take(5).any(|t| text(t) == "distance");
+        if i > 0 && again && lasts && tokens[i].kind == TokenKind::Stop {
+            tokens[i].kind = TokenKind::Comma;
+        }
         let one = leads(&tokens[i..], &["only one of the", "just one of the", "one of the"]);
         let stays = one.and_then(|n| {
             let (a, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3)?;
@@ -307,13 +327,14 @@ fn extra(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "there isn't a single motor vehicle left": all of them go.
 fn none_left(tokens: &[Token]) -> Option<Vec<Token>> {
-    let n = leads(
-        tokens,
+    let from = tokens.iter().position(|t| text(t) == "there").filter(|k| !has_noun(&tokens[..*k]))?;
+    let n = from + leads(
+        &tokens[from..],
         &["there isnt", "there is not", "there arent", "there are not", "there shouldnt be", "there should not be", "there mustnt be", "there must not be"],
     )?;
     let n = n + leads(&tokens[n..], &["a single", "any", "one single", "one", "even a single", "a"])?;
     let np = &tokens[n..];
-    let (a, b) = first_noun(np).filter(|x| x.0 < 3)?;
+    let (_, b) = first_noun(np).filter(|x| x.0 < 3)?;
     let end = b + leads(&np[b..], &["left", "any more", "anymore", "left over", "remaining", "left in the scene", "left here"])?;
     tokens.get(n + end).is_none_or(mark).then_some(())?;
     let mut noun = np[..b].to_vec();
@@ -324,7 +345,6 @@ fn none_left(tokens: &[Token]) -> Option<Vec<Token>> {
     let rest = trimmed(&np[end..]);
     let only = is(rest.first(), &["only", "just"]);
     let rest = if only { &[][..] } else { &np[end..] };
-    let _ = a;
     Some(led("remove all", &tokens[0], &[&noun, rest]))
 }
 

@@ -131,6 +131,7 @@ use forms::{
     takes_place,
 };
 use frame::unwrapped;
+pub use in_passing::facts;
 pub use left::Left;
 pub use links::parted as parted_at_links;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};

@@ -196,7 +196,21 @@ fn rather_than(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let fresh = !is(new.first(), &["the", "more", "fewer", "less", "another"]);
     // ("a van than a bus": the bus)
     let old = &old[usize::from(is(old.first(), &["a", "an"]))..e];
-    (fits && fresh && as_it_was(&tokens[n + than + e..])).then(|| replaced(old, &new[..b], &[]))
+    let rest = trimmed(&tokens[n + than + e..]);
+    // ("and close to the digger as well": told anew)
+    let near = rest.iter().position(|t| is(Some(t), &["and"])).filter(|k| {
+        let place = &rest[k + 1..];
+        is_place(place) && has_noun(place) && as_it_was(&rest[..*k]) && is(place.last(), &["well", "too", "again"])
+    });
+    let count = talk.boxes_of(&all).len();
+    if let (Some(k), true) = (near, fits && fresh && count > 1) {
+        let end = rest.len() - if is(rest.last(), &["well"]) { 2 } else { 1 };
+        let at = &tokens[0];
+        let many = Token { kind: TokenKind::Number(count as f64), ..super::words::word(&count.to_string(), at) };
+        let add = led("and add", at, &[std::slice::from_ref(&many), &new[..b], &rest[k + 1..end]]);
+        return Some(led("remove", at, &[&all, &add]));
+    }
+    (fits && fresh && as_it_was(rest)).then(|| replaced(old, &new[..b], &[]))
 }
 
 /// "turn the snow into rain and the cyclist into a moped rider": turned is the other, too.
