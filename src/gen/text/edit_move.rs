@@ -237,16 +237,17 @@ impl Editor<'_> {
                 .relations
                 .iter()
                 .all(|r| matches!(r.relation, RelationKind::LeftOf | RelationKind::RightOf));
-            // (what never drives does not wait either)
-            let thing = matches!(b.class, Class::TrafficCone | Class::Barrier);
             spec.state = Some(if moves {
                 ObjectState::Moving
             } else if at_edge && sided && b.class.is_vehicle() {
                 ObjectState::Parked // what is parked stays so on the other side
             } else {
                 ObjectState::Waiting
-            })
-            .filter(|_| !thing);
+            });
+        }
+        // (what never drives does not wait either)
+        if matches!(b.class, Class::TrafficCone | Class::Barrier) && spec.state == Some(ObjectState::Waiting) {
+            spec.state = None;
         }
         spec.size_m = Some(b.size_m.to_array());
         spec.size = None;

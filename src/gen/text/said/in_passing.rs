@@ -2,7 +2,7 @@
 //! cars keep just the silver one", "has turned round and is riding towards us", "so that it hides the view".
 
 use super::super::tokens::{Token, TokenKind};
-use super::super::wording::{begins, rewritten};
+use super::super::wording::{begins, replaced, rewritten};
 use super::Talk;
 use super::company::mark;
 use super::lane_of::name_of;
@@ -11,13 +11,17 @@ use super::super::lexicon::{Sense, look_up, plural};
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    if std::env::var("DBG").is_ok() { eprintln!("IN {:?}", tokens.iter().map(text).collect::<Vec<_>>()); }
     let out = farther_than(hides_view(tokens));
+    let out = gives_company(driver(out, talk), talk);
     let out = at_all(turned_and_comes(number_of(out)));
     let out = not_alone(same_again(on_each_side(out, talk), talk), talk);
     let out = extra(wrong_side(out, talk));
-    none_left(&out)
+    let out = none_left(&out)
         .or_else(|| of_these_only(&out, talk))
-        .unwrap_or(out)
+        .unwrap_or(out);
+    if std::env::var("DBG").is_ok() { eprintln!("OUT {:?}", out.iter().map(text).collect::<Vec<_>>()); }
+    out
 }
 
 /// What is told beside it, before remarks are cut off.
@@ -25,8 +29,46 @@ pub fn facts(tokens: Vec<Token>) -> Vec<Token> {
     own_lane_still(because_sky(tokens))
 }
 
+/// "give the pedestrian some company: a child right beside them": a child beside the pedestrian.
+fn gives_company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    let found = (|| {
+        is(tokens.first(), &["give"]).then_some(())?;
+        let np = &tokens[1..];
+        let (_, b) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "both"]))?;
+        let np = &np[..b];
+        let rest = &tokens[1 + b..];
+        let n = leads(rest, &["some company", "company", "a bit of company", "a little company", "a companion", "some support"])?;
+        let more = &rest[n..];
+        mark(more.first()?).then_some(())?;
+        let more = &more[1..];
+        let k = more.len().checked_sub(2)?;
+        let near = is(more.get(k), &["beside", "to", "with", "near", "by"]);
+        let back = is(more.last(), &["them", "him", "her", "it"]);
+        (near && back && has_noun(&more[..k]) && talk.fits(np) > 0)
+            .then(|| led("put", &tokens[0], &[&more[..=k], np]))
+    })();
+    found.unwrap_or(tokens)
+}
+
+/// "the oncoming driver has stopped": his vehicle.
+fn driver(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = begins(&tokens[i..], "the oncoming driver|the oncoming motorist|the approaching driver|the driver coming towards us|the driver who comes towards us|the driver in the oncoming lane|the opposing driver")?;
+        let it = led("the oncoming vehicle", &tokens[i], &[]);
+        (talk.fits(&it) == 1).then(|| {
+            out.extend(it);
+            i + n
+        })
+    })
+}
+
 /// "no oncoming traffic at all": none.
 fn at_all(tokens: Vec<Token>) -> Vec<Token> {
+    let tokens = replaced(
+        &tokens,
+        "no oncoming traffic|no traffic coming towards us|no traffic in the oncoming lane|no traffic coming our way",
+        "no oncoming vehicles",
+    );
     rewritten(&tokens, |i, out| {
         let n = begins(&tokens[i..], "at all|whatsoever|of any kind")?;
         let none = out.iter().any(|t| is(Some(t), &["no", "none", "nobody", "nothing"]));
@@ -219,8 +261,8 @@ fn on_each_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let at = &tokens[0];
     let a = led("a", at, &[&new[1..e]]);
-    let left = led("to the left of", at, &[one]);
-    let right = led("to the right of", at, &[one]);
+    let left = led("2 m to the left of", at, &[one]);
+    let right = led("2 m to the right of", at, &[one]);
     led("put", at, &[&a, &left, &led("and", at, &[]), &a, &right])
 }
 
@@ -357,21 +399,25 @@ fn of_these_only(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let np = &tokens[n..];
     let (_, b) = first_noun(np).filter(|x| x.0 < 3)?;
     let rest = trimmed(&np[b..]);
-    let one = |t: &[Token]| (1..t.len().min(4)).find(|k| is(t.get(*k), &["one"]));
+    // ("the silver one", or its name in full)
+    let one = |t: &[Token]| {
+        let named = first_noun(t).filter(|x| x.0 < 4).map(|x| x.1 - 1);
+        (1..t.len().min(4)).find(|k| is(t.get(*k), &["one"])).or(named)
+    };
     let the = if let Some(k) = leads(rest, &["keep just", "keep only", "leave just", "leave only", "only keep", "just keep", "only leave", "spare only", "keep"]) {
         let the = &rest[k..];
         let e = one(the)?;
-        trimmed(&the[e + 1..]).is_empty().then_some(&the[..e])?
+        trimmed(&the[e + 1..]).is_empty().then_some(&the[..=e])?
     } else {
         let k = leads(rest, &["only", "just"])?;
         let the = &rest[k..];
         let e = one(the)?;
         let late = trimmed(&the[e + 1..]);
         let stays = ["stays", "remains", "should stay", "may stay", "is left", "should remain", "is to stay", "should be left"];
-        (leads(late, &stays)? == late.len()).then_some(&the[..e])?
+        (leads(late, &stays)? == late.len()).then_some(&the[..=e])?
     };
     is(the.first(), &["the"]).then_some(())?;
     (talk.fits(&np[..b]) > 1).then(|| {
-        led("remove all", &tokens[0], &[&np[..b], &led("but", &tokens[0], &[the, &led("one", &tokens[0], &[])])])
+        led("remove all", &tokens[0], &[&np[..b], &led("but", &tokens[0], &[the])])
     })
 }
