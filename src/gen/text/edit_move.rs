@@ -245,10 +245,6 @@ impl Editor<'_> {
                 ObjectState::Waiting
             });
         }
-        // (what never drives does not wait either)
-        if matches!(b.class, Class::TrafficCone | Class::Barrier) && spec.state == Some(ObjectState::Waiting) {
-            spec.state = None;
-        }
         spec.size_m = Some(b.size_m.to_array());
         spec.size = None;
         let gone = self.boxes.remove(&b.id);

@@ -296,6 +296,13 @@ fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let lane = is(tokens.get(i + n), &["lane"]);
         let (a, b) = first_noun(np).unwrap_or_default();
         let name = super::lane_of::name_of(&talk.boxes_of(&np[a..b]), talk);
+        // (what stands beside the road stands on the strip that is named)
+        let walk = is(tokens.get(i + n), &["sidewalk", "pavement", "footpath"]);
+        let name = name.map(|name| match name {
+            "the right roadside" if walk => "the right sidewalk",
+            "the left roadside" if walk => "the left sidewalk",
+            other => other,
+        });
         if let Some(name) = name.filter(|name| lane == name.ends_with(" lane")) {
             let at = led(if lane { "in" } else { "on" }, &tokens[i], &[]);
             return [&tokens[..i], &at, &led(name, &tokens[i], &[]), &tokens[end..]].concat();

@@ -240,7 +240,10 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             // ("a child right beside them": beside the pedestrian)
             if let Some(k) = more.len().checked_sub(1)
                 && is(more.get(k), &["them", "him", "her", "it"])
-                && is(more.get(k.wrapping_sub(1)), &["beside", "to", "with", "near", "by"])
+                && is(
+                    more.get(k.wrapping_sub(1)),
+                    &["beside", "to", "with", "near", "by"],
+                )
             {
                 return [&tokens[..i], &led("add", &tokens[i], &[&more[..k], np])].concat();
             }

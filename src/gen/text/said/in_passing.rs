@@ -1,26 +1,24 @@
 //! What is told around a change, and changes told as what has come of them: "the number of cars goes up to four", "of the
 //! cars keep just the silver one", "has turned round and is riding towards us", "so that it hides the view".
 
+use super::super::lexicon::{Sense, look_up, plural};
 use super::super::tokens::{Token, TokenKind};
 use super::super::wording::{begins, replaced, rewritten};
 use super::Talk;
 use super::company::mark;
 use super::lane_of::name_of;
 use super::words::{find, first_noun, has_noun, is, is_place, leads, led, number, text, trimmed, unit_at};
-use super::super::lexicon::{Sense, look_up, plural};
 
 /// A sentence in plainer words.
 pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    if std::env::var("DBG").is_ok() { eprintln!("IN {:?}", tokens.iter().map(text).collect::<Vec<_>>()); }
     let out = farther_than(hides_view(tokens));
-    let out = gives_company(driver(out, talk), talk);
+    let out = gives_company(stopped_for(driver(out, talk)), talk);
     let out = at_all(turned_and_comes(number_of(out)));
     let out = not_alone(same_again(on_each_side(out, talk), talk), talk);
     let out = extra(wrong_side(out, talk));
     let out = none_left(&out)
         .or_else(|| of_these_only(&out, talk))
         .unwrap_or(out);
-    if std::env::var("DBG").is_ok() { eprintln!("OUT {:?}", out.iter().map(text).collect::<Vec<_>>()); }
     out
 }
 
@@ -37,7 +35,17 @@ fn gives_company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         let (_, b) = first_noun(np).filter(|x| x.0 < 4 && is(np.first(), &["the", "that", "both"]))?;
         let np = &np[..b];
         let rest = &tokens[1 + b..];
-        let n = leads(rest, &["some company", "company", "a bit of company", "a little company", "a companion", "some support"])?;
+        let n = leads(
+            rest,
+            &[
+                "some company",
+                "company",
+                "a bit of company",
+                "a little company",
+                "a companion",
+                "some support",
+            ],
+        )?;
         let more = &rest[n..];
         mark(more.first()?).then_some(())?;
         let more = &more[1..];
@@ -53,27 +61,86 @@ fn gives_company(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "the oncoming driver has stopped": his vehicle.
 fn driver(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
-        let n = begins(&tokens[i..], "the oncoming driver|the oncoming motorist|the approaching driver|the driver coming towards us|the driver who comes towards us|the driver in the oncoming lane|the opposing driver")?;
+        let n = begins(
+            &tokens[i..],
+            "the oncoming driver|the oncoming motorist|the approaching driver|the driver coming towards us|the driver who comes towards us|the driver in the oncoming lane|the opposing driver",
+        )?;
         let it = led("the oncoming vehicle", &tokens[i], &[]);
-        (talk.fits(&it) == 1).then(|| {
-            out.extend(it);
-            i + n
+        let boxes = talk.boxes_of(&it);
+        let [b] = boxes.as_slice() else {
+            return None;
+        };
+        out.extend(led(&format!("the oncoming {}", b.class.label()), &tokens[i], &[]));
+        Some(i + n)
+    })
+}
+
+/// "has stopped at the zebra and is waiting for the woman": waits at the zebra.
+fn stopped_for(tokens: Vec<Token>) -> Vec<Token> {
+    rewritten(&tokens, |i, out| {
+        let n = begins(
+            &tokens[i..],
+            "has stopped|stopped|stops|has halted|has pulled up|has come to a halt|has come to a stop",
+        )?;
+        let at = i + n;
+        (i > 0 && is(tokens.get(at), &["at", "before", "in"])).then_some(())?;
+        let and = (at + 2..tokens.len().min(at + 7)).find(|k| is(tokens.get(*k), &["and"]))?;
+        let crossing = tokens[at..and]
+            .iter()
+            .any(|t| is(Some(t), &["zebra", "crossing", "crosswalk", "crossings"]));
+        let waits = begins(
+            &tokens[and..],
+            "and is waiting for|and waits for|and is now waiting for|and lets|and is letting|and gives way to|and is giving way to|and yields to",
+        )?;
+        let whom = &tokens[and + waits..];
+        let (_, b) =
+            first_noun(whom).filter(|x| x.0 < 4 && is(whom.first(), &["the", "both", "that", "those"]))?;
+        let end = b + leads(
+            &whom[b..],
+            &["to cross", "cross", "pass", "to pass", "go over", "go across"],
+        )
+        .unwrap_or(0);
+        (crossing && whom.get(end).is_none_or(mark)).then(|| {
+            out.extend(led("waits", &tokens[i], &[]));
+            out.extend_from_slice(&tokens[at..and]);
+            and + waits + end
         })
+    })
+}
+
+/// "no car at all": no car.
+fn without_at_all(tokens: &[Token]) -> Vec<Token> {
+    rewritten(tokens, |i, out| {
+        let n = begins(&tokens[i..], "at all|whatsoever|of any kind")?;
+        let none = out
+            .iter()
+            .any(|t| is(Some(t), &["no", "none", "nobody", "nothing"]));
+        (none && tokens.get(i + n).is_none_or(mark)).then_some(i + n)
     })
 }
 
 /// "no oncoming traffic at all": none.
 fn at_all(tokens: Vec<Token>) -> Vec<Token> {
     let tokens = replaced(
-        &tokens,
+        &without_at_all(&tokens),
         "no oncoming traffic|no traffic coming towards us|no traffic in the oncoming lane|no traffic coming our way",
         "no oncoming vehicles",
     );
-    rewritten(&tokens, |i, out| {
-        let n = begins(&tokens[i..], "at all|whatsoever|of any kind")?;
-        let none = out.iter().any(|t| is(Some(t), &["no", "none", "nobody", "nothing"]));
-        (none && tokens.get(i + n).is_none_or(mark)).then_some(i + n)
-    })
+    // ("what if there were no oncoming vehicles")
+    if let Some((i, n)) = find(
+        &tokens,
+        &[
+            "there were no oncoming vehicles",
+            "there was no oncoming vehicles",
+            "there is no oncoming vehicles",
+            "theres no oncoming vehicles",
+            "there are no oncoming vehicles",
+        ],
+    ) && !has_noun(&tokens[..i])
+    {
+        return led("remove all oncoming vehicles", &tokens[i], &[&tokens[i + n..]]);
+    }
+    tokens
 }
 
 /// "the bus has pulled out; it is now driving in our lane" is one sentence; "only one of the officers stays, and he stands
@@ -83,41 +150,69 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
     let mut i = 0;
     while i < tokens.len() {
         // ("...; same lane, same distance")
-        let again = begins(tokens.get(i + 1..).unwrap_or(&[]), "same lane|same distance|the same lane|in the same lane").is_some();
+        let again = begins(
+            tokens.get(i + 1..).unwrap_or(&[]),
+            "same lane|same distance|the same lane|in the same lane",
+        )
+        .is_some();
         let lasts = tokens[i + 1..].iter().take(5).any(|t| text(t) == "distance");
         if i > 0 && again && lasts && tokens[i].kind == TokenKind::Stop {
             tokens[i].kind = TokenKind::Comma;
         }
-        let one = leads(&tokens[i..], &["only one of the", "just one of the", "one of the"]);
+        let one = leads(
+            &tokens[i..],
+            &["only one of the", "just one of the", "one of the"],
+        );
         let stays = one.and_then(|n| {
             let (a, b) = first_noun(&tokens[i + n..]).filter(|x| x.0 < 3)?;
             let end = i + n + b;
             let verb = leads(
                 &tokens[end..],
-                &["stays", "remains", "is left", "may stay", "should stay", "is to stay", "shall stay", "stays here", "stays there"],
+                &[
+                    "stays",
+                    "remains",
+                    "is left",
+                    "may stay",
+                    "should stay",
+                    "is to stay",
+                    "shall stay",
+                    "stays here",
+                    "stays there",
+                ],
             )?;
             let comma = end + verb;
             let and = comma + usize::from(tokens.get(comma)?.kind == TokenKind::Comma);
             let he = and + usize::from(is(tokens.get(and), &["and"]));
             let said = super::words::is_finite(text(tokens.get(he + 1)?), true)
-                || is(tokens.get(he + 1), &["is", "should", "must", "has", "shall", "now"]);
+                || is(
+                    tokens.get(he + 1),
+                    &["is", "should", "must", "has", "shall", "now"],
+                );
             (he > comma && a < 3 && said && is(tokens.get(he), &["he", "she", "it"])).then_some((comma, he))
         });
         if let Some((from, to)) = stays {
-            let stop = Token { kind: TokenKind::Stop, ..super::words::word(".", &tokens[from]) };
+            let stop = Token {
+                kind: TokenKind::Stop,
+                ..super::words::word(".", &tokens[from])
+            };
             tokens.splice(from..to, [stop]);
         }
         // ("the bus": its name, then that it is off, then where it is now)
         let off = begins(&tokens[i..], SET_OFF).filter(|_| i > 0).and_then(|n| {
             let end = i + n;
-            let parted = tokens.get(end).is_some_and(|t| matches!(t.kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark));
+            let parted = tokens
+                .get(end)
+                .is_some_and(|t| matches!(t.kind, TokenKind::Stop | TokenKind::Comma | TokenKind::Mark));
             let next = end + usize::from(parted);
             let and = next + usize::from(is(tokens.get(next), &["and"]));
             let it = and + usize::from(is(tokens.get(and), &["it", "he", "she"]));
             let verb = it + usize::from(is(tokens.get(it), &["now"]));
-            let now = is(tokens.get(verb), &["is", "drives", "rides", "goes", "should", "must", "comes"]);
-            let named = first_noun(&tokens[i.saturating_sub(4)..i])
-                .is_some_and(|x| x.1 == i - i.saturating_sub(4));
+            let now = is(
+                tokens.get(verb),
+                &["is", "drives", "rides", "goes", "should", "must", "comes"],
+            );
+            let named =
+                first_noun(&tokens[i.saturating_sub(4)..i]).is_some_and(|x| x.1 == i - i.saturating_sub(4));
             (now && named && it > next).then_some(it)
         });
         if let Some(to) = off {
@@ -132,11 +227,29 @@ pub fn joined(mut tokens: Vec<Token>) -> Vec<Token> {
 fn because_sky(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
         (i > 0).then_some(())?;
-        let n = begins(&tokens[i..], "because|since|as|for|cause|seeing that|now that|given that")?;
+        let n = begins(
+            &tokens[i..],
+            "because|since|as|for|cause|seeing that|now that|given that",
+        )?;
         let fact = &tokens[i + n..];
         let k = leads(
             fact,
-            &["it is", "its", "it is now", "its now", "it has become", "it has turned", "it has got", "it became", "it got", "it is already", "its already", "the", "there is", "theres"],
+            &[
+                "it is",
+                "its",
+                "it is now",
+                "its now",
+                "it has become",
+                "it has turned",
+                "it has got",
+                "it became",
+                "it got",
+                "it is already",
+                "its already",
+                "the",
+                "there is",
+                "theres",
+            ],
         )?;
         let end = fact.iter().position(mark).unwrap_or(fact.len());
         let style = |t: &Token| matches!(look_up(text(t)), Some(Sense::Weather(_) | Sense::Time(_)));
@@ -152,10 +265,14 @@ fn because_sky(tokens: Vec<Token>) -> Vec<Token> {
 
 /// "so that it hides the view": what for.
 fn hides_view(tokens: Vec<Token>) -> Vec<Token> {
-    const HIDES: &str = "hides|blocks|obstructs|obscures|covers|takes|spoils|restricts|limits|hide|block|obstruct|cover";
+    const HIDES: &str =
+        "hides|blocks|obstructs|obscures|covers|takes|spoils|restricts|limits|hide|block|obstruct|cover";
     const VIEW: &str = "the view|our view|my view|the sight|our sight|my sight|the line of sight|our line of sight|the view of it|the view of the crossing|our view of it|our view of the crossing|the view of the sidewalk|our view of the sidewalk|the view to the right|the view to the left";
     rewritten(&tokens, |i, _| {
-        let n = begins(&tokens[i..], "so that it|so it|so that they|so they|such that it|to|so as to|in order to|which|where it|and|that")?;
+        let n = begins(
+            &tokens[i..],
+            "so that it|so it|so that they|so they|such that it|to|so as to|in order to|which|where it|and|that",
+        )?;
         let verb = i + n;
         let view = verb + begins(tokens.get(verb..)?, HIDES)?;
         let end = view + begins(tokens.get(view..)?, VIEW)?;
@@ -169,8 +286,12 @@ fn farther_than(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, out| {
         (tokens.get(i)?.kind == TokenKind::Comma).then_some(())?;
         let n = begins(&tokens[i + 1..], FAR)?;
-        let from = out.iter().rposition(|t| t.kind == TokenKind::Stop).map_or(0, |k| k + 1);
-        let measured = (from..out.len()).any(|k| number(&out[k]).is_some() && unit_at(&out[k + 1..]).is_some());
+        let from = out
+            .iter()
+            .rposition(|t| t.kind == TokenKind::Stop)
+            .map_or(0, |k| k + 1);
+        let measured =
+            (from..out.len()).any(|k| number(&out[k]).is_some() && unit_at(&out[k + 1..]).is_some());
         let (_, b) = first_noun(&tokens[i + 1 + n..]).filter(|x| x.0 < 4)?;
         let end = i + 1 + n + b;
         let end = end + leads(&tokens[end..], &["is", "does", "was", "are"]).unwrap_or(0);
@@ -183,10 +304,20 @@ fn own_lane_still(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, _| {
         let own = leads(
             tokens.get(i + 2..)?,
-            &["in its own lane", "in its lane", "in his own lane", "in her own lane", "in their own lane", "in the oncoming lane", "in our lane", "in the same lane as before"],
+            &[
+                "in its own lane",
+                "in its lane",
+                "in his own lane",
+                "in her own lane",
+                "in their own lane",
+                "in the oncoming lane",
+                "in our lane",
+                "in the same lane as before",
+            ],
         );
         let still = tokens[i].kind == TokenKind::Comma && is(tokens.get(i + 1), &["still", "but", "yet"]);
-        let placed = is(tokens.first(), &["put", "place", "move", "set"]) || (0..i).any(|k| is(tokens.get(k), &["place", "put", "set", "move"]));
+        let placed = is(tokens.first(), &["put", "place", "move", "set"])
+            || (0..i).any(|k| is(tokens.get(k), &["place", "put", "set", "move"]));
         (still && placed && own.is_some()).then_some(i + 2)
     })
 }
@@ -195,7 +326,10 @@ fn own_lane_still(tokens: Vec<Token>) -> Vec<Token> {
 fn number_of(tokens: Vec<Token>) -> Vec<Token> {
     const GOES: &str = "goes up to|rises to|grows to|increases to|climbs to|jumps to|goes down to|drops to|falls to|sinks to|shrinks to|decreases to|goes to|is now|is|becomes|should be|must be|has to be|shall be|has gone up to|has risen to|has grown to|has gone down to|has dropped to|has fallen to|is up to|is down to|should rise to|should go up to|should drop to|should go down to|is to be|needs to be|is raised to|is reduced to|has increased to|has decreased to|amounts to|comes to|changes to|is to rise to|gets up to|reaches";
     rewritten(&tokens, |i, out| {
-        let n = begins(&tokens[i..], "the number of|the count of|the total of|the total number of|number of")?;
+        let n = begins(
+            &tokens[i..],
+            "the number of|the count of|the total of|the total number of|number of",
+        )?;
         let np = &tokens[i + n..];
         let np = &np[usize::from(is(np.first(), &["the"]))..];
         let from = tokens.len() - np.len();
@@ -206,8 +340,15 @@ fn number_of(tokens: Vec<Token>) -> Vec<Token> {
         let count = goes.0 + goes.1;
         let many = np.get(count).filter(|t| number(t).is_some())?;
         let end = from + count + 1;
-        tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and", "now", "again"])).then_some(())?;
-        out.extend(led("there should be", &tokens[i], &[std::slice::from_ref(many), &np[..goes.0]]));
+        tokens
+            .get(end)
+            .is_none_or(|t| mark(t) || is(Some(t), &["and", "now", "again"]))
+            .then_some(())?;
+        out.extend(led(
+            "there should be",
+            &tokens[i],
+            &[std::slice::from_ref(many), &np[..goes.0]],
+        ));
         Some(end)
     })
 }
@@ -218,18 +359,36 @@ fn turned_and_comes(tokens: Vec<Token>) -> Vec<Token> {
     rewritten(&tokens, |i, _| {
         let n = begins(&tokens[i..], TURNED).filter(|_| i > 0)?;
         let and = i + n;
-        let is_at = and + usize::from(is(tokens.get(and), &["and"])) + usize::from(is(tokens.get(and + 1), &["now"]));
-        let comes = is(tokens.get(is_at), &["is", "comes", "rides", "drives", "are", "approaches"]);
-        let end = (is_at..tokens.len()).find(|k| mark(&tokens[*k])).unwrap_or(tokens.len());
+        let is_at =
+            and + usize::from(is(tokens.get(and), &["and"])) + usize::from(is(tokens.get(and + 1), &["now"]));
+        let comes = is(
+            tokens.get(is_at),
+            &["is", "comes", "rides", "drives", "are", "approaches"],
+        );
+        let end = (is_at..tokens.len())
+            .find(|k| mark(&tokens[*k]))
+            .unwrap_or(tokens.len());
         let lane = find(&tokens[is_at.min(end)..end], &["lane", "side of the road"]).is_some();
-        let towards = find(&tokens[is_at.min(end)..end], &["towards us", "towards me", "toward us", "toward me", "our way"]).is_some();
+        let towards = find(
+            &tokens[is_at.min(end)..end],
+            &["towards us", "towards me", "toward us", "toward me", "our way"],
+        )
+        .is_some();
         (is_at > and && comes && towards && lane).then_some(is_at)
     })
 }
 
 /// "on each side of the barrier there must be one cone": one to its left and one to its right.
 fn on_each_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    const EACH: &[&str] = &["on each side of", "on either side of", "on both sides of", "to each side of", "to either side of", "to both sides of", "at each side of"];
+    const EACH: &[&str] = &[
+        "on each side of",
+        "on either side of",
+        "on both sides of",
+        "to each side of",
+        "to either side of",
+        "to both sides of",
+        "at each side of",
+    ];
     let Some((i, n)) = find(&tokens, EACH) else {
         return tokens;
     };
@@ -239,11 +398,36 @@ fn on_each_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     };
     let one = &rest[..b];
     let single = talk.fits(one) == 1;
-    const ASKS: &[&str] = &["there must be", "there should be", "there is", "there has to be", "put", "place", "add", "i want", "there shall be", "set", "i need", "there stands"];
+    const ASKS: &[&str] = &[
+        "there must be",
+        "there should be",
+        "there is",
+        "there has to be",
+        "put",
+        "place",
+        "add",
+        "i want",
+        "there shall be",
+        "set",
+        "i need",
+        "there stands",
+    ];
     let close = |part: &[Token]| {
         let part = trimmed(part);
         part.is_empty()
-            || leads(part, &["close beside it", "close to it", "right beside it", "right next to it", "beside it", "next to it", "close by", "near it"]) == Some(part.len())
+            || leads(
+                part,
+                &[
+                    "close beside it",
+                    "close to it",
+                    "right beside it",
+                    "right next to it",
+                    "beside it",
+                    "next to it",
+                    "close by",
+                    "near it",
+                ],
+            ) == Some(part.len())
     };
     let new = if i == 0 {
         let asks = leads(trimmed(&rest[b..]), ASKS).map(|n| &trimmed(&rest[b..])[n..]);
@@ -261,14 +445,17 @@ fn on_each_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     }
     let at = &tokens[0];
     let a = led("a", at, &[&new[1..e]]);
-    let left = led("2 m to the left of", at, &[one]);
-    let right = led("2 m to the right of", at, &[one]);
+    let left = led("right next to", at, &[one, &led("on its left", at, &[])]);
+    let right = led("right next to", at, &[one, &led("on its right", at, &[])]);
     led("put", at, &[&a, &left, &led("and", at, &[]), &a, &right])
 }
 
 /// "the bus ought to be behind us; same lane, same distance": as far, and in that lane.
 fn same_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
-    let Some((i, n)) = find(&tokens, &["same distance", "the same distance", "at the same distance"]) else {
+    let Some((i, n)) = find(
+        &tokens,
+        &["same distance", "the same distance", "at the same distance"],
+    ) else {
         return tokens;
     };
     let mut end = i + n;
@@ -285,14 +472,28 @@ fn same_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
         }
     }
     let late = trimmed(&tokens[end..]);
-    if leads(late, &["same lane", "the same lane", "in the same lane"]) == Some(late.len()) && !late.is_empty() {
+    if leads(late, &["same lane", "the same lane", "in the same lane"]) == Some(late.len())
+        && !late.is_empty()
+    {
         lane = true;
         end = tokens.len();
     }
     let body = &tokens[..from];
     let told = (|| {
         let (_, b) = first_noun(body).filter(|x| x.0 < 4 && is(body.first(), &["the", "that", "my"]))?;
-        let at = find(&body[b..], &["behind us", "behind me", "in front of us", "ahead of us", "in front of me", "ahead of me", "to our left", "to our right"])?;
+        let at = find(
+            &body[b..],
+            &[
+                "behind us",
+                "behind me",
+                "in front of us",
+                "ahead of us",
+                "in front of me",
+                "ahead of me",
+                "to our left",
+                "to our right",
+            ],
+        )?;
         let not = body[b..b + at.0].iter().any(|t| is(Some(t), &["not"]));
         let metres = talk.range(&body[..b]).filter(|_| !not)?;
         let name = name_of(&talk.boxes_of(&body[..b]), talk).filter(|_| lane);
@@ -301,12 +502,19 @@ fn same_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     match told.filter(|_| lane && trimmed(&tokens[end..]).is_empty()) {
         Some((a, b, metres, name)) => {
             let at = &tokens[a];
-            let count = Token { kind: TokenKind::Number(metres), ..super::words::word(&format!("{metres}"), at) };
+            let count = Token {
+                kind: TokenKind::Number(metres),
+                ..super::words::word(&format!("{metres}"), at)
+            };
             let mut out = body[..a].to_vec();
             out.push(count);
             out.extend(led("m", at, &[&body[a..b]]));
             if let Some(name) = name {
-                out.extend(led(&format!("{} {name}", if name.ends_with("lane") { "in" } else { "on" }), at, &[]));
+                out.extend(led(
+                    &format!("{} {name}", if name.ends_with("lane") { "in" } else { "on" }),
+                    at,
+                    &[],
+                ));
             }
             out
         }
@@ -317,16 +525,65 @@ fn same_again(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "the child shouldn't be alone, put its mother next to it": next to the child.
 fn not_alone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (|| {
-        let (_, b) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "that", "this"]))?;
+        let (_, b) =
+            first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "that", "this"]))?;
         let n = b + leads(
             &tokens[b..],
-            &["shouldnt", "should not", "mustnt", "must not", "cant", "cannot", "isnt to", "is not to", "oughtnt to", "ought not to", "shall not", "doesnt want to", "needs not", "isnt", "is not", "shouldnt have to"],
+            &[
+                "shouldnt",
+                "should not",
+                "mustnt",
+                "must not",
+                "cant",
+                "cannot",
+                "isnt to",
+                "is not to",
+                "oughtnt to",
+                "ought not to",
+                "shall not",
+                "doesnt want to",
+                "needs not",
+                "isnt",
+                "is not",
+                "shouldnt have to",
+            ],
         )?;
-        let alone = n + leads(&tokens[n..], &["be alone", "be all alone", "stand alone", "stand there alone", "be here alone", "stand all alone", "wait alone", "be left alone", "stand around alone", "be on its own", "be on his own", "be on her own", "walk alone", "stay alone", "be out alone", "be there alone"])?;
+        let alone = n + leads(
+            &tokens[n..],
+            &[
+                "be alone",
+                "be all alone",
+                "stand alone",
+                "stand there alone",
+                "be here alone",
+                "stand all alone",
+                "wait alone",
+                "be left alone",
+                "stand around alone",
+                "be on its own",
+                "be on his own",
+                "be on her own",
+                "walk alone",
+                "stay alone",
+                "be out alone",
+                "be there alone",
+            ],
+        )?;
         let rest = trimmed(&tokens[alone..]);
-        let rest = if rest.first().is_some_and(|t| t.kind == TokenKind::Mark) { &rest[1..] } else { rest };
-        let it = rest.iter().rposition(|t| is(Some(t), &["it", "him", "her", "them"]))?;
-        let verb = is(rest.first(), &["put", "add", "place", "let", "have", "give", "set", "send", "bring"]);
+        let rest = if rest.first().is_some_and(|t| t.kind == TokenKind::Mark) {
+            &rest[1..]
+        } else {
+            rest
+        };
+        let it = rest
+            .iter()
+            .rposition(|t| is(Some(t), &["it", "him", "her", "them"]))?;
+        let verb = is(
+            rest.first(),
+            &[
+                "put", "add", "place", "let", "have", "give", "set", "send", "bring",
+            ],
+        );
         let near = it > 1 && is(rest.get(it - 1), &["to", "beside", "with", "near", "by"]);
         (verb && near && has_noun(&rest[..it]) && talk.fits(&tokens[..b]) > 0)
             .then(|| [&rest[..it], &tokens[..b], &rest[it + 1..]].concat())
@@ -338,15 +595,69 @@ fn not_alone(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 fn wrong_side(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     let found = (|| {
         let (_, b) = first_noun(&tokens).filter(|x| x.0 < 4 && is(tokens.first(), &["the", "that", "my"]))?;
-        let n = b + leads(&tokens[b..], &["was parked", "is parked", "has been parked", "is standing", "stands", "was standing", "had been parked", "has parked", "parked"])?;
-        let wrong = n + leads(&tokens[n..], &["on the wrong side of the road", "on the wrong side of the street", "on the wrong side", "at the wrong edge of the road", "at the wrong kerb", "on the wrong edge of the road"])?;
+        let n = b + leads(
+            &tokens[b..],
+            &[
+                "was parked",
+                "is parked",
+                "has been parked",
+                "is standing",
+                "stands",
+                "was standing",
+                "had been parked",
+                "has parked",
+                "parked",
+            ],
+        )?;
+        let wrong = n + leads(
+            &tokens[n..],
+            &[
+                "on the wrong side of the road",
+                "on the wrong side of the street",
+                "on the wrong side",
+                "at the wrong edge of the road",
+                "at the wrong kerb",
+                "on the wrong edge of the road",
+            ],
+        )?;
         let next = trimmed(&tokens[wrong..]);
-        let next = &next[usize::from(is(next.first(), &[":"]) || next.first().is_some_and(|t| t.kind == TokenKind::Mark))..];
-        let verb = leads(next, &["it belongs", "it should be", "it must be", "it has to be", "it should stand", "it should be parked", "it has to stand", "it needs to be", "it goes", "it ought to be"])?;
-        let side = verb + leads(&next[verb..], &["on the left", "on the right", "to the left", "to the right", "on the left one", "on the right one"])?;
+        let next = &next[usize::from(
+            is(next.first(), &[":"]) || next.first().is_some_and(|t| t.kind == TokenKind::Mark),
+        )..];
+        let verb = leads(
+            next,
+            &[
+                "it belongs",
+                "it should be",
+                "it must be",
+                "it has to be",
+                "it should stand",
+                "it should be parked",
+                "it has to stand",
+                "it needs to be",
+                "it goes",
+                "it ought to be",
+            ],
+        )?;
+        let side = verb
+            + leads(
+                &next[verb..],
+                &[
+                    "on the left",
+                    "on the right",
+                    "to the left",
+                    "to the right",
+                    "on the left one",
+                    "on the right one",
+                ],
+            )?;
         let left = next[verb..side].iter().any(|t| text(t) == "left");
         (trimmed(&next[side..]).is_empty() && talk.fits(&tokens[..b]) > 0).then(|| {
-            let goal = if left { "belongs on the left side of the road" } else { "belongs on the right side of the road" };
+            let goal = if left {
+                "belongs on the left side of the road"
+            } else {
+                "belongs on the right side of the road"
+            };
             [&tokens[..b], &led(goal, &tokens[b], &[])[..]].concat()
         })
     })();
@@ -358,26 +669,60 @@ fn extra(tokens: Vec<Token>) -> Vec<Token> {
     let counted = tokens.first().is_some_and(|t| number(t).is_some());
     let more = is(tokens.get(1), &["extra", "additional", "further", "more", "new"]);
     let named = first_noun(&tokens).is_some_and(|x| x.0 < 4);
-    let shared = find(&tokens, &["one ahead", "one behind", "one in front", "one on", "one in"]).is_some();
+    let shared = find(
+        &tokens,
+        &["one ahead", "one behind", "one in front", "one on", "one in"],
+    )
+    .is_some();
     if !(counted && more && named && shared) {
         return tokens;
     }
     let please = |i: usize| is(tokens.get(i), &["please"]) && tokens.get(i + 1).is_some_and(mark);
-    let rest: Vec<Token> = (2..tokens.len()).filter(|i| !please(*i)).map(|i| tokens[i].clone()).collect();
+    let rest: Vec<Token> = (2..tokens.len())
+        .filter(|i| !please(*i))
+        .map(|i| tokens[i].clone())
+        .collect();
     led("add", &tokens[0], &[&tokens[..1], &rest])
 }
 
 /// "there isn't a single motor vehicle left": all of them go.
 fn none_left(tokens: &[Token]) -> Option<Vec<Token>> {
-    let from = tokens.iter().position(|t| text(t) == "there").filter(|k| !has_noun(&tokens[..*k]))?;
-    let n = from + leads(
-        &tokens[from..],
-        &["there isnt", "there is not", "there arent", "there are not", "there shouldnt be", "there should not be", "there mustnt be", "there must not be"],
+    let from = tokens
+        .iter()
+        .position(|t| text(t) == "there")
+        .filter(|k| !has_noun(&tokens[..*k]))?;
+    let n = from
+        + leads(
+            &tokens[from..],
+            &[
+                "there isnt",
+                "there is not",
+                "there arent",
+                "there are not",
+                "there shouldnt be",
+                "there should not be",
+                "there mustnt be",
+                "there must not be",
+            ],
+        )?;
+    let n = n + leads(
+        &tokens[n..],
+        &["a single", "any", "one single", "one", "even a single", "a"],
     )?;
-    let n = n + leads(&tokens[n..], &["a single", "any", "one single", "one", "even a single", "a"])?;
     let np = &tokens[n..];
     let (_, b) = first_noun(np).filter(|x| x.0 < 3)?;
-    let end = b + leads(&np[b..], &["left", "any more", "anymore", "left over", "remaining", "left in the scene", "left here"])?;
+    let end = b + leads(
+        &np[b..],
+        &[
+            "left",
+            "any more",
+            "anymore",
+            "left over",
+            "remaining",
+            "left in the scene",
+            "left here",
+        ],
+    )?;
     tokens.get(n + end).is_none_or(mark).then_some(())?;
     let mut noun = np[..b].to_vec();
     if let Some(last) = noun.last_mut().filter(|t| !t.text.ends_with('s')) {
@@ -394,7 +739,17 @@ fn none_left(tokens: &[Token]) -> Option<Vec<Token>> {
 fn of_these_only(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let n = leads(
         tokens,
-        &["of the", "from the", "among the", "out of the", "of all the", "of all", "from among the", "of these", "of those"],
+        &[
+            "of the",
+            "from the",
+            "among the",
+            "out of the",
+            "of all the",
+            "of all",
+            "from among the",
+            "of these",
+            "of those",
+        ],
     )?;
     let np = &tokens[n..];
     let (_, b) = first_noun(np).filter(|x| x.0 < 3)?;
@@ -404,7 +759,20 @@ fn of_these_only(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let named = first_noun(t).filter(|x| x.0 < 4).map(|x| x.1 - 1);
         (1..t.len().min(4)).find(|k| is(t.get(*k), &["one"])).or(named)
     };
-    let the = if let Some(k) = leads(rest, &["keep just", "keep only", "leave just", "leave only", "only keep", "just keep", "only leave", "spare only", "keep"]) {
+    let the = if let Some(k) = leads(
+        rest,
+        &[
+            "keep just",
+            "keep only",
+            "leave just",
+            "leave only",
+            "only keep",
+            "just keep",
+            "only leave",
+            "spare only",
+            "keep",
+        ],
+    ) {
         let the = &rest[k..];
         let e = one(the)?;
         trimmed(&the[e + 1..]).is_empty().then_some(&the[..=e])?
@@ -413,11 +781,24 @@ fn of_these_only(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         let the = &rest[k..];
         let e = one(the)?;
         let late = trimmed(&the[e + 1..]);
-        let stays = ["stays", "remains", "should stay", "may stay", "is left", "should remain", "is to stay", "should be left"];
+        let stays = [
+            "stays",
+            "remains",
+            "should stay",
+            "may stay",
+            "is left",
+            "should remain",
+            "is to stay",
+            "should be left",
+        ];
         (leads(late, &stays)? == late.len()).then_some(&the[..=e])?
     };
     is(the.first(), &["the"]).then_some(())?;
     (talk.fits(&np[..b]) > 1).then(|| {
-        led("remove all", &tokens[0], &[&np[..b], &led("but", &tokens[0], &[the])])
+        led(
+            "remove all",
+            &tokens[0],
+            &[&np[..b], &led("but", &tokens[0], &[the])],
+        )
     })
 }

@@ -19,7 +19,10 @@ pub fn plain(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
 /// "replace the car with a bus".
 fn replaced(old: &[Token], new: &[Token], rest: &[Token]) -> Vec<Token> {
     let at = &old[0];
-    let the = !is(old.first(), &["the", "both", "all", "that", "those", "these", "my"]);
+    let the = !is(
+        old.first(),
+        &["the", "both", "all", "that", "those", "these", "my"],
+    );
     let old = if the { led("the", at, &[old]) } else { old.to_vec() };
     led("replace", at, &[&old, &led("with", at, &[new]), rest])
 }
@@ -66,7 +69,9 @@ fn in_and_out(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         .count();
     let new = &tokens[out + link..];
     let (_, e) = first_noun(new).filter(|x| link > 0 && x.0 < 4)?;
-    is(new.first(), &["the", "no", "both", "all"]).eq(&false).then_some(())?;
+    is(new.first(), &["the", "no", "both", "all"])
+        .eq(&false)
+        .then_some(())?;
     let late = &new[e..];
     let n = usize::from(is(late.first(), &["in"]));
     let n = n + begins(
@@ -106,8 +111,25 @@ fn where_now(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         is(
             Some(t),
             &[
-                "is", "are", "now", "right", "at", "the", "moment", "stands", "currently", "drives", "parked",
-                "standing", "driving", "was", "stood", "still", "sits", "waits", "present",
+                "is",
+                "are",
+                "now",
+                "right",
+                "at",
+                "the",
+                "moment",
+                "stands",
+                "currently",
+                "drives",
+                "parked",
+                "standing",
+                "driving",
+                "was",
+                "stood",
+                "still",
+                "sits",
+                "waits",
+                "present",
             ],
         )
     });
@@ -139,8 +161,14 @@ fn where_now(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     let (_, e) = first_noun(new).filter(|x| x.0 < 4)?;
     let fresh = is(new.first(), &["a", "an", "some"]) || super::words::number(new.first()?).is_some();
     let rest = &new[e..];
-    let rest = if is(rest.first(), &["instead"]) { &rest[1..] } else { rest };
-    let ends = rest.first().is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"]));
+    let rest = if is(rest.first(), &["instead"]) {
+        &rest[1..]
+    } else {
+        rest
+    };
+    let ends = rest
+        .first()
+        .is_none_or(|t| t.kind == TokenKind::Comma || is(Some(t), &["and"]));
     (only && fresh && ends && talk.fits(&clause[..b]) > 0).then(|| replaced(&clause[..b], &new[..e], rest))
 }
 
@@ -148,20 +176,44 @@ const FOLLOWS: &str = "follow|follows|chase|chases|tail|tails|trail|trails|pursu
 
 /// "let an ambulance chase us in place of the police car".
 fn follows_instead(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
-    let from = leads(tokens, &["let", "have", "make", "i want", "id like", "i would like"]).unwrap_or(0);
+    let from = leads(
+        tokens,
+        &["let", "have", "make", "i want", "id like", "i would like"],
+    )
+    .unwrap_or(0);
     let body = &tokens[from..];
     is(body.first(), &["a", "an"]).then_some(())?;
     let (_, b) = first_noun(body).filter(|x| x.0 < 4)?;
     let helper = leads(
         &body[b..],
-        &["is to", "should", "must", "shall", "has to", "will", "to", "ought to", "should now", "now"],
+        &[
+            "is to",
+            "should",
+            "must",
+            "shall",
+            "has to",
+            "will",
+            "to",
+            "ought to",
+            "should now",
+            "now",
+        ],
     )
     .unwrap_or(0);
     let verb = b + helper;
     let us = verb + begins(&body[verb..], FOLLOWS)?;
     is(body.get(us), &["us", "me"]).then_some(())?;
     let rest = &body[us + 1..];
-    let n = leads(rest, &["in place of", "instead of", "in lieu of", "in the place of", "rather than"])?;
+    let n = leads(
+        rest,
+        &[
+            "in place of",
+            "instead of",
+            "in lieu of",
+            "in the place of",
+            "rather than",
+        ],
+    )?;
     let old = trimmed(&rest[n..]);
     let (_, e) = first_noun(old).filter(|x| x.0 < 4)?;
     let whole = e == old.len() || is_place(&old[e..]) && !has_noun(&old[e..]);
@@ -200,14 +252,24 @@ fn rather_than(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
     // ("and close to the digger as well": told anew)
     let near = rest.iter().position(|t| is(Some(t), &["and"])).filter(|k| {
         let place = &rest[k + 1..];
-        is_place(place) && has_noun(place) && as_it_was(&rest[..*k]) && is(place.last(), &["well", "too", "again"])
+        is_place(place)
+            && has_noun(place)
+            && as_it_was(&rest[..*k])
+            && is(place.last(), &["well", "too", "again"])
     });
     let count = talk.boxes_of(&all).len();
     if let (Some(k), true) = (near, fits && fresh && count > 1) {
         let end = rest.len() - if is(rest.last(), &["well"]) { 2 } else { 1 };
         let at = &tokens[0];
-        let many = Token { kind: TokenKind::Number(count as f64), ..super::words::word(&count.to_string(), at) };
-        let add = led("and add", at, &[std::slice::from_ref(&many), &new[..b], &rest[k + 1..end]]);
+        let many = Token {
+            kind: TokenKind::Number(count as f64),
+            ..super::words::word(&count.to_string(), at)
+        };
+        let add = led(
+            "and add",
+            at,
+            &[std::slice::from_ref(&many), &new[..b], &rest[k + 1..end]],
+        );
         return Some(led("remove", at, &[&all, &add]));
     }
     (fits && fresh && as_it_was(rest)).then(|| replaced(old, &new[..b], &[]))
@@ -230,7 +292,10 @@ fn turned_both(tokens: Vec<Token>) -> Vec<Token> {
         (tokens.get(i + 1 + b)?.text == link.text).then_some(())?;
         let sky = !has_noun(&tokens[1..first.0]);
         sky.then(|| {
-            out.push(Token { kind: TokenKind::Comma, ..super::words::word(",", &tokens[i]) });
+            out.push(Token {
+                kind: TokenKind::Comma,
+                ..super::words::word(",", &tokens[i])
+            });
             out.extend(led(&tokens[0].text, &tokens[i], &[]));
             i + 1
         })

@@ -80,7 +80,9 @@ impl Trust {
                 .any(|w| list.contains(&w))
         };
         Self {
-            elsewhere: lower.contains("beyond") || lower.contains("the same ") && lower.contains(" as ") || points_back(&lower),
+            elsewhere: lower.contains("beyond")
+                || lower.contains("the same ") && lower.contains(" as ")
+                || points_back(&lower),
             plain: !any(MORE),
             denied: any(DENIES),
             adds: any(ADDS),
