@@ -237,16 +237,6 @@ fn given(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
             more
         };
         if has_noun(more) {
-            // ("a child right beside them": beside the pedestrian)
-            if let Some(k) = more.len().checked_sub(1)
-                && is(more.get(k), &["them", "him", "her", "it"])
-                && is(
-                    more.get(k.wrapping_sub(1)),
-                    &["beside", "to", "with", "near", "by"],
-                )
-            {
-                return [&tokens[..i], &led("add", &tokens[i], &[&more[..k], np])].concat();
-            }
             return [&tokens[..i], more].concat();
         }
         // "add three more": of those

@@ -13,6 +13,7 @@ mod asides;
 mod asked;
 mod bare;
 mod beside;
+mod beside_whom;
 mod brief_places;
 mod brief_turns;
 mod brief_wholes;
