@@ -10,8 +10,8 @@ use super::lanes::LaneMap;
 use super::mention::Mention;
 use super::rephrase::{Change, rephrase};
 use super::said::{
-    Left, Piece, Room, Talk, apart, as_orders, chosen, except, parted_at_links, plain_beside, pointed_back,
-    rejoined, room_of, said, told_once, unasked, without_asides, worded,
+    Left, Piece, Room, Talk, apart, as_orders, chosen, except, facts, parted_at_links, plain_beside,
+    pointed_back, rejoined, room_of, said, told_once, unasked, without_asides, worded,
 };
 use super::tag::tag;
 use super::tokens::{Span, Token, TokenKind, tokens};
@@ -271,9 +271,9 @@ impl<'t> Reader<'t> {
             tokens: unasked(as_orders(apart(unasked(as_orders(rejoined(labelled_apart(
                 super::parker::parker(
                     &told_once(without_asides(pointed_back(
-                        super::said::whole(super::said::cut(parted_at_links(plain_beside(
+                        super::said::whole(super::said::cut(parted_at_links(plain_beside(facts(
                             super::same_words::commands(&super::common::plain(&tokens(text))),
-                        )))),
+                        ))))),
                         text,
                     ))),
                     true,

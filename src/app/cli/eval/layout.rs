@@ -82,6 +82,7 @@ const SETS: &[(&str, &str)] = sets![
     "exam_11.jsonl",
     "exam_12.jsonl",
     "causes_crossing.jsonl",
+    "causes_exam12.jsonl",
     "strangers_30.jsonl",
     "causes_t.jsonl",
     "strangers_34.jsonl",

@@ -146,7 +146,7 @@ fn beside_it(tokens: Vec<Token>) -> Vec<Token> {
     tokens
 }
 
-fn mark(t: &Token) -> bool {
+pub(super) fn mark(t: &Token) -> bool {
     matches!(t.kind, TokenKind::Comma | TokenKind::Mark | TokenKind::Stop)
 }
 
@@ -292,6 +292,21 @@ fn same_place(tokens: Vec<Token>, talk: &Talk<'_>) -> Vec<Token> {
     });
     let there = first_noun(np).is_some_and(|(a, b)| talk.fits(&np[a..b]) > 0);
     if strip && more && there && tokens.get(end).is_none_or(|t| mark(t) || is(Some(t), &["and"])) {
+        // (they come where the others are, by name if these are all in one place)
+        let lane = is(tokens.get(i + n), &["lane"]);
+        let (a, b) = first_noun(np).unwrap_or_default();
+        let name = super::lane_of::name_of(&talk.boxes_of(&np[a..b]), talk);
+        // (what stands beside the road stands on the strip that is named)
+        let walk = is(tokens.get(i + n), &["sidewalk", "pavement", "footpath"]);
+        let name = name.map(|name| match name {
+            "the right roadside" if walk => "the right sidewalk",
+            "the left roadside" if walk => "the left sidewalk",
+            other => other,
+        });
+        if let Some(name) = name.filter(|name| lane == name.ends_with(" lane")) {
+            let at = led(if lane { "in" } else { "on" }, &tokens[i], &[]);
+            return [&tokens[..i], &at, &led(name, &tokens[i], &[]), &tokens[end..]].concat();
+        }
         return [&tokens[..i], &tokens[end..]].concat();
     }
     tokens

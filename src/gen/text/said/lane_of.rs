@@ -202,7 +202,7 @@ fn opposite_last(tokens: Vec<Token>) -> Vec<Token> {
 }
 
 /// The words for where all of these are, if that is one lane or strip.
-fn name_of(boxes: &[SceneBox], talk: &Talk<'_>) -> Option<&'static str> {
+pub(super) fn name_of(boxes: &[SceneBox], talk: &Talk<'_>) -> Option<&'static str> {
     let role = role_of(talk.map, boxes.first()?)?;
     let all = boxes.iter().all(|b| role_of(talk.map, b) == Some(role));
     let name = match role {

@@ -124,7 +124,7 @@ lists! {
         so as to|to make it|or else|otherwise|to let|to avoid|for whatever|like before|as before|as usual";
     /// In the place of another.
     IN_PLACE = "there instead|on its place|on their place|on his place|on her place|on the same place|in its place|in their place|in his place|in her place|in the same place|in same place|in that place|\
-        in its stead|in their stead|in his stead|in its spot|in their spot|in the same spot|at the same place|at same place|\
+        in its stead|in their stead|in his stead|in her stead|in its spot|in their spot|in the same spot|at the same place|at same place|\
         at the same spot|at the same position|at the same location|in the same position|in its position|in their position|\
         at its place|at their place|at that place|at that spot|at this place|on the same spot|on its spot|to its place|\
         to the same place|to take its place|to take their place|takes its place|take its place|takes their place|\

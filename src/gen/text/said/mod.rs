@@ -13,6 +13,7 @@ mod asides;
 mod asked;
 mod bare;
 mod beside;
+mod beside_whom;
 mod brief_places;
 mod brief_turns;
 mod brief_wholes;
@@ -40,6 +41,7 @@ mod halves;
 mod happier;
 mod headway;
 mod idioms;
+mod in_passing;
 mod joined_by;
 mod kept;
 mod lane_of;
@@ -84,6 +86,7 @@ mod spaces;
 mod speakers;
 mod splits;
 mod spoken;
+mod stead;
 mod steps;
 mod strides;
 mod strips;
@@ -129,6 +132,7 @@ use forms::{
     takes_place,
 };
 use frame::unwrapped;
+pub use in_passing::facts;
 pub use left::Left;
 pub use links::parted as parted_at_links;
 use lists::{ELSEWHERE_READ, HELPERS, NEGATED};
@@ -266,7 +270,8 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
     if body.len() > LONGEST_CHOICE {
         return sentence.to_vec();
     }
-    let out = testimony::plain(bystanders::plain(body.to_vec(), talk));
+    let out = in_passing::plain(stead::plain(body.to_vec(), talk), talk);
+    let out = testimony::plain(bystanders::plain(out, talk));
     let out = fronted::plain(appended::plain(speakers::plain(out, talk), talk), talk);
     let out = owned::plain(remarks::reported(beside::waits_for(out, talk)), talk);
     let out = clipped::plain(loose_ends::plain(out, talk), talk);
@@ -313,7 +318,7 @@ pub fn chosen(sentence: &[Token], talk: &Talk<'_>) -> Vec<Token> {
 /// Two sentences that only mean something together as one: "the car was a mistake; a bus belongs there".
 pub fn rejoined(tokens: Vec<Token>) -> Vec<Token> {
     group_sizes::joined(told_again::joined(mistaken::joined(headway::joined(
-        paired::joined(paired::of_two(spaces::crossed(tokens))),
+        in_passing::joined(paired::joined(paired::of_two(spaces::crossed(tokens)))),
     ))))
 }
 

@@ -59,7 +59,8 @@ const DENIES: &[&str] = &["was", "were", "no", "not", "never", "nobody"];
 
 /// What the words of a command allow.
 pub(super) struct Trust {
-    /// They tell where things are by pronouns, which the second reading does not know, or by "beyond".
+    /// They tell where things are by pronouns, by others ("on the same side as the others"), which the second reading does
+    /// not know, or by "beyond".
     pub elsewhere: bool,
     /// They only describe: nothing is compared, denied or told of before.
     pub plain: bool,
@@ -79,7 +80,9 @@ impl Trust {
                 .any(|w| list.contains(&w))
         };
         Self {
-            elsewhere: lower.contains("beyond") || points_back(&lower),
+            elsewhere: lower.contains("beyond")
+                || lower.contains("the same ") && lower.contains(" as ")
+                || points_back(&lower),
             plain: !any(MORE),
             denied: any(DENIES),
             adds: any(ADDS),
