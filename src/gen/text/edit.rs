@@ -194,10 +194,14 @@ fn read_on(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
         }
         editor.settle(&mut commands);
         let only = reader.ended() && done == 0 && commands.len() == 1;
-        for command in commands {
+        for (i, command) in commands.iter().enumerate() {
             if done < MOST_COMMANDS {
+                // (of the same words the last command tells whether all is done)
+                let again = commands[i + 1..]
+                    .iter()
+                    .any(|o| o.span.start < command.span.end && command.span.start < o.span.end);
                 let words = if only { text } else { command.span.of(text) };
-                editor.read_command(text, words, done, &command);
+                editor.read_command(text, (!again).then_some(words), done, command);
             }
             done += 1;
         }
@@ -210,9 +214,22 @@ fn read_on(text: &str, scene: &OpenScene<'_>, seed: u64) -> EditReading {
     editor.out
 }
 
+/// The words of a command and three more: its span may leave out some at the end.
+fn and_more(text: &str, span: Span) -> &str {
+    let rest = text.get(span.end..).unwrap_or("");
+    let more: usize = rest
+        .split_inclusive(char::is_whitespace)
+        .take(4)
+        .map(str::len)
+        .sum();
+    let stop = rest[..more].find(['.', ';', '!', '?', ',']).unwrap_or(more);
+    text.get(span.start..span.end + stop)
+        .unwrap_or_else(|| span.of(text))
+}
+
 impl Editor<'_> {
-    /// Carries out one command, looks at it again as its words stand in the text, and reports it.
-    fn read_command(&mut self, text: &str, words: &str, i: usize, command: &Command) {
+    /// Carries out one command, looks at it again as its `words` stand in the text, if any, and reports it.
+    fn read_command(&mut self, text: &str, words: Option<&str>, i: usize, command: &Command) {
         let before = self.out.edits.len();
         let asked = self.out.questions.len();
         let noted = self.out.notes.len();
@@ -223,7 +240,9 @@ impl Editor<'_> {
             before: scene,
             asked: self.out.questions.len() > asked,
         };
-        if let Some(did) = self.look_again(words, command, &done) {
+        if let Some(did) =
+            words.and_then(|words| self.look_again(words, and_more(text, command.span), command, &done))
+        {
             // (what was not clear at first is done now)
             let settled = [
                 "not everything said could be met",

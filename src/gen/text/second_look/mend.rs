@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::words::{Article, Trust, article, classes};
+use super::words::{Article, article, classes};
 use crate::generation::text::description::{Anchor, Count, Description, ObjectSpec, Stated};
 use crate::generation::text::edit::{Editor, TextEdit};
 use crate::generation::text::holds::{Target, ego, holds};
@@ -187,9 +187,6 @@ impl Editor<'_> {
         before: &BTreeMap<BoxId, SceneBox>,
     ) -> bool {
         let lower = words.to_lowercase();
-        if Trust::of(words).adds {
-            return false;
-        }
         let mut any = false;
         for spec in &d.foreground {
             let fit = classes(spec);

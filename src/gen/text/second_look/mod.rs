@@ -11,10 +11,11 @@ mod words;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::description::ObjectSpec;
+use super::description::{Anchor, ObjectSpec};
 use super::edit::{Editor, TextEdit};
 use super::edit_grammar::Command;
 use super::words::edits::Verb;
+use crate::scene::graph::RelationKind;
 use crate::scene::{BoxId, Class, SceneBox};
 use words::{Article, Trust, article, classes, is_plain};
 
@@ -29,9 +30,16 @@ pub(super) struct Done {
 }
 
 impl Editor<'_> {
-    /// Mends what a command left undone; what was done for it in a word, `None` if nothing.
-    pub(super) fn look_again(&mut self, words: &str, c: &Command, done: &Done) -> Option<&'static str> {
-        let trust = Trust::of(words);
+    /// Mends what a command left undone; what was done for it in a word, `None` if nothing. `words` are the command's, `around`
+    /// those with a few more behind them.
+    pub(super) fn look_again(
+        &mut self,
+        words: &str,
+        around: &str,
+        c: &Command,
+        done: &Done,
+    ) -> Option<&'static str> {
+        let trust = Trust::of(if around.len() > words.len() { around } else { words });
         let other_way = matches!(c.verb, Verb::Clear | Verb::Swap | Verb::Paint | Verb::Turn);
         if done.asked || other_way || trust.elsewhere {
             return None;
@@ -44,7 +52,11 @@ impl Editor<'_> {
         let added: Vec<BoxId> = edits.iter().filter_map(added_by).collect();
         let touched: Vec<BoxId> = edits.iter().filter_map(touched_by).collect();
         let mut did = None;
-        if trust.plain && c.verb == Verb::Add && self.take_back(words, &d, &added, &done.before) {
+        if trust.plain
+            && !trust.adds
+            && c.verb == Verb::Add
+            && self.take_back(words, &d, &added, &done.before)
+        {
             did = Some("moved");
         }
         for i in 0..d.foreground.len() {
@@ -82,12 +94,31 @@ impl Editor<'_> {
                 && !c.targets.iter().any(|m| m.spec.noun == spec.noun);
             let had_none = !done.before.values().any(|b| fit.contains(&b.class));
             let has_none = had_none && !self.boxes.values().any(|b| fit.contains(&b.class));
-            let new = match article(words, &spec) {
-                Article::Indefinite => passed_over && (trust.plain || had_none) || trust.plain && other_noun,
-                Article::Bare => trust.plain && passed_over && has_none,
-                Article::Definite => false,
-            };
-            let place_anew = !lacking.is_empty() && matches!(c.verb, Verb::Add | Verb::Keep | Verb::Make);
+            // (who is only told of, like a driver or an owner, stands nowhere)
+            let stands = spec.class != Class::Pedestrian
+                || spec
+                    .relations
+                    .iter()
+                    .any(|r| matches!(r.anchor, Anchor::Lane(_) | Anchor::Crossing | Anchor::Junction));
+            let new = stands
+                && match article(words, &spec) {
+                    Article::Indefinite => {
+                        passed_over && (trust.plain || had_none) || trust.plain && other_noun
+                    }
+                    Article::Bare => trust.plain && passed_over && has_none,
+                    Article::Definite => false,
+                };
+            // (of three of which two stand well, the third was only placed less well)
+            let all_lack = added.iter().filter(|id| fits(is(id))).count() == lacking.len();
+            // (who only joins others stands on their strip, which was said of them)
+            let joins = spec.relations.iter().all(|r| {
+                matches!(r.relation, RelationKind::NextTo | RelationKind::Near)
+                    && matches!(r.anchor, Anchor::Object(_))
+            });
+            let place_anew = !lacking.is_empty()
+                && all_lack
+                && !joins
+                && matches!(c.verb, Verb::Add | Verb::Keep | Verb::Make);
             if place_anew && (trust.plain || !trust.denied) {
                 if self.place_again(&d, i, &lacking) {
                     did = Some("placed anew");

@@ -23,6 +23,10 @@ const MORE: &[&str] = &[
 /// Words that bring in one more of what is there.
 const ADDS: &[&str] = &[
     "another",
+    "copy",
+    "copies",
+    "duplicate",
+    "clone",
     "more",
     "one",
     "second",
@@ -54,6 +58,19 @@ const ADDS: &[&str] = &[
     "company",
 ];
 
+/// Turns that tell of a place by what is not named there.
+const ELSEWHERE: &[&str] = &[
+    "beyond",
+    "far side",
+    "other side",
+    "'s lane",
+    "one of the",
+    "that lane",
+    "this lane",
+    "that side",
+    "idiot",
+];
+
 /// Words that deny, or tell of before.
 const DENIES: &[&str] = &["was", "were", "no", "not", "never", "nobody"];
 
@@ -80,7 +97,7 @@ impl Trust {
                 .any(|w| list.contains(&w))
         };
         Self {
-            elsewhere: lower.contains("beyond")
+            elsewhere: ELSEWHERE.iter().any(|w| lower.contains(w))
                 || lower.contains("the same ") && lower.contains(" as ")
                 || points_back(&lower),
             plain: !any(MORE),
@@ -104,12 +121,36 @@ fn points_back(lower: &str) -> bool {
         .split(|c: char| !c.is_alphanumeric())
         .filter(|w| !w.is_empty())
         .collect();
-    w.windows(2).any(|p| {
+    let leads = |w: &str| {
         matches!(
-            p[0],
-            "near" | "behind" | "beside" | "to" | "with" | "by" | "at" | "around" | "before" | "after"
-        ) && matches!(p[1], "it" | "him" | "her" | "them" | "one" | "itself")
-    })
+            w,
+            "near"
+                | "behind"
+                | "beside"
+                | "to"
+                | "with"
+                | "by"
+                | "at"
+                | "around"
+                | "before"
+                | "after"
+                | "in"
+                | "on"
+        )
+    };
+    let pronoun = |w: &str| {
+        matches!(
+            w,
+            "it" | "him" | "her" | "them" | "one" | "itself" | "his" | "its" | "their"
+        )
+    };
+    // ("add one in the oncoming lane": of a kind that was named before)
+    let alone = |p: &[&str]| {
+        matches!(p[0], "add" | "put" | "place" | "need" | "want" | "have")
+            && p[1] == "one"
+            && (leads(p[2]) || matches!(p[2], "ahead" | "next" | "between" | "there" | "here" | "please"))
+    };
+    w.windows(2).any(|p| leads(p[0]) && pronoun(p[1])) || w.windows(3).any(alone)
 }
 
 /// How an object is named in the words that it was read from.
@@ -190,5 +231,9 @@ pub(super) fn is_plain(words: &str, r: &Stated) -> bool {
                 | "their"
         );
     let halved = r.relation == RelationKind::Between && r.and.is_none();
-    !halved && !(r.anchor == Anchor::Ego && !ours && (loose || other))
+    // ("the bays are parked full" blocks nothing)
+    let blocks = ["block", "obstruct", "in the way", "middle", "bar"];
+    let idle =
+        r.relation == RelationKind::Blocking && !blocks.iter().any(|w| words.to_lowercase().contains(w));
+    !halved && !idle && !(r.anchor == Anchor::Ego && !ours && (loose || other))
 }
