@@ -346,7 +346,19 @@ impl Editor<'_> {
                         let ids: Vec<BoxId> = self
                             .boxes
                             .values()
-                            .filter(|b| in_role(&self.map, role, b.center_m.truncate()))
+                            .filter(|b| match role {
+                                // (on a narrow street whoever drives is near its edge)
+                                LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside => {
+                                    let own = super::holds::role_of(&self.map, b);
+                                    own == Some(role)
+                                        || role == LaneRole::Roadside
+                                            && matches!(
+                                                own,
+                                                Some(LaneRole::LeftRoadside | LaneRole::RightRoadside)
+                                            )
+                                }
+                                _ => in_role(&self.map, role, b.center_m.truncate()),
+                            })
                             .filter(|b| on_side(&c.text, role, b))
                             .map(|b| b.id)
                             .collect();

@@ -81,6 +81,7 @@ const SETS: &[(&str, &str)] = sets![
     "exam_10.jsonl",
     "exam_11.jsonl",
     "exam_12.jsonl",
+    "exam_13.jsonl",
     "causes_crossing.jsonl",
     "causes_exam12.jsonl",
     "strangers_30.jsonl",

@@ -60,11 +60,14 @@ impl Parser<'_> {
             self.list.clear();
         }
         // ("the ego vehicle in the middle lane: ..." says where we are)
-        let ours = self.items[..self.at.min(self.items.len())]
+        let clause = self.items[..self.at.min(self.items.len())]
             .iter()
             .rev()
-            .take_while(|n| !matches!(n.tag, Tag::Stop | Tag::Comma))
-            .any(|n| matches!(n.tag, Tag::Is(Sense::Ego)));
+            .take_while(|n| !matches!(n.tag, Tag::Stop | Tag::Comma));
+        let subject = clause
+            .filter(|n| !matches!(n.tag, Tag::Is(Sense::Article(_))))
+            .last();
+        let ours = subject.is_some_and(|n| matches!(n.tag, Tag::Is(Sense::Ego)));
         // "Left pavement: two ladies."
         if let Some((anchor, span)) = self.topic.filter(|_| {
             !ours

@@ -474,6 +474,13 @@ fn of_these_only(tokens: &[Token], talk: &Talk<'_>) -> Option<Vec<Token>> {
         ];
         (leads(late, &stays)? == late.len()).then_some(&the[..=e])?
     };
+    // ("the right-hand one" is told by its side, which is read elsewhere)
+    const SIDES: [&str; 10] = [
+        "right", "left", "hand", "front", "rear", "nearest", "nearer", "farthest", "closest", "last",
+    ];
+    if the.iter().any(|t| is(Some(t), &SIDES)) {
+        return None;
+    }
     is(the.first(), &["the"]).then_some(())?;
     (talk.fits(&np[..b]) > 1).then(|| {
         led(

@@ -127,7 +127,11 @@ impl Editor<'_> {
                 if self.add_passed_over(&d, i, wanted) {
                     did = Some("added");
                 }
-            } else if trust.plain && edits.is_empty() && article(words, &spec) == Article::Definite {
+            } else if trust.plain
+                && !trust.only
+                && edits.is_empty()
+                && article(words, &spec) == Article::Definite
+            {
                 let alone = ObjectSpec {
                     relations: Vec::new(),
                     state: None,

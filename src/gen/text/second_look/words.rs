@@ -83,6 +83,8 @@ pub(super) struct Trust {
     pub plain: bool,
     /// Something is denied.
     pub denied: bool,
+    /// Some of several are picked out.
+    pub only: bool,
     /// One more of what is there comes in.
     pub adds: bool,
 }
@@ -102,6 +104,7 @@ impl Trust {
                 || points_back(&lower),
             plain: !any(MORE),
             denied: any(DENIES),
+            only: any(&["only", "just", "keep", "except", "but"]),
             adds: any(ADDS),
         }
     }
