@@ -161,3 +161,43 @@ fn touched_by(edit: &TextEdit) -> Option<BoxId> {
         TextEdit::Style { .. } | TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::super::edit::{OpenScene, read_edit};
+    use super::*;
+    use crate::generation::world::template;
+
+    #[test]
+    fn what_is_there_moves_where_it_was_said_to_stand() {
+        let layout = template::layout("straight", 3).expect("listed");
+        let digger = SceneBox {
+            id: BoxId(1),
+            class: Class::ConstructionVehicle,
+            center_m: DVec3::new(19.5, -2.4, 1.6),
+            size_m: DVec3::new(6.0, 2.8, 3.2),
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        };
+        let boxes = BTreeMap::from([(digger.id, digger)]);
+        let scene = OpenScene {
+            boxes: &boxes,
+            layout: &layout,
+            prompt: "",
+        };
+        let text = "I want the excavator over at the left edge of the road. Its crew stays where it is.";
+        let reading = read_edit(text, &scene, 1);
+        let mut ends = None;
+        for e in &reading.edits {
+            match e {
+                TextEdit::Move { id, center_m, .. } if *id == digger.id => ends = Some(*center_m),
+                TextEdit::Replace { id, object } if *id == digger.id => ends = Some(object.center_m),
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!(ends.is_some_and(|p| p.y > 2.0), "{reading:?}");
+    }
+}
