@@ -37,11 +37,11 @@ pub(super) fn with_crossing(
     scene: &OpenScene<'_>,
     read: impl Fn(&OpenScene<'_>) -> EditReading,
 ) -> Option<EditReading> {
-    let map = LaneMap::new(scene.layout);
     if text.len() > LONGEST {
         return None;
     }
     let spoken = spoken(text)?;
+    let map = LaneMap::new(scene.layout);
     let wanted = map.crossings.is_empty() || spoken.ordered && is_elsewhere(&map, spoken.ahead_m);
     if !wanted {
         return None;

@@ -68,7 +68,6 @@ const ELSEWHERE: &[&str] = &[
     "that lane",
     "this lane",
     "that side",
-    "idiot",
 ];
 
 /// Words that deny, or tell of before.
@@ -170,6 +169,10 @@ pub(super) fn article(words: &str, spec: &ObjectSpec) -> Article {
         word(before.split_whitespace().next_back()),
     );
     let is = |list: &[&str]| list.contains(&first.as_str()) || list.contains(&last.as_str());
+    // ("some fool has left the trailer": the article next to the noun tells)
+    if own.contains(" the ") {
+        return Article::Definite;
+    }
     let of = ["of the", "of our", "of those", "of these", "of my"];
     if of
         .iter()
