@@ -9,6 +9,8 @@ use glam::DVec2;
 
 use crate::formats::opendrive::{self, RoadNetwork};
 use crate::formats::{atomic, occ3d, project};
+use crate::generation::world::scenery::{self, Setting, Side, Style};
+use crate::generation::world::terrain::Terrain;
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
 use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
@@ -188,12 +190,33 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
 
 /// A complete procedural world of a template: layout, traffic, occupancy. `None` for an unknown name.
 pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
-    let layout = template::layout(name, seed)?;
+    from_template_on(name, seed, None, Terrain::Flat)
+}
+
+/// The same in a setting (none: one that suits the road) and on a terrain.
+pub fn from_template_on(name: &str, seed: u64, setting: Option<Setting>, terrain: Terrain) -> Option<Scene> {
+    let mut layout = template::layout(name, seed)?;
+    layout.relief = terrain.relief(&layout, seed);
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
-    let world = World::new(layout, boxes, seed);
-    let occupancy = complete(&world, Vertical::Occ3d);
+    let style = match setting {
+        Some(setting) => Style::both(Side::usual(setting)),
+        None => Style::drawn(&layout, seed),
+    };
+    let background = scenery::background_of(&layout, &boxes, &style, seed);
+    let world = World::with_background(layout, boxes, background, seed);
+    let mut scene = of_world(&world, name);
+    scene.seed = seed;
+    Some(scene)
+}
+
+/// A world as a scene: every voxel of it, and its background as things.
+pub fn of_world(world: &World, name: &str) -> Scene {
+    let occupancy = complete(world, Vertical::Occ3d);
     let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
-    Some(Scene::single(name, frame, Arc::new(SensorRig::default()), seed))
+    let rig = Arc::new(SensorRig::default());
+    let mut scene = Scene::single(name, frame, rig, world.seed());
+    scene.background = Arc::new(world.background.clone());
+    scene
 }
 
 /// The files of a folder with this extension, at any depth, in the order of their names; an error if

@@ -1,7 +1,5 @@
 //! Text to scenes and edits: what the window and the command line share.
 
-use std::sync::Arc;
-
 use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
@@ -10,8 +8,7 @@ use crate::generation::text::description::{Description, Reading};
 use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
 use crate::generation::text::{self};
 use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene, SensorRig};
+use crate::scene::{BevLayer, Polyline, PolylineKind, Scene};
 
 /// A scene made from a description.
 pub struct Made {
@@ -56,9 +53,7 @@ pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Ma
 pub fn made(laid: Laid, seed: u64) -> Made {
     let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
     let world = World::new(laid.road.layout.clone(), boxes, seed);
-    let occupancy = complete(&world, Vertical::Occ3d);
-    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
-    let mut scene = Scene::single("prompt", frame, Arc::new(SensorRig::default()), seed);
+    let mut scene = crate::app::open::of_world(&world, "prompt");
     scene.prompt = laid.description.style().into();
     Made { scene, laid }
 }

@@ -3,15 +3,15 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::draft::{box_columns, ground_class};
+use crate::scene::draft::{box_columns, ground_bin, ground_class};
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::box_cells;
 use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
 
 /// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
 const MARGIN_M: f64 = 0.6;
-/// Bins in which ground classes lie in Occ3D labels.
-const GROUND_BINS: usize = 3;
+/// Bins above the ground's own in which ground classes may lie in Occ3D labels: a kerb's second bin, a bumpy verge.
+const GROUND_BINS: usize = 2;
 /// How far a column without layout looks for ground to continue, columns.
 const MAX_REACH: usize = 24;
 
@@ -37,7 +37,7 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
             let inside = GridSpec::center(x, y, z).z <= top_m;
             if inside && column[z] == class && painted[z] == NOT_PAINTED {
                 column[z] = background(frame.source.occupancy.get(x, y, z));
-                if z == 0 && column[z] == Class::FREE {
+                if z == ground_bin(&frame.layout, x, y) && column[z] == Class::FREE {
                     emptied.push([x, y]);
                 }
             }
@@ -62,7 +62,8 @@ fn background(source_label: u8) -> u8 {
 pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
     for (x, y, layers) in box_columns(b) {
         let painted = *frame.painted.column(x, y);
-        for (z, locked) in painted.iter().enumerate().take(layers) {
+        let ground = ground_bin(&frame.layout, x, y).min(layers - 1);
+        for (z, locked) in painted.iter().enumerate().take(layers).skip(ground) {
             if *locked == NOT_PAINTED {
                 frame.occupancy.set(x, y, z, b.class.id());
             }
@@ -79,23 +80,24 @@ pub(super) fn shapes_ground(layer: BevLayer) -> bool {
 }
 
 /// Gives columns whose layout has changed the ground class it now asks for. Columns in which
-/// something stands on bin 0 keep it.
+/// something stands in the ground's bin keep it.
 pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
     for &[x, y] in cells {
         let ground = ground_class(frame.layout.cell(x, y)).id();
         let painted = *frame.painted.column(x, y);
         let mut column = *frame.occupancy.column(x, y);
-        if column[0] != Class::FREE && !is_ground(column[0]) {
+        let bin = ground_bin(&frame.layout, x, y);
+        if column[bin] != Class::FREE && !is_ground(column[bin]) {
             continue;
         }
         // A kerb's second bin goes, or a road painted over a sidewalk would keep its rim.
-        for z in 1..GROUND_BINS {
+        for z in bin + 1..(bin + 1 + GROUND_BINS).min(GridSpec::NZ) {
             if is_ground(column[z]) && painted[z] == NOT_PAINTED {
                 column[z] = Class::FREE;
             }
         }
-        if painted[0] == NOT_PAINTED {
-            column[0] = ground;
+        if painted[bin] == NOT_PAINTED {
+            column[bin] = ground;
         }
         if column != *frame.occupancy.column(x, y) {
             *frame.occupancy.column_mut(x, y) = column;
@@ -103,7 +105,7 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
     }
 }
 
-/// Lays ground in bin 0 of columns that were emptied: what the layout says, else what most of the
+/// Lays ground in columns that were emptied: what the layout says, else what most of the
 /// nearest ground columns around have, else terrain.
 fn refill_ground(frame: &mut Frame, emptied: &[[usize; 2]]) {
     // Looked up before any is laid, so that the order of the columns does not matter.
@@ -118,7 +120,8 @@ fn refill_ground(frame: &mut Frame, emptied: &[[usize; 2]]) {
         })
         .collect();
     for (&[x, y], ground) in emptied.iter().zip(filled) {
-        frame.occupancy.set(x, y, 0, ground);
+        let bin = ground_bin(&frame.layout, x, y);
+        frame.occupancy.set(x, y, bin, ground);
     }
 }
 
@@ -131,7 +134,7 @@ fn nearby_ground(frame: &Frame, x: usize, y: usize) -> u8 {
             for j in ys.clone() {
                 let on_ring = i.abs_diff(x).max(j.abs_diff(y)) == reach;
                 if on_ring {
-                    let below = frame.occupancy.get(i, j, 0);
+                    let below = frame.occupancy.get(i, j, ground_bin(&frame.layout, i, j));
                     if is_ground(below) {
                         votes[below as usize] += 1;
                     }

@@ -3,12 +3,15 @@
 //! | entry | holds |
 //! |---|---|
 //! | `manifest.json` | `format`, `version`, `frames` |
-//! | `scene.json` | all but the grids: name, prompt, seed, rig, and of each frame time, pose, boxes, polylines |
+//! | `scene.json` | all but the grids: name, prompt, seed, rig, background, and of each frame time, pose, boxes, polylines |
 //! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
+//! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, 40,000 little-endian numbers in m; only if it is not flat |
 //! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
 //! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
 //! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
-//! | `frames/00000/source_layout.u32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+//! | `frames/00000/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+//!
+//! Version 2 added background and relief; files of version 1 open as scenes without either.
 
 mod archive;
 mod check;
@@ -24,8 +27,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
-    BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Scene, SceneBox, SceneRev, SensorRig,
-    SourceFrame, Unobserved, VoxelGrid, VoxelPaint, Waiver,
+    Background, BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Relief, Scene, SceneBox,
+    SceneRev, SensorRig, SourceFrame, Thing, Unobserved, VoxelGrid, VoxelPaint, Waiver,
 };
 
 use super::atomic;
@@ -33,8 +36,10 @@ use archive::{MAX_JSON, Reader, Writer, parse, within, wrong_voxels};
 use check::check;
 pub use error::ProjectError;
 
-/// Version written, and the only one read.
-pub const VERSION: u32 = 1;
+/// Version written.
+pub const VERSION: u32 = 2;
+/// Oldest version read.
+const OLDEST: u32 = 1;
 /// Frames a project may hold.
 pub const MAX_FRAMES: usize = 10_000;
 
@@ -64,6 +69,8 @@ struct SceneHeader {
     seed: u64,
     current: usize,
     rig: Arc<SensorRig>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    background: Vec<Thing>,
     frames: Vec<FrameHeader>,
 }
 
@@ -74,6 +81,9 @@ struct FrameHeader {
     world_from_ego: Pose,
     boxes: Vec<SceneBox>,
     polylines: Arc<Vec<Polyline>>,
+    /// Whether `relief.f32` is there.
+    #[serde(default, skip_serializing_if = "is_false")]
+    relief: bool,
     /// Whether `painted.u8` is there.
     painted: bool,
     #[serde(default, skip_serializing_if = "InferredHeader::is_empty")]
@@ -109,8 +119,15 @@ struct SourceHeader {
     polylines: Option<Arc<Vec<Polyline>>>,
     /// Whether `source_layout.u32` is there.
     layout: bool,
+    /// Whether `source_relief.f32` is there.
+    #[serde(default, skip_serializing_if = "is_false")]
+    relief: bool,
     /// Whether `source_occupancy.u8` is there.
     occupancy: bool,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// Writes the scene to `path`, whole or not at all; the number of bytes written.
@@ -142,12 +159,16 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
         seed: scene.seed,
         current: scene.current,
         rig: scene.rig.clone(),
+        background: scene.background.iter().cloned().collect(),
         frames: scene.frames.iter().map(|f| frame_header(f)).collect(),
     };
     out.json(SCENE, &header)?;
     for ((index, frame), header) in scene.frames.iter().enumerate().zip(&header.frames) {
         let name = |part: &str| entry_name(index, part);
         out.put(&name("layout.u32"), &layout_bytes(&frame.layout))?;
+        if header.relief {
+            out.put(&name("relief.f32"), &relief_bytes(&frame.layout.relief))?;
+        }
         out.labels(&name("occupancy.u8"), &frame.occupancy)?;
         if header.painted {
             out.labels(&name("painted.u8"), &frame.painted)?;
@@ -159,6 +180,10 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
         }
         if header.source.layout {
             out.put(&name("source_layout.u32"), &layout_bytes(&frame.source.layout))?;
+        }
+        if header.source.relief {
+            let bytes = relief_bytes(&frame.source.layout.relief);
+            out.put(&name("source_relief.f32"), &bytes)?;
         }
         if header.source.occupancy {
             out.labels(&name("source_occupancy.u8"), &frame.source.occupancy)?;
@@ -184,6 +209,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
         world_from_ego: frame.world_from_ego,
         boxes: list(&frame.boxes),
         polylines: frame.layout.polylines.clone(),
+        relief: !frame.layout.relief.is_flat(),
         painted: frame.painted.count_set() > 0,
         inferred: InferredHeader {
             layout: frame.inferred.layout,
@@ -196,6 +222,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
             polylines: (source.layout.polylines != frame.layout.polylines)
                 .then(|| source.layout.polylines.clone()),
             layout: source.layout.cells() != frame.layout.cells(),
+            relief: source.layout.relief != frame.layout.relief,
             occupancy: source.occupancy != frame.occupancy,
         },
     }
@@ -205,13 +232,29 @@ fn layout_bytes(layout: &BevLayout) -> Vec<u8> {
     layout.cells().iter().flat_map(|c| c.to_le_bytes()).collect()
 }
 
+/// Heights of all columns; zeros if flat.
+fn relief_bytes(relief: &Relief) -> Vec<u8> {
+    match relief.heights_m() {
+        Some(heights) => heights.iter().flat_map(|h| h.to_le_bytes()).collect(),
+        None => vec![0; 4 * GridSpec::COLUMNS],
+    }
+}
+
+fn read_relief<R: Read + Seek>(file: &mut Reader<R>, entry: &str) -> Result<Relief, ProjectError> {
+    let bytes = file.exactly(entry, GridSpec::COLUMNS, 4, "columns")?;
+    let heights = bytes
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    Relief::from_heights(heights.collect()).map_err(|e| ProjectError::Unsound(format!("{entry}: {e}")))
+}
+
 fn read<R: Read + Seek>(reader: R) -> Result<Scene, ProjectError> {
     let mut file = Reader::new(reader)?;
     let any: AnyManifest = parse(MANIFEST, &file.bytes(MANIFEST, MAX_JSON)?)?;
     if any.format != FORMAT {
         return Err(ProjectError::Format { found: any.format });
     }
-    if any.version != u64::from(VERSION) {
+    if !(u64::from(OLDEST)..=u64::from(VERSION)).contains(&any.version) {
         return Err(ProjectError::Version { found: any.version });
     }
     let manifest: Manifest = parse(MANIFEST, &file.bytes(MANIFEST, MAX_JSON)?)?;
@@ -229,11 +272,19 @@ fn read<R: Read + Seek>(reader: R) -> Result<Scene, ProjectError> {
         frames.push(Arc::new(read_frame(&mut file, index, frame)?));
     }
     file.expect_all_read()?;
+    let things = header.background.len();
+    let background: Background = header.background.into_iter().collect();
+    if background.len() != things {
+        return Err(ProjectError::Unsound(
+            "scene.json: two things of the background have the same id".into(),
+        ));
+    }
     let scene = Scene {
         rev: SceneRev::fresh(),
         name: header.name,
         prompt: header.prompt,
         rig: header.rig,
+        background: Arc::new(background),
         frames,
         current: header.current,
         seed: header.seed,
@@ -249,7 +300,10 @@ fn read_frame<R: Read + Seek>(
 ) -> Result<Frame, ProjectError> {
     let name = |part: &str| entry_name(index, part);
     let source = header.source;
-    let layout = file.layout(&name("layout.u32"), header.polylines)?;
+    let mut layout = file.layout(&name("layout.u32"), header.polylines)?;
+    if header.relief {
+        layout.relief = read_relief(file, &name("relief.f32"))?;
+    }
     let occupancy = file.occupancy(&name("occupancy.u8"), &VoxelGrid::new())?;
     let painted = match header.painted {
         true => {
@@ -275,13 +329,17 @@ fn read_frame<R: Read + Seek>(
         )));
     }
     let source_polylines = source.polylines.unwrap_or_else(|| layout.polylines.clone());
-    let source_layout = match source.layout {
+    let mut source_layout = match source.layout {
         true => file.layout(&name("source_layout.u32"), source_polylines)?,
         false => {
             let mut same_cells = layout.clone();
             same_cells.polylines = source_polylines;
             same_cells
         }
+    };
+    source_layout.relief = match source.relief {
+        true => read_relief(file, &name("source_relief.f32"))?,
+        false => layout.relief.clone(),
     };
     let source = SourceFrame {
         layout: source_layout,

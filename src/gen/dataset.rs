@@ -13,7 +13,7 @@ use safetensors::tensor::{Dtype, TensorView};
 
 use super::world::draw::hash;
 use super::world::voxelize::{Drive, Vertical, complete, labels};
-use super::world::{World, template, traffic};
+use super::world::{World, template, terrain::Terrain, traffic};
 use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
 /// Frames per shard.
@@ -37,7 +37,10 @@ pub struct OccupancyFrame {
 /// layout for that seed, such as a place on an imported road; where it gives none, a template does.
 pub fn world_of(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> (World, u64) {
     let seed = hash(hash(seed) ^ index);
-    let layout = roads(seed).unwrap_or_else(|| template::any_layout(seed));
+    let mut layout = roads(seed).unwrap_or_else(|| template::any_layout(seed));
+    if layout.relief.is_flat() {
+        layout.relief = Terrain::drawn(seed).relief(&layout, seed);
+    }
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
     (World::new(layout, boxes, seed), seed)
 }

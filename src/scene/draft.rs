@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::raster::box_cells;
-use super::{BevLayer, BevLayout, Class, GridSpec, SceneBox, VoxelGrid};
+use super::{BevLayer, BevLayout, Class, GridSpec, Relief, SceneBox, VoxelGrid};
 
 /// Class of the ground under a layout cell (bits of [`BevLayer`]): road and car park are driveable
 /// surface, sidewalk and crossings beside the road are sidewalk, all else is terrain.
@@ -21,8 +21,8 @@ pub fn ground_class(cell: u32) -> Class {
 }
 
 /// Columns and heights that a box occupies by the rough profile of its class, as
-/// (x, y, number of voxels from bin 0 upward), in the vertical convention of the Occ3D labels:
-/// objects reach down to bin 0, their tops stay where they are.
+/// (x, y, number of voxels from bin 0 upward; at least 1), in the vertical convention of the Occ3D labels:
+/// objects reach down to the bin of the ground, their tops stay where they are.
 pub fn box_columns(b: &SceneBox) -> Vec<(usize, usize, usize)> {
     let bottom_z = b.center_m.z - b.size_m.z / 2.0;
     let mut out = Vec::new();
@@ -50,17 +50,27 @@ pub fn box_columns(b: &SceneBox) -> Vec<(usize, usize, usize)> {
     out
 }
 
-/// The draft of a whole frame: ground in bin 0 of every column, objects in place of the ground.
+/// Bin that the ground of a layout lies in at a column, in the convention of the Occ3D labels: 0 without relief.
+pub fn ground_bin(layout: &BevLayout, x: usize, y: usize) -> usize {
+    match layout.relief.is_flat() {
+        true => 0,
+        false => Relief::label_bin(layout.relief.column_m(x, y)),
+    }
+}
+
+/// The draft of a whole frame: ground in the bin of its height in every column (bin 0 without relief), objects in place of
+/// the ground.
 pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> VoxelGrid {
     let mut grid = VoxelGrid::new();
     for x in 0..GridSpec::NX {
         for y in 0..GridSpec::NY {
-            grid.column_mut(x, y)[0] = ground_class(layout.cell(x, y)).id();
+            grid.column_mut(x, y)[ground_bin(layout, x, y)] = ground_class(layout.cell(x, y)).id();
         }
     }
     for b in boxes {
         for (x, y, layers) in box_columns(b) {
-            grid.column_mut(x, y)[..layers].fill(b.class.id());
+            let ground = ground_bin(layout, x, y).min(layers - 1);
+            grid.column_mut(x, y)[ground..layers].fill(b.class.id());
         }
     }
     grid

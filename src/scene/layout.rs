@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{BevLayer, GridSpec};
+use super::{BevLayer, GridSpec, Relief};
 
 /// What a polyline means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -39,6 +39,8 @@ pub struct BevLayout {
     cells: Arc<Vec<u32>>, // [x][y], GridSpec::COLUMNS
     /// Lane centres, dividers, stop lines and crossings.
     pub polylines: Arc<Vec<Polyline>>,
+    /// Height of the ground under it.
+    pub relief: Relief,
 }
 
 impl Default for BevLayout {
@@ -46,6 +48,7 @@ impl Default for BevLayout {
         Self {
             cells: Arc::new(vec![0; GridSpec::COLUMNS]),
             polylines: Arc::default(),
+            relief: Relief::FLAT,
         }
     }
 }
@@ -53,7 +56,7 @@ impl Default for BevLayout {
 impl BevLayout {
     const MAP_BITS: u32 = 0xff;
 
-    /// From cells `[x][y]`; bits of object layers are dropped. Errors with the length found if it is not 40,000.
+    /// From cells `[x][y]` on flat ground; bits of object layers are dropped. Errors with the length found if it is not 40,000.
     pub fn from_cells(mut cells: Vec<u32>, polylines: Vec<Polyline>) -> Result<Self, usize> {
         if cells.len() != GridSpec::COLUMNS {
             return Err(cells.len());
@@ -62,6 +65,7 @@ impl BevLayout {
         Ok(Self {
             cells: Arc::new(cells),
             polylines: Arc::new(polylines),
+            relief: Relief::FLAT,
         })
     }
 

@@ -1,11 +1,13 @@
 //! What a scene is: plain data. No window, GPU, network, thread or file is known here.
 
+pub mod background;
 pub mod box_label;
 pub mod boxes;
 pub mod classes;
 pub mod density;
 pub mod distance;
 pub mod draft;
+pub mod draw;
 pub mod footprint;
 pub mod graph;
 pub mod grid;
@@ -16,10 +18,12 @@ pub mod look;
 pub mod pose;
 pub mod raster;
 pub mod relations;
+pub mod relief;
 pub mod rig;
 pub mod rig_presets;
 pub mod road_map;
 pub mod sensor_data;
+pub mod solid;
 pub mod splats;
 pub mod variants;
 pub mod waiver;
@@ -28,6 +32,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
@@ -36,6 +41,7 @@ pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
 pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use pose::Pose;
+pub use relief::Relief;
 pub use rig::{Camera, LidarPattern, SensorRig};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 pub use waiver::Waiver;
@@ -132,6 +138,8 @@ pub struct Scene {
     pub prompt: Arc<str>,
     /// Cameras and LiDARs.
     pub rig: Arc<SensorRig>,
+    /// What stands beside the roads, in the world frame of the clip; all frames see it.
+    pub background: Arc<Background>,
     /// At least one.
     pub frames: Vec<Arc<Frame>>,
     /// Index of the frame being edited.
@@ -148,6 +156,7 @@ impl Scene {
             name: name.into(),
             prompt: "".into(),
             rig,
+            background: Arc::default(),
             frames: vec![Arc::new(frame)],
             current: 0,
             seed,

@@ -8,7 +8,9 @@ use serde_json::json;
 use super::{Common, Outcome, output};
 use crate::app::open;
 use crate::formats::project;
+use crate::generation::world::scenery::Setting;
 use crate::generation::world::template::TEMPLATES;
+use crate::generation::world::terrain::Terrain;
 use crate::scene::{Class, Scene};
 
 /// Arguments.
@@ -17,6 +19,12 @@ pub struct New {
     /// Kind of street; `list` names them all.
     #[arg(long, value_name = "NAME")]
     template: String,
+    /// What kind of place; one that suits the road if left out.
+    #[arg(long, value_enum, value_name = "NAME")]
+    setting: Option<Setting>,
+    /// The lie of the land.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "flat")]
+    terrain: Terrain,
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -49,25 +57,31 @@ impl New {
         let path = self
             .output
             .ok_or_else(|| anyhow!("-o S.loom is missing: where should the scene go?"))?;
-        let scene = open::from_template(&self.template, self.seed).ok_or_else(|| {
-            anyhow!(
-                "--template is {:?}, expected one of {}",
-                self.template,
-                TEMPLATES.join(", ")
-            )
-        })?;
+        let scene = open::from_template_on(&self.template, self.seed, self.setting, self.terrain)
+            .ok_or_else(|| {
+                anyhow!(
+                    "--template is {:?}, expected one of {}",
+                    self.template,
+                    TEMPLATES.join(", ")
+                )
+            })?;
         project::save(&path, &scene)?;
         let frame = scene.frame();
         let report = json!({
             "boxes": frame.boxes.len(),
+            "things": scene.background.len(),
             "occupied_voxels": frame.occupancy.count_set(),
             "classes": class_counts(&scene),
             "seed": self.seed,
             "file": path,
         });
         output::report(&self.common, &report, || {
-            let (boxes, voxels) = (frame.boxes.len(), frame.occupancy.count_set());
-            format!("{}: {boxes} boxes, {voxels} occupied voxels", path.display())
+            let (boxes, things) = (frame.boxes.len(), scene.background.len());
+            let voxels = frame.occupancy.count_set();
+            format!(
+                "{}: {boxes} boxes, {things} things beside the road, {voxels} occupied voxels",
+                path.display()
+            )
         });
         Ok(())
     }

@@ -27,6 +27,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
     if let Some(problem) = scene.rig.problem() {
         return unsound(format!("rig: {problem}"));
     }
+    if let Some(problem) = scene.background.problem() {
+        return unsound(problem);
+    }
     for (index, frame) in scene.frames.iter().enumerate() {
         if let Some(problem) = frame_problem(frame) {
             return unsound(format!("frame {index}: {problem}"));

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::backdrop;
 use super::lidar::direction_in_sensor;
 use crate::generation::world::draw::{Draw, hash, noise};
-use crate::generation::world::shapes::{Shape, Solid};
 use crate::generation::world::{Hit, Surface, World};
+use crate::scene::solid::{Shape, Solid};
 use crate::scene::{BevLayer, Class, GridSpec, LidarPattern};
 
 /// What became of a pulse.

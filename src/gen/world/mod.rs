@@ -1,11 +1,11 @@
 //! Procedural driving worlds on top of a layout: analytic solids, finer than voxels, from which
 //! occupancy and sensor truth are made alike.
 
-pub mod draw;
+mod ground;
 pub mod objects;
 pub mod scenery;
-pub mod shapes;
 pub mod template;
+pub mod terrain;
 pub mod traffic;
 pub mod voxelize;
 
@@ -13,9 +13,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, GridSpec, SceneBox};
-use draw::noise;
-use shapes::Solid;
+pub use crate::scene::draw;
+use crate::scene::solid::Solid;
+use crate::scene::{Background, BevLayout, BoxId, Class, SceneBox, ThingId};
+use ground::Ground;
 
 /// A point where a ray met the world.
 #[derive(Clone, Copy, Debug)]
@@ -41,23 +42,38 @@ pub struct Surface {
 
 const BIN_M: f64 = 4.0;
 const BINS: usize = 20;
+/// Instances of things of the background carry this bit, so that a bush never shares a number with a car.
+const THING_BIT: u32 = 1 << 31;
 
-/// A driving world of 80 x 80 m in the ego frame, ground at about z = 0.
+/// A driving world of 80 x 80 m in the ego frame. The ego vehicle stands at the origin, the ground there is at z = 0.
 pub struct World {
-    /// Roads and everything painted.
+    /// Roads and everything painted, and the height of the ground.
     pub layout: BevLayout,
     /// Objects.
     pub boxes: BTreeMap<BoxId, SceneBox>,
+    /// What stands beside the road.
+    pub background: Background,
     solids: Vec<Solid>,
     owners: Vec<(u32, u8)>, // instance and part of each solid
     bins: Vec<Vec<u32>>,    // [x][y] of 4 m, indices of solids that reach in
-    ground: Vec<Class>,
+    ground: Ground,
     seed: u64,
 }
 
 impl World {
-    /// Builds the world of `seed` on a layout with these boxes.
+    /// The world of `seed` on a layout with these boxes: its background is drawn from the seed.
     pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, seed: u64) -> Self {
+        let background = scenery::background(&layout, &boxes, seed);
+        Self::with_background(layout, boxes, background, seed)
+    }
+
+    /// A world of these parts; the seed draws details of objects and ground.
+    pub fn with_background(
+        layout: BevLayout,
+        boxes: BTreeMap<BoxId, SceneBox>,
+        background: Background,
+        seed: u64,
+    ) -> Self {
         let (mut solids, mut owners) = (Vec::new(), Vec::new());
         for b in boxes.values() {
             objects::object(b, seed, &mut solids);
@@ -68,24 +84,29 @@ impl World {
                     .map(|(part, _)| (instance, part as u8)),
             );
         }
-        scenery::scenery(&layout, &boxes, seed, &mut solids);
-        // Beyond any box's id, so that a bush never shares a number with a car.
-        owners.extend((owners.len()..solids.len()).map(|i| (1 << 31 | i as u32, 0)));
+        let ground = Ground::new(&layout, seed);
+        for thing in background.iter() {
+            thing.solids(&|p| ground.height_m(p), &mut solids);
+            owners.resize(solids.len(), (THING_BIT | thing.id.0, 0));
+        }
         let mut bins = vec![Vec::new(); BINS * BINS];
         let bin = |v: f64| ((v + 40.0) / BIN_M).floor();
+        let last = BINS as f64 - 1.0;
         for (i, s) in solids.iter().enumerate() {
             let (lo, hi) = (s.center - s.reach(), s.center + s.reach());
-            let last = BINS as f64 - 1.0;
-            for x in bin(lo.x).max(0.0) as usize..=bin(hi.x).clamp(-1.0, last).max(0.0) as usize {
-                for y in bin(lo.y).max(0.0) as usize..=bin(hi.y).clamp(-1.0, last).max(0.0) as usize {
+            let range = |axis: usize| {
+                (bin(lo[axis]).max(0.0) as usize)..(bin(hi[axis]).clamp(-1.0, last) + 1.0) as usize
+            };
+            for x in range(0) {
+                for y in range(1) {
                     bins[x * BINS + y].push(i as u32);
                 }
             }
         }
-        let ground = ground_classes(&layout, seed);
         Self {
             layout,
             boxes,
+            background,
             solids,
             owners,
             bins,
@@ -94,9 +115,10 @@ impl World {
         }
     }
 
-    /// The world of `seed` on a varied template with ordinary traffic.
+    /// The world of `seed` on a varied template and terrain with ordinary traffic.
     pub fn random(seed: u64) -> Self {
-        let layout = template::any_layout(seed);
+        let mut layout = template::any_layout(seed);
+        layout.relief = terrain::Terrain::drawn(seed).relief(&layout, seed);
         let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
         Self::new(layout, boxes, seed)
     }
@@ -123,36 +145,36 @@ impl World {
                 part,
             },
             None => Surface {
-                normal: DVec3::Z,
+                normal: self.layout.relief.normal(p.truncate()),
                 instance: 0,
                 part: 0,
             },
         }
     }
 
+    /// The thing of the background that an instance of a [`Surface`] is, if it is one.
+    pub fn thing_of(instance: u32) -> Option<ThingId> {
+        (instance & THING_BIT != 0).then_some(ThingId(instance & !THING_BIT))
+    }
+
     /// Class of the ground in a column.
     pub fn ground_class(&self, x: usize, y: usize) -> Class {
-        self.ground[x * GridSpec::NY + y]
+        self.ground.class(x, y)
     }
 
     /// Height of the ground at a point of the ego frame, m.
     pub fn ground_height(&self, p: DVec2) -> f64 {
-        let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
-            return 0.0;
-        };
-        match self.ground_class(x, y) {
-            Class::Sidewalk => 0.225 + 0.05 * noise(self.seed, p.x / 14.0, p.y / 14.0),
-            Class::Terrain => 0.08 + 0.1 * noise(self.seed, p.x / 9.0, p.y / 9.0),
-            Class::OtherFlat => 0.15,
-            _ => 0.0,
-        }
+        self.ground.height_m(p)
     }
 
     /// The first surface along a ray of the ego frame within `max_range_m`; `dir` is a unit vector.
     pub fn cast(&self, origin: DVec3, dir: DVec3, max_range_m: f64) -> Option<Hit> {
-        let ground = self.cast_ground(origin, dir).filter(|h| h.range_m <= max_range_m);
-        let mut best = ground.map_or(max_range_m, |h| h.range_m);
-        let mut hit = ground;
+        let flat = self
+            .ground
+            .cast_flat(origin, dir)
+            .filter(|h| h.range_m <= max_range_m);
+        let mut best = flat.map_or(max_range_m, |h| h.range_m);
+        let mut hit = flat;
         // Walk the 4 m bins under the ray; a bin's solids may be met up to the bin's far side.
         let to_bin = |v: f64| (v + 40.0) / BIN_M;
         let (mut x, mut y) = (to_bin(origin.x).floor() as i64, to_bin(origin.y).floor() as i64);
@@ -165,11 +187,13 @@ impl World {
                 (edge(cell, d) - o) * inv
             }
         };
+        let mut entered = 0.0;
         for _ in 0..2 * BINS + 2 {
             if !(0..BINS as i64).contains(&x) || !(0..BINS as i64).contains(&y) {
                 break;
             }
-            for &i in &self.bins[x as usize * BINS + y as usize] {
+            let bin = x as usize * BINS + y as usize;
+            for &i in &self.bins[bin] {
                 let s = &self.solids[i as usize];
                 if let Some(t) = s.enter(origin, dir, best)
                     && t < best
@@ -183,7 +207,15 @@ impl World {
                 }
             }
             let (tx, ty) = (next(x, origin.x, dir.x, inv.x), next(y, origin.y, dir.y, inv.y));
-            if best < tx.min(ty) {
+            let leaves = tx.min(ty).min(best);
+            if let Some(ground) = self.ground.cast_in_bin(bin, origin, dir, entered, leaves)
+                && ground.range_m < best
+            {
+                best = ground.range_m;
+                hit = Some(ground);
+            }
+            entered = tx.min(ty);
+            if best < entered {
                 break;
             }
             if tx < ty {
@@ -194,48 +226,6 @@ impl World {
         }
         hit
     }
-
-    fn cast_ground(&self, origin: DVec3, dir: DVec3) -> Option<Hit> {
-        if dir.z >= -1e-6 {
-            return None;
-        }
-        // The ground is flat to a few decimetres: two corrections of the height converge.
-        let mut t = -origin.z / dir.z;
-        for _ in 0..2 {
-            let p = origin + dir * t;
-            t = (self.ground_height(p.truncate()) - origin.z) / dir.z;
-        }
-        let p = origin + dir * t;
-        let [x, y] = GridSpec::column_at(p.x, p.y)?;
-        (t > 0.0).then(|| Hit {
-            range_m: t,
-            class: self.ground_class(x, y),
-            solid: None,
-        })
-    }
-}
-
-fn ground_classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
-    let has = |cell: u32, layer: BevLayer| cell & layer.bit() != 0;
-    let to_road = scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea));
-    let mut draw = draw::Draw::new(seed, "ground");
-    // Some verges are paved (plazas, traffic islands): "other flat" in nuScenes.
-    let paved = draw.chance(0.25);
-    let mut out = Vec::with_capacity(GridSpec::COLUMNS);
-    for (c, &cell) in layout.cells().iter().enumerate() {
-        out.push(
-            if has(cell, BevLayer::DrivableArea) || has(cell, BevLayer::CarparkArea) {
-                Class::DriveableSurface
-            } else if has(cell, BevLayer::Walkway) || has(cell, BevLayer::PedCrossing) {
-                Class::Sidewalk
-            } else if paved && to_road[c] < 8.0 {
-                Class::OtherFlat
-            } else {
-                Class::Terrain
-            },
-        );
-    }
-    out
 }
 
 #[cfg(test)]
@@ -261,7 +251,8 @@ mod tests {
             )
             .normalize();
             let mut best = world
-                .cast_ground(origin, dir)
+                .ground
+                .cast_flat(origin, dir)
                 .map_or(70.0, |h| h.range_m.min(70.0));
             for s in world.solids() {
                 best = s.enter(origin, dir, best).map_or(best, |t| t.min(best));

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::draw::{Draw, hash};
-use super::shapes::Solid;
+use crate::scene::solid::Solid;
 use crate::scene::{Class, SceneBox};
 
 /// Builds parts in box coordinates: fractions of length and width around the middle, of height

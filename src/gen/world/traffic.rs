@@ -94,7 +94,7 @@ impl Placer<'_> {
         let b = SceneBox {
             id: BoxId(self.boxes.len() as u32 + 1),
             class,
-            center_m: at.extend(size_m.z / 2.0),
+            center_m: at.extend(self.layout.relief.height_m(at) + size_m.z / 2.0),
             size_m,
             yaw_rad,
             velocity_mps: DVec2::from_angle(yaw_rad) * speed,

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::World;
 use super::draw::Draw;
 use crate::scene::raster::bev_channels;
-use crate::scene::{BevLayer, Class, GridSpec, LidarPattern, Polyline, PolylineKind, VoxelGrid};
+use crate::scene::solid::fill::fill;
+use crate::scene::{BevLayer, Class, GridSpec, LidarPattern, Polyline, PolylineKind, Relief, VoxelGrid};
 
 /// Where the ground sits vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -21,52 +22,26 @@ pub enum Vertical {
 }
 
 const SMEAR: usize = 2;
-/// Highest bin of a lowest hit that still belongs to something standing on the ground, before the smear.
-const HIGHEST_UNDERSIDE: usize = 6;
-
-/// Sub-voxel samples along each axis.
-const SAMPLES: usize = 3;
+/// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
+const HIGHEST_UNDERSIDE: usize = 4;
+/// Ground this many bins above other ground is a deck that stands over it.
+const DECK: usize = 4;
 
 /// Every voxel that a solid fills, and the ground under them: what a sensor that sees everything
-/// would label. A voxel belongs to a solid if a third of its 27 samples are inside, or any for
-/// solids thinner than a voxel. An object's voxels stay in the columns of its box's footprint, as the
+/// would label; see [`fill`]. An object's voxels stay in the columns of its box's footprint, as the
 /// layout's do: what sticks out by less than half a column belongs to no column.
 pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
     let mut best = vec![(0u8, Class::FREE); GridSpec::VOXELS]; // votes, class
     let bev = bev_channels(&world.layout, world.boxes.values());
     for s in world.solids() {
-        let (lo, hi) = (s.center - s.reach(), s.center + s.reach());
-        let (lo, hi) = (GridSpec::to_voxel_units(lo), GridSpec::to_voxel_units(hi));
-        let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
-        let span = |axis: usize| {
-            (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize)
-        };
-        let thin = s.reach().min_element() < GridSpec::VOXEL_M * 0.75;
-        let needed = if thin { 1 } else { 9 };
         let layer = BevLayer::of_object(s.class).map_or(0, BevLayer::bit);
-        for x in span(0) {
-            for y in span(1) {
-                if layer != 0 && bev[x * GridSpec::NY + y] & layer == 0 {
-                    continue;
-                }
-                for z in span(2) {
-                    let mut votes = 0;
-                    for i in 0..SAMPLES.pow(3) {
-                        let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
-                        let u = DVec3::new(
-                            x as f64 + f(i % SAMPLES),
-                            y as f64 + f(i / SAMPLES % SAMPLES),
-                            z as f64 + f(i / SAMPLES.pow(2)),
-                        );
-                        votes += u8::from(s.contains(GridSpec::from_voxel_units(u)));
-                    }
-                    let cell = &mut best[(x * GridSpec::NY + y) * GridSpec::NZ + z];
-                    if votes >= needed && votes > cell.0 {
-                        *cell = (votes, s.class.id());
-                    }
-                }
+        let counts = |x: usize, y: usize| layer == 0 || bev[x * GridSpec::NY + y] & layer != 0;
+        fill(s, counts, |x, y, z, votes| {
+            let cell = &mut best[(x * GridSpec::NY + y) * GridSpec::NZ + z];
+            if votes > cell.0 {
+                *cell = (votes, s.class.id());
             }
-        }
+        });
     }
     let mut grid = VoxelGrid::new();
     for x in 0..GridSpec::NX {
@@ -76,17 +51,9 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
             for (z, (_, class)) in best[at..at + GridSpec::NZ].iter().enumerate() {
                 column[z] = *class;
             }
-            let p = GridSpec::center(x, y, 0).truncate();
-            let height = world.ground_height(p);
-            let bin = GridSpec::to_voxel_units(DVec3::new(p.x, p.y, height))
-                .z
-                .floor()
-                .clamp(0.0, 15.0);
-            finish_column(
-                &mut column,
-                Some((bin as usize, world.ground_class(x, y).id())),
-                vertical,
-            );
+            let height = world.ground_height(GridSpec::center(x, y, 0).truncate());
+            let ground = (Relief::physical_bin(height), world.ground_class(x, y).id());
+            finish_column(&mut column, Some(ground), vertical);
             grid.column_mut(x, y).copy_from_slice(&column);
         }
     }
@@ -163,7 +130,7 @@ pub fn labels(
         .enumerate()
         .map(|(i, (position, yaw))| {
             let mut draw = Draw::new(seed ^ (i as u64) << 32, "sweep");
-            let world_from_sensor = crate::scene::Pose::planar(position.x, position.y, yaw) * mount;
+            let world_from_sensor = world.layout.relief.pose_on(position, yaw) * mount;
             let origin = world_from_sensor.translation_m;
             let mut hits = Vec::with_capacity(1 << 14);
             let columns = pattern.columns / 2; // half the columns at random phases: the drive overlaps enough
@@ -207,8 +174,9 @@ pub fn labels(
         let is_ground = |v: &(u16, u8)| Class::from_id(v.1).is_some_and(Class::is_ground);
         let z = column_votes.iter().position(is_ground);
         ground.push(z.map(|z| (z, column_votes[z].1)));
-        // What is left are things that stand on it.
-        let all = column_votes.iter_mut().filter(|v| is_ground(v));
+        // What is left are things that stand on it, and decks over it.
+        let below_deck = z.map_or(0, |z| (z + DECK).min(GridSpec::NZ));
+        let all = column_votes[..below_deck].iter_mut().filter(|v| is_ground(v));
         all.for_each(|v| *v = (0, Class::FREE));
     }
     for _ in 0..2 {
@@ -218,7 +186,8 @@ pub fn labels(
     for (c, column_votes) in votes.chunks_exact(GridSpec::NZ).enumerate() {
         let mut column: [u8; GridSpec::NZ] = std::array::from_fn(|z| column_votes[z].1);
         if vertical == Vertical::Occ3d {
-            extend_to_ground(&mut column);
+            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            extend_to_ground(&mut column, Relief::physical_bin(world.ground_height(p)));
         }
         if ground[c].is_none() && column.iter().all(|l| *l == Class::FREE) {
             continue;
@@ -253,15 +222,15 @@ fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
 }
 
 /// Real labels of vehicles and people reach the ground although sensors see little of their undersides:
-/// fills an object's column from its lowest hit downwards.
-fn extend_to_ground(column: &mut [u8; GridSpec::NZ]) {
+/// fills an object's column from its lowest hit down to the bin of the ground.
+fn extend_to_ground(column: &mut [u8; GridSpec::NZ], ground: usize) {
     let Some(lowest) = column.iter().position(|l| *l != Class::FREE) else {
         return;
     };
     let is_object = Class::from_id(column[lowest]).is_some_and(|c| Class::OBJECTS.contains(&c));
-    if is_object && lowest <= HIGHEST_UNDERSIDE {
+    if is_object && lowest > ground && lowest <= ground + HIGHEST_UNDERSIDE {
         let label = column[lowest];
-        column[..lowest].fill(label);
+        column[ground..lowest].fill(label);
     }
 }
 

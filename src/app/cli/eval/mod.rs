@@ -13,18 +13,17 @@ mod vae;
 mod world;
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use serde_json::{Value, json};
 
 use crate::app::cli::generate::models;
 use crate::app::cli::progress::Progress;
 use crate::app::cli::{Common, Gen, Outcome, Stop, output};
+use crate::app::open;
 use crate::generation::dataset::world_of;
 use crate::generation::metrics::stats::mean_ci95;
 use crate::generation::pipeline::OccPipeline;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Frame, Scene, SensorRig};
+use crate::scene::Scene;
 
 /// Seed of the held-out worlds; training uses 1, validation 2.
 const TEST_SEED: u64 = 3;
@@ -74,9 +73,9 @@ fn with_interval(values: &[f64]) -> Value {
 /// Held-out world `index` as a scene with complete occupancy.
 fn scene(index: u64) -> Scene {
     let (world, seed) = world_of(TEST_SEED, index, |_| None);
-    let grid = complete(&world, Vertical::Occ3d);
-    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
-    Scene::single("held out", frame, Arc::new(SensorRig::default()), seed)
+    let mut scene = open::of_world(&world, "held out");
+    scene.seed = seed;
+    scene
 }
 
 /// One bar: name, figure, the least it should be.

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::generation::world::{objects, shapes::Solid};
+use crate::generation::world::objects;
+use crate::scene::solid::Solid;
 use crate::scene::{BoxId, SceneBox};
 
 const BIN_M: f64 = 4.0;

@@ -1,13 +1,18 @@
-//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids.
+//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids, prisms.
 //! Each answers two questions: is this point inside, and where does a ray enter.
+
+pub mod fill;
+mod prism;
+
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::Class;
 use super::draw::hash;
-use crate::scene::Class;
 
 /// Geometry of a solid.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Shape {
     /// An upright box whose sides may lean in: half extents at the bottom, and at the top
     /// (`top` holds half length and half width there).
@@ -33,10 +38,17 @@ pub enum Shape {
         /// Radii along x, y and z, m.
         radii: DVec3,
     },
+    /// An upright prism over an outline.
+    Prism {
+        /// Corners relative to the middle, counter-clockwise, m.
+        outline: Arc<[DVec2]>,
+        /// Half extents of the box around it, m.
+        half: DVec3,
+    },
 }
 
 /// A solid of one class.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Solid {
     /// Geometry.
     pub shape: Shape,
@@ -95,15 +107,40 @@ impl Solid {
         }
     }
 
+    /// A prism over a simple outline between two heights, m.
+    pub fn prism(class: Class, outline_m: &[DVec2], bottom_m: f64, top_m: f64) -> Self {
+        let min = outline_m.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let max = outline_m.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let middle = (min + max) / 2.0;
+        let mut outline: Vec<DVec2> = outline_m.iter().map(|p| *p - middle).collect();
+        let twice_area: f64 = (0..outline.len())
+            .map(|i| outline[i].perp_dot(outline[(i + 1) % outline.len()]))
+            .sum();
+        if twice_area < 0.0 {
+            outline.reverse();
+        }
+        let half = ((max - min) / 2.0).extend((top_m - bottom_m) / 2.0);
+        Self {
+            shape: Shape::Prism {
+                outline: outline.into(),
+                half,
+            },
+            center: middle.extend((top_m + bottom_m) / 2.0),
+            class,
+            porosity: 0.0,
+        }
+    }
+
     /// Half extents of the axis-aligned box around it, m.
     pub fn reach(&self) -> DVec3 {
-        match self.shape {
-            Shape::Hull { half, top, heading } => {
+        match &self.shape {
+            Shape::Prism { half, .. } => *half,
+            &Shape::Hull { half, top, heading } => {
                 let wide = half.truncate().max(top);
                 let h = heading.abs();
                 DVec3::new(wide.x * h.x + wide.y * h.y, wide.x * h.y + wide.y * h.x, half.z)
             }
-            Shape::Frustum {
+            &Shape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -111,7 +148,7 @@ impl Solid {
                 let r = bottom.max(top);
                 DVec3::new(r, r, half_height)
             }
-            Shape::Ellipsoid { radii } => radii,
+            Shape::Ellipsoid { radii } => *radii,
         }
     }
 
@@ -135,14 +172,18 @@ impl Solid {
 
     /// True if the point is in the solid and not in one of its pores.
     pub fn contains(&self, p: DVec3) -> bool {
-        let inside = match self.shape {
-            Shape::Hull { half, top, heading } => {
+        let inside = match &self.shape {
+            Shape::Prism { outline, half } => {
+                let q = p - self.center;
+                q.abs().cmple(*half).all() && prism::inside(outline, q.truncate())
+            }
+            &Shape::Hull { half, top, heading } => {
                 let q = self.local(p, heading);
                 let t = (q.z + half.z) / (2.0 * half.z).max(1e-9);
                 let wide = half.truncate().lerp(top, t);
                 q.z.abs() <= half.z && q.x.abs() <= wide.x && q.y.abs() <= wide.y
             }
-            Shape::Frustum {
+            &Shape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -152,7 +193,7 @@ impl Solid {
                 let r = bottom + (top - bottom) * t;
                 q.z.abs() <= half_height && q.truncate().length_squared() <= r * r
             }
-            Shape::Ellipsoid { radii } => ((p - self.center) / radii).length_squared() <= 1.0,
+            &Shape::Ellipsoid { radii } => ((p - self.center) / radii).length_squared() <= 1.0,
         };
         inside && !self.is_pore(p)
     }
@@ -179,8 +220,9 @@ impl Solid {
                 n.z,
             )
         };
-        match self.shape {
-            Shape::Hull { half, top, heading } => {
+        match &self.shape {
+            Shape::Prism { outline, half } => prism::normal_at(outline, *half, p - self.center),
+            &Shape::Hull { half, top, heading } => {
                 let q = self.local(p, heading);
                 let mut best = (half.z - q.z.abs(), DVec3::Z * q.z.signum());
                 for axis in 0..2 {
@@ -195,7 +237,7 @@ impl Solid {
                 }
                 in_world(best.1, heading).normalize_or(DVec3::Z)
             }
-            Shape::Frustum {
+            &Shape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -209,25 +251,26 @@ impl Solid {
                 let out = q.truncate().normalize_or(DVec2::X);
                 out.extend(-slope).normalize_or(DVec3::Z)
             }
-            Shape::Ellipsoid { radii } => ((p - self.center) / (radii * radii)).normalize_or(DVec3::Z),
+            &Shape::Ellipsoid { radii } => ((p - self.center) / (radii * radii)).normalize_or(DVec3::Z),
         }
     }
 
     /// Distance along the ray to the first point of the solid, at most `limit`; rays that start
     /// inside a solid pass out of it unseen. `dir` is a unit vector.
     pub fn enter(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
-        let (near, far) = match self.shape {
-            Shape::Hull { half, top, heading } => {
+        let (near, far) = match &self.shape {
+            Shape::Prism { outline, half } => prism::clip(outline, *half, origin - self.center, dir)?,
+            &Shape::Hull { half, top, heading } => {
                 let (o, r2) = (self.local(origin, heading), dir.truncate());
                 let d = DVec3::new(r2.dot(heading), -r2.perp_dot(heading), dir.z);
                 clip_hull(o, d, half, top)?
             }
-            Shape::Frustum {
+            &Shape::Frustum {
                 bottom,
                 top,
                 half_height,
             } => clip_frustum(origin - self.center, dir, bottom, top, half_height)?,
-            Shape::Ellipsoid { radii } => {
+            &Shape::Ellipsoid { radii } => {
                 let (o, d) = ((origin - self.center) / radii, dir / radii);
                 roots(d.length_squared(), o.dot(d), o.length_squared() - 1.0)?
             }
@@ -325,119 +368,4 @@ fn clip_frustum(o: DVec3, d: DVec3, bottom: f64, top: f64, half_height: f64) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::generation::world::draw::Draw;
-
-    /// Where a ray enters must agree with the inside test sampled along the ray.
-    #[test]
-    fn rays_enter_where_the_inside_begins() {
-        let heading = DVec2::from_angle(0.6);
-        let base = DVec3::new(1.0, 2.0, 0.2);
-        let solids = [
-            Solid::block(Class::Car, base, DVec3::new(4.0, 2.0, 1.5), heading),
-            Solid::tapered(
-                Class::Car,
-                base,
-                DVec3::new(4.0, 2.0, 1.5),
-                DVec2::new(0.5, 0.8),
-                heading,
-            ),
-            Solid::frustum(Class::TrafficCone, base, 1.5, 0.8, 0.1),
-            Solid::frustum(Class::Manmade, base, 3.0, 0.4, 0.4),
-            Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
-        ];
-        let mut draw = Draw::new(3, "rays");
-        let (mut hits, mut under) = (0, 0);
-        for solid in solids {
-            for _ in 0..2000 {
-                let origin = DVec3::new(
-                    draw.range(-9.0, 9.0),
-                    draw.range(-9.0, 9.0),
-                    draw.range(-1.0, 5.0),
-                );
-                let aim = solid.center
-                    + DVec3::new(
-                        draw.range(-2.0, 2.0),
-                        draw.range(-2.0, 2.0),
-                        draw.range(-1.0, 1.0),
-                    );
-                let dir = (aim - origin).normalize_or(DVec3::X);
-                if solid.contains(origin) {
-                    continue;
-                }
-                let marched = (0..20_000)
-                    .map(|i| f64::from(i) * 1e-3)
-                    .find(|t| solid.contains(origin + dir * *t));
-                match (solid.enter(origin, dir, 20.0), marched) {
-                    (Some(t), Some(m)) => {
-                        hits += 1;
-                        assert!((t - m).abs() < 3e-3, "{solid:?} {t} {m}");
-                        let (p, n) = (origin + dir * t, solid.normal(origin + dir * t));
-                        assert!(
-                            (n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6,
-                            "{solid:?} {n}"
-                        );
-                        assert!(!solid.contains(p + n * 1e-3), "{solid:?} {n}");
-                        under += usize::from(solid.contains(p - n * 2e-3));
-                    }
-                    (None, None) => {}
-                    // A graze shorter than the march's step.
-                    (Some(t), None) => assert!(!solid.contains(origin + dir * (t + 2e-3))),
-                    (None, Some(m)) => panic!("{solid:?} missed at {m}"),
-                }
-            }
-        }
-        assert!(hits > 2000, "{hits} hits");
-        // Below the surface is inside, but for points right at an edge.
-        assert!(under * 100 > hits * 97, "{under} of {hits}");
-    }
-
-    /// Towards the normal lies the outside, against it the inside.
-    #[test]
-    fn normals_point_outward() {
-        let heading = DVec2::from_angle(-1.1);
-        let base = DVec3::new(-3.0, 1.0, 0.1);
-        let solids = [
-            Solid::tapered(
-                Class::Car,
-                base,
-                DVec3::new(4.0, 2.0, 1.5),
-                DVec2::new(0.5, 0.8),
-                heading,
-            ),
-            Solid::frustum(Class::TrafficCone, base, 1.5, 0.8, 0.1),
-            Solid::ellipsoid(Class::Vegetation, base, DVec3::new(2.0, 1.0, 1.5), 0.0),
-        ];
-        let mut draw = Draw::new(4, "normals");
-        let mut hits = 0;
-        for solid in solids {
-            for _ in 0..500 {
-                let from = base
-                    + DVec3::new(
-                        draw.range(-8.0, 8.0),
-                        draw.range(-8.0, 8.0),
-                        draw.range(-2.0, 5.0),
-                    );
-                let aim =
-                    base + DVec3::new(draw.range(-1.0, 1.0), draw.range(-1.0, 1.0), draw.range(0.0, 1.0));
-                let dir = (aim - from).normalize_or(DVec3::X);
-                if solid.contains(from) {
-                    continue;
-                }
-                if let Some(t) = solid.enter(from, dir, 30.0) {
-                    let p = from + dir * t;
-                    let n = solid.normal_at(p);
-                    hits += 1;
-                    assert!(
-                        (n.length() - 1.0).abs() < 1e-9 && n.dot(dir) < 1e-6,
-                        "{solid:?} {n} {dir}"
-                    );
-                    assert!(!solid.contains(p + n * 1e-3), "{solid:?} at {p}");
-                    assert!(solid.contains(p - n * 1e-3 + dir * 1e-6) || n.dot(dir) > -0.02);
-                }
-            }
-        }
-        assert!(hits > 500, "{hits}");
-    }
-}
+mod tests;

@@ -1,0 +1,43 @@
+//! What stands beside roads, drawn from a seed as things: it follows the road and its surroundings.
+
+mod frontage;
+mod lines;
+mod plants;
+mod setting;
+mod site;
+mod walk;
+
+use std::collections::BTreeMap;
+
+use super::draw::Draw;
+use crate::scene::{Background, BevLayout, BoxId, SceneBox};
+
+pub use setting::{Setting, Side, Style};
+use site::Site;
+pub use site::distance_cells;
+
+/// The background of `seed`: its style is drawn to suit the layout.
+pub fn background(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, seed: u64) -> Background {
+    background_of(layout, boxes, &Style::drawn(layout, seed), seed)
+}
+
+/// A background of this style; keeps clear of roads, sidewalks and boxes. Ids count from 1.
+pub fn background_of(
+    layout: &BevLayout,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    style: &Style,
+    seed: u64,
+) -> Background {
+    let mut site = Site::new(layout, boxes, style, seed);
+    // Largest first: each keeps clear of what is there.
+    frontage::buildings(&mut site);
+    lines::lines(&mut site);
+    lines::posts(&mut site, &mut Draw::new(seed, "posts"));
+    plants::avenues(&mut site, &mut Draw::new(seed, "avenue"));
+    plants::trees(&mut site, &mut Draw::new(seed, "trees"));
+    plants::shrubs(&mut site, &mut Draw::new(seed, "shrubs"));
+    site.out
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,137 @@
+//! What kind of place it is, on either side of the ego's road.
+
+use serde::{Deserialize, Serialize};
+
+use crate::generation::world::draw::Draw;
+use crate::scene::{BevLayer, BevLayout, PolylineKind};
+
+/// A kind of place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Setting {
+    /// Old houses wall to wall.
+    OldTown,
+    /// Blocks of flats and offices, with balconies and shops.
+    City,
+    /// Houses with gardens, hedges and fences.
+    Suburb,
+    /// Halls, yards and fences.
+    Industry,
+    /// A dense wood.
+    Forest,
+    /// Fields, hedgerows, a farm now and then.
+    Country,
+    /// A road with guard rails and banks, nothing near it.
+    Motorway,
+    /// Lawns, trees and benches.
+    Park,
+    /// Large shops around car parks.
+    Retail,
+}
+
+impl Setting {
+    /// All settings.
+    pub const ALL: [Self; 9] = [
+        Self::OldTown,
+        Self::City,
+        Self::Suburb,
+        Self::Industry,
+        Self::Forest,
+        Self::Country,
+        Self::Motorway,
+        Self::Park,
+        Self::Retail,
+    ];
+}
+
+/// One side of the ego's road.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// What kind of place.
+    pub setting: Setting,
+    /// Number of trees and shrubs, 1 = usual for the setting; 0 is none.
+    pub green: f64,
+    /// Number of buildings, 1 = usual for the setting; 0 is none.
+    pub built: f64,
+    /// Storeys of every building; none leaves it to the setting.
+    pub storeys: Option<u32>,
+}
+
+impl Side {
+    /// The usual of a setting.
+    pub fn usual(setting: Setting) -> Self {
+        Self {
+            setting,
+            green: 1.0,
+            built: 1.0,
+            storeys: None,
+        }
+    }
+}
+
+/// Both sides of the ego's road.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Style {
+    /// Left of the ego's road.
+    pub left: Side,
+    /// Right of it.
+    pub right: Side,
+}
+
+impl Style {
+    /// The same on both sides.
+    pub fn both(side: Side) -> Self {
+        Self {
+            left: side,
+            right: side,
+        }
+    }
+
+    /// A style that suits the layout: streets with sidewalks run through towns, wide roads without through the country.
+    pub fn drawn(layout: &BevLayout, seed: u64) -> Self {
+        let mut draw = Draw::new(seed, "scenery style");
+        let weights = weights(layout);
+        let side = |draw: &mut Draw| Side {
+            setting: Setting::ALL[draw.weighted(&weights)],
+            green: draw.range(0.4, 1.4),
+            built: draw.range(0.6, 1.1),
+            storeys: None,
+        };
+        let left = side(&mut draw);
+        // Two sides of a street are mostly alike.
+        let right = match draw.chance(0.6) {
+            true => Side {
+                green: draw.range(0.4, 1.4),
+                ..left
+            },
+            false => side(&mut draw),
+        };
+        Self { left, right }
+    }
+}
+
+/// How likely each of [`Setting::ALL`] is beside a layout.
+fn weights(layout: &BevLayout) -> [f64; 9] {
+    let count = |layer: BevLayer| layout.count(layer) as f64;
+    let road = count(BevLayer::DrivableArea).max(1.0);
+    let (walk, lots) = (
+        count(BevLayer::Walkway) / road,
+        count(BevLayer::CarparkArea) / road,
+    );
+    let lanes = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter)
+        .count();
+    if walk < 0.02 && lanes >= 4 {
+        // No sidewalks and many lanes.
+        return [0.0, 0.02, 0.03, 0.1, 0.25, 0.2, 0.4, 0.0, 0.0];
+    }
+    if lots > 0.35 {
+        return [0.02, 0.2, 0.1, 0.2, 0.02, 0.02, 0.0, 0.08, 0.36];
+    }
+    if walk < 0.02 {
+        return [0.04, 0.06, 0.25, 0.12, 0.22, 0.25, 0.0, 0.03, 0.03];
+    }
+    [0.2, 0.28, 0.2, 0.08, 0.04, 0.02, 0.0, 0.12, 0.06]
+}

@@ -1,0 +1,171 @@
+//! The ground that scenery is put on: distances to what must stay clear, and what is taken already.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::setting::{Side, Style};
+use crate::scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
+use crate::scene::road_map::RoadMap;
+use crate::scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+
+/// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
+pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
+    let (nx, ny) = (GridSpec::NX as i64, GridSpec::NY as i64);
+    let mut d: Vec<f32> = (0..GridSpec::COLUMNS)
+        .map(|c| if set(c) { 0.0 } else { 255.0 })
+        .collect();
+    let mut relax = |x: i64, y: i64, steps: [(i64, i64, f32); 4]| {
+        let mut best = d[(x * ny + y) as usize];
+        for (dx, dy, w) in steps {
+            let (px, py) = (x + dx, y + dy);
+            if (0..nx).contains(&px) && (0..ny).contains(&py) {
+                best = best.min(d[(px * ny + py) as usize] + w);
+            }
+        }
+        d[(x * ny + y) as usize] = best;
+    };
+    for x in 0..nx {
+        for y in 0..ny {
+            relax(
+                x,
+                y,
+                [(-1, 0, 1.0), (0, -1, 1.0), (-1, -1, 1.414), (-1, 1, 1.414)],
+            );
+        }
+    }
+    for x in (0..nx).rev() {
+        for y in (0..ny).rev() {
+            relax(x, y, [(1, 0, 1.0), (0, 1, 1.0), (1, 1, 1.414), (1, -1, 1.414)]);
+        }
+    }
+    d
+}
+
+/// A layout with room for scenery.
+pub(super) struct Site<'a> {
+    pub seed: u64,
+    style: &'a Style,
+    roads: RoadMap,
+    to_paved: Vec<f32>, // cells to the nearest road, car park or sidewalk
+    to_road: Vec<f32>,
+    to_box: Vec<f32>,
+    taken: Vec<bool>, // by things
+    pub out: Background,
+}
+
+impl<'a> Site<'a> {
+    pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, style: &'a Style, seed: u64) -> Self {
+        let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+        let paved = road | BevLayer::Walkway.bit();
+        let mut box_cell = vec![false; GridSpec::COLUMNS];
+        for b in boxes.values() {
+            box_cells(b, 0.0, |x, y| box_cell[x * GridSpec::NY + y] = true);
+        }
+        let cells = layout.cells();
+        Self {
+            seed,
+            style,
+            roads: RoadMap::new(layout),
+            to_paved: distance_cells(|c| cells[c] & paved != 0),
+            to_road: distance_cells(|c| cells[c] & road != 0),
+            to_box: distance_cells(|c| box_cell[c]),
+            taken: vec![false; GridSpec::COLUMNS],
+            out: Background::default(),
+        }
+    }
+
+    /// The side of the ego's road that a point lies on.
+    pub fn side(&self, p: DVec2) -> &Side {
+        match self.roads.along_ego_lane(p).y >= 0.0 {
+            true => &self.style.left,
+            false => &self.style.right,
+        }
+    }
+
+    fn at(field: &[f32], p: DVec2) -> f64 {
+        // Blended between cell centres, so that lines at a distance run straight.
+        let u = GridSpec::to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
+        let limit = |v: f64, n: usize| v.clamp(0.0, (n - 1) as f64);
+        let (x, y) = (limit(u.x, GridSpec::NX), limit(u.y, GridSpec::NY));
+        let (x0, y0) = (
+            (x as usize).min(GridSpec::NX - 2),
+            (y as usize).min(GridSpec::NY - 2),
+        );
+        let (tx, ty) = (x - x0 as f64, y - y0 as f64);
+        let f = |i: usize, j: usize| f64::from(field[i * GridSpec::NY + j]);
+        let low = f(x0, y0) * (1.0 - tx) + f(x0 + 1, y0) * tx;
+        let high = f(x0, y0 + 1) * (1.0 - tx) + f(x0 + 1, y0 + 1) * tx;
+        (low * (1.0 - ty) + high * ty) * GridSpec::VOXEL_M
+    }
+
+    /// Distance to the nearest road, car park or sidewalk, m.
+    pub fn paved_m(&self, p: DVec2) -> f64 {
+        Self::at(&self.to_paved, p)
+    }
+
+    /// Distance to the nearest road or car park, m.
+    pub fn road_m(&self, p: DVec2) -> f64 {
+        Self::at(&self.to_road, p)
+    }
+
+    /// Distance to the nearest box, m.
+    pub fn box_m(&self, p: DVec2) -> f64 {
+        Self::at(&self.to_box, p)
+    }
+
+    /// Direction towards the nearest lane, for lamps and signs.
+    pub fn toward_lane(&self, p: DVec2) -> DVec2 {
+        let lane = self.roads.nearest_lane(p);
+        lane.map_or(DVec2::X, |l| (l.position_m - p).normalize_or(DVec2::X))
+    }
+
+    /// Unit vector away from the nearest paved ground, by the gradient of the distance.
+    pub fn away(&self, p: DVec2) -> Option<DVec2> {
+        let h = 1.8;
+        let d = |dx: f64, dy: f64| self.paved_m(p + DVec2::new(dx, dy));
+        let g = DVec2::new(d(h, 0.0) - d(-h, 0.0), d(0.0, h) - d(0.0, -h));
+        (g.length() > 0.8).then(|| g.normalize())
+    }
+
+    /// True if nothing is taken within a disc, and boxes are further away.
+    pub fn free(&self, p: DVec2, radius_m: f64) -> bool {
+        if self.box_m(p) < radius_m + 0.4 {
+            return false;
+        }
+        let mut free = true;
+        disc_cells(p, radius_m, |x, y| free &= !self.taken[x * GridSpec::NY + y]);
+        free
+    }
+
+    /// True if no cell of an outline is taken, paved within `gap_m`, or near a box. Parts outside the grid count as free.
+    pub fn free_outline(&self, outline_m: &[DVec2], gap_m: f64) -> bool {
+        let mut free = true;
+        let gap = (gap_m / GridSpec::VOXEL_M) as f32;
+        polygon_cells(outline_m, |x, y| {
+            let c = x * GridSpec::NY + y;
+            free &= !self.taken[c] && self.to_paved[c] > gap && self.to_box[c] > 2.0;
+        });
+        free
+    }
+
+    /// Puts a thing in and takes its ground, grown by a margin.
+    pub fn put(&mut self, form: Form, margin_m: f64) {
+        let taken = &mut self.taken;
+        let mut take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
+        match &form {
+            Form::Building(b) => {
+                let n = b.outline_m.len();
+                polygon_cells(&b.outline_m, &mut take);
+                let ring: Vec<DVec2> = (0..=n).map(|i| b.outline_m[i % n]).collect();
+                line_cells(&ring, margin_m, &mut take);
+            }
+            Form::Shrubs(s) => polygon_cells(&s.outline_m, &mut take),
+            Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + margin_m, &mut take),
+            Form::Bridge(b) => line_cells(&b.points_m, b.width_m / 2.0 + margin_m, &mut take),
+            Form::Tree(t) => disc_cells(t.position_m, margin_m, &mut take),
+            Form::Post(p) => disc_cells(p.position_m, margin_m, &mut take),
+        }
+        self.out.add(form);
+    }
+}

@@ -1,0 +1,81 @@
+//! Tests of the scenery: sound, repeatable, off the road, and along it.
+
+use super::*;
+use crate::generation::world::{World, template, traffic};
+use crate::scene::raster::polygon_cells;
+use crate::scene::{BevLayer, Form, GridSpec};
+
+#[test]
+fn distance_is_zero_on_the_set_and_grows() {
+    let d = distance_cells(|c| c == 100 * GridSpec::NY + 100);
+    assert_eq!(d[100 * GridSpec::NY + 100], 0.0);
+    assert_eq!(d[100 * GridSpec::NY + 110], 10.0);
+    assert!((d[103 * GridSpec::NY + 104] - 5.0).abs() < 0.5);
+}
+
+#[test]
+fn scenery_is_sound_repeatable_and_off_the_road() {
+    let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
+    let mut counts = [0; 3];
+    for seed in 0..40 {
+        let layout = template::any_layout(seed);
+        let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
+        let all = background(&layout, &boxes, seed);
+        assert_eq!(all, background(&layout, &boxes, seed));
+        assert_eq!(all.problem(), None, "seed {seed}");
+        let mut owner = vec![None; GridSpec::COLUMNS];
+        for thing in all.iter() {
+            match &thing.form {
+                Form::Building(b) => {
+                    counts[0] += 1;
+                    polygon_cells(&b.outline_m, |x, y| {
+                        assert_eq!(
+                            layout.cell(x, y) & paved,
+                            0,
+                            "seed {seed}: {:?} on the road",
+                            thing.id
+                        );
+                        let before = owner[x * GridSpec::NY + y].replace(thing.id);
+                        assert!(
+                            before.is_none(),
+                            "seed {seed}: {before:?} and {:?} overlap",
+                            thing.id
+                        );
+                    });
+                }
+                Form::Tree(t) => {
+                    counts[1] += 1;
+                    if let Some([x, y]) = GridSpec::column_at(t.position_m.x, t.position_m.y) {
+                        let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+                        assert_eq!(layout.cell(x, y) & road, 0, "seed {seed}: a tree on the road");
+                    }
+                }
+                Form::Line(_) => counts[2] += 1,
+                _ => {}
+            }
+        }
+    }
+    println!("buildings, trees, lines in 40 worlds: {counts:?}");
+    assert!(counts.iter().all(|n| *n > 100), "{counts:?}");
+}
+
+/// The facade of most buildings looks at the road: the front edge is at right angles to the way there.
+#[test]
+fn buildings_face_the_road() {
+    let (mut aligned, mut all) = (0, 0);
+    for seed in 0..20 {
+        let world = World::random(seed);
+        let style = Style::drawn(&world.layout, seed);
+        let site = Site::new(&world.layout, &world.boxes, &style, seed);
+        for thing in world.background.iter() {
+            if let Form::Building(b) = &thing.form
+                && let Some(away) = site.away((b.outline_m[0] + b.outline_m[1]) / 2.0)
+            {
+                let front = (b.outline_m[1] - b.outline_m[0]).normalize();
+                all += 1;
+                aligned += usize::from(front.dot(away).abs() < 0.35);
+            }
+        }
+    }
+    assert!(aligned * 10 > all * 8, "{aligned} of {all}");
+}

@@ -1,0 +1,279 @@
+//! What stands beside roads, as things: buildings, trees, shrubs, hedges, walls, fences, poles, signs, bridges.
+//! Plain data in metres of the clip's world frame; heights are above the ground where the thing stands.
+
+mod bridge;
+mod building;
+mod line;
+mod post;
+mod problem;
+mod shrubs;
+mod tree;
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::solid::Solid;
+use super::{Class, Pose};
+
+pub use bridge::Bridge;
+pub use building::{Building, Facade, Roof, STOREY_M};
+pub use line::{Line, LineKind};
+pub use post::{Post, PostKind};
+pub use problem::crossing_edges;
+pub use shrubs::Shrubs;
+pub use tree::{Tree, TreeKind};
+
+/// Names a thing of the background; unique in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ThingId(pub u32);
+
+/// What a thing is and where. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Form {
+    /// A building with vertical walls.
+    Building(Building),
+    /// A tree.
+    Tree(Tree),
+    /// An area of shrubs and undergrowth.
+    Shrubs(Shrubs),
+    /// A hedge, wall, fence or rail.
+    Line(Line),
+    /// A pole, sign, lamp, stop, bench or bin.
+    Post(Post),
+    /// A road or path carried over the ground.
+    Bridge(Bridge),
+}
+
+/// One thing of the background.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Thing {
+    /// Its name.
+    pub id: ThingId,
+    /// What and where.
+    pub form: Form,
+    /// Which of many looks its details take (boughs, balconies); moving a thing keeps them.
+    #[serde(default)]
+    pub look: u32,
+}
+
+/// Height of the ground at a point, m, in the frame that the form is given in.
+pub type GroundM<'a> = &'a dyn Fn(DVec2) -> f64;
+
+impl Form {
+    /// What it is, in words.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Building(_) => "building",
+            Self::Tree(_) => "tree",
+            Self::Shrubs(_) => "shrubs",
+            Self::Line(line) => line.kind.name(),
+            Self::Post(post) => post.kind.name(),
+            Self::Bridge(_) => "bridge",
+        }
+    }
+
+    /// Class of most of its voxels.
+    pub fn class(&self) -> Class {
+        match self {
+            Self::Tree(_) | Self::Shrubs(_) => Class::Vegetation,
+            Self::Line(line) => line.kind.class(),
+            Self::Post(post) => post.kind.class(),
+            Self::Building(_) | Self::Bridge(_) => Class::Manmade,
+        }
+    }
+
+    /// What is wrong with it, in one line; `None` if it is sound.
+    pub fn problem(&self) -> Option<String> {
+        problem::problem(self)
+    }
+
+    /// Points that it is drawn and dragged by, m: its outline, line or place.
+    pub fn points_m(&self) -> Vec<DVec2> {
+        match self {
+            Self::Building(b) => b.outline_m.clone(),
+            Self::Shrubs(s) => s.outline_m.clone(),
+            Self::Line(l) => l.points_m.clone(),
+            Self::Bridge(b) => b.points_m.clone(),
+            Self::Tree(t) => vec![t.position_m],
+            Self::Post(p) => vec![p.position_m],
+        }
+    }
+
+    /// Changes every point and heading: `point` maps points, `turn_rad` is added to headings.
+    pub fn map_points(&mut self, mut point: impl FnMut(DVec2) -> DVec2, turn_rad: f64) {
+        let mut all = |points: &mut Vec<DVec2>| points.iter_mut().for_each(|p| *p = point(*p));
+        match self {
+            Self::Building(b) => all(&mut b.outline_m),
+            Self::Shrubs(s) => all(&mut s.outline_m),
+            Self::Line(l) => all(&mut l.points_m),
+            Self::Bridge(b) => all(&mut b.points_m),
+            Self::Tree(t) => t.position_m = point(t.position_m),
+            Self::Post(p) => {
+                p.position_m = point(p.position_m);
+                p.yaw_rad += turn_rad;
+            }
+        }
+    }
+
+    /// The form seen in another frame, by the heading and ground position of `to_from_here`.
+    pub fn in_frame(&self, to_from_here: &Pose) -> Self {
+        let mut out = self.clone();
+        if *to_from_here != Pose::IDENTITY {
+            let ahead = to_from_here.apply(DVec3::X) - to_from_here.apply(DVec3::ZERO);
+            let turn_rad = ahead.y.atan2(ahead.x);
+            out.map_points(|p| to_from_here.apply(p.extend(0.0)).truncate(), turn_rad);
+        }
+        out
+    }
+
+    /// Middle of its points, m.
+    pub fn middle_m(&self) -> DVec2 {
+        let points = self.points_m();
+        points.iter().sum::<DVec2>() / points.len().max(1) as f64
+    }
+
+    /// Height of its top above the ground, m.
+    pub fn height_m(&self) -> f64 {
+        match self {
+            Self::Building(b) => b.height_m,
+            Self::Tree(t) => t.height_m,
+            Self::Shrubs(s) => s.height_m,
+            Self::Line(l) => l.height_m,
+            Self::Post(p) => p.height_m,
+            Self::Bridge(b) => b.height_m,
+        }
+    }
+
+    /// How far it reaches beyond its points on the ground, m.
+    pub fn overhang_m(&self) -> f64 {
+        match self {
+            Self::Building(b) => b.overhang_m(),
+            Self::Tree(t) => t.crown_radius_m,
+            Self::Shrubs(_) => 0.4,
+            Self::Line(l) => l.width_m / 2.0,
+            Self::Post(p) => p.kind.reach_m(),
+            Self::Bridge(b) => b.width_m / 2.0 + 0.3,
+        }
+    }
+
+    /// Corners of the upright box around it on the ground, m.
+    pub fn bounds_m(&self) -> (DVec2, DVec2) {
+        let reach = DVec2::splat(self.overhang_m());
+        let points = self.points_m();
+        let min = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let max = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        (min - reach, max + reach)
+    }
+}
+
+impl Thing {
+    /// Appends its solids, in the frame of the form and of `ground_m`.
+    pub fn solids(&self, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+        let look = u64::from(self.look);
+        match &self.form {
+            Form::Building(b) => b.solids(look, ground_m, out),
+            Form::Tree(t) => t.solids(look, ground_m, out),
+            Form::Shrubs(s) => s.solids(look, ground_m, out),
+            Form::Line(l) => l.solids(look, ground_m, out),
+            Form::Post(p) => p.solids(look, ground_m, out),
+            Form::Bridge(b) => b.solids(ground_m, out),
+        }
+    }
+}
+
+/// All things of a scene by id.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Background {
+    things: BTreeMap<ThingId, Thing>,
+}
+
+impl Background {
+    /// More things than this are refused.
+    pub const MAX_THINGS: usize = 20_000;
+
+    /// Things in the order of their ids.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Thing> + ExactSizeIterator {
+        self.things.values()
+    }
+
+    /// The thing of that id.
+    pub fn get(&self, id: ThingId) -> Option<&Thing> {
+        self.things.get(&id)
+    }
+
+    /// Number of things.
+    pub fn len(&self) -> usize {
+        self.things.len()
+    }
+
+    /// True without any thing.
+    pub fn is_empty(&self) -> bool {
+        self.things.is_empty()
+    }
+
+    /// The lowest id above all in use, or a gap if there is none above.
+    pub fn next_id(&self) -> ThingId {
+        let next = self
+            .things
+            .keys()
+            .next_back()
+            .map_or(Some(1), |id| id.0.checked_add(1));
+        let gap = || (1..u32::MAX).find(|id| !self.things.contains_key(&ThingId(*id)));
+        ThingId(next.or_else(gap).unwrap_or(u32::MAX))
+    }
+
+    /// Puts a thing in, in place of one of the same id, which it returns.
+    pub fn insert(&mut self, thing: Thing) -> Option<Thing> {
+        self.things.insert(thing.id, thing)
+    }
+
+    /// Adds a form under the next id, which is its look too.
+    pub fn add(&mut self, form: Form) -> ThingId {
+        let id = self.next_id();
+        self.insert(Thing { id, form, look: id.0 });
+        id
+    }
+
+    /// Takes a thing out.
+    pub fn remove(&mut self, id: ThingId) -> Option<Thing> {
+        self.things.remove(&id)
+    }
+
+    /// All things in another frame; see [`Form::in_frame`].
+    pub fn in_frame(&self, to_from_here: &Pose) -> Self {
+        let moved = |t: &Thing| Thing {
+            form: t.form.in_frame(to_from_here),
+            ..t.clone()
+        };
+        self.things.values().map(moved).collect()
+    }
+
+    /// What is wrong with it, in one line; `None` if it is sound.
+    pub fn problem(&self) -> Option<String> {
+        if self.len() > Self::MAX_THINGS {
+            return Some(format!(
+                "the background holds {} things, expected at most {}",
+                self.len(),
+                Self::MAX_THINGS
+            ));
+        }
+        self.things
+            .values()
+            .find_map(|t| t.form.problem().map(|p| format!("thing {}: {p}", t.id.0)))
+    }
+}
+
+impl FromIterator<Thing> for Background {
+    fn from_iter<T: IntoIterator<Item = Thing>>(things: T) -> Self {
+        let things = things.into_iter().map(|t| (t.id, t)).collect();
+        Self { things }
+    }
+}
+
+#[cfg(test)]
+mod tests;

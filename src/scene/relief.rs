@@ -1,0 +1,207 @@
+//! The height of the ground: one number per column of the grid, metres above z = 0 of the ego frame.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DQuat, DVec2, DVec3};
+
+use super::{GridSpec, Pose};
+
+/// Height of the ground over the grid. Flat ground costs nothing; a snapshot costs a pointer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Relief {
+    heights_m: Option<Arc<Vec<f32>>>, // [x][y], GridSpec::COLUMNS; none is flat
+}
+
+impl Relief {
+    /// Heights beyond this are refused, m.
+    pub const LIMIT_M: f32 = 200.0;
+
+    /// Ground at z = 0 everywhere.
+    pub const FLAT: Self = Self { heights_m: None };
+
+    /// From heights at the centres of the columns, `[x][y]`, 40,000 numbers in m of the ego frame.
+    /// Errors in one line on another count, a number that is not finite or one beyond [`LIMIT_M`](Self::LIMIT_M).
+    pub fn from_heights(heights_m: Vec<f32>) -> Result<Self, String> {
+        if heights_m.len() != GridSpec::COLUMNS {
+            return Err(format!(
+                "relief: {} heights, expected {}",
+                heights_m.len(),
+                GridSpec::COLUMNS
+            ));
+        }
+        // Written so that NaN fails too.
+        if let Some(i) = heights_m.iter().position(|h| !(h.abs() <= Self::LIMIT_M)) {
+            return Err(format!(
+                "relief: height {} in column ({}, {}), expected a number within {} m",
+                heights_m[i],
+                i / GridSpec::NY,
+                i % GridSpec::NY,
+                Self::LIMIT_M
+            ));
+        }
+        let flat = heights_m.iter().all(|h| *h == 0.0);
+        Ok(Self {
+            heights_m: (!flat).then(|| Arc::new(heights_m)),
+        })
+    }
+
+    /// From a height at every point of the ground, m; what is not finite counts as 0, the rest is cut to the limit.
+    pub fn from_fn(height_m: impl Fn(DVec2) -> f64) -> Self {
+        let heights = (0..GridSpec::COLUMNS).map(|c| {
+            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let h = height_m(p) as f32;
+            let h = if h.is_finite() { h } else { 0.0 };
+            h.clamp(-Self::LIMIT_M, Self::LIMIT_M)
+        });
+        Self::from_heights(heights.collect()).unwrap_or_default()
+    }
+
+    /// True if the ground is at z = 0 everywhere.
+    pub fn is_flat(&self) -> bool {
+        self.heights_m.is_none()
+    }
+
+    /// Heights at the centres of the columns, `[x][y]`, m; `None` if flat.
+    pub fn heights_m(&self) -> Option<&[f32]> {
+        self.heights_m.as_deref().map(Vec::as_slice)
+    }
+
+    /// True if both hold their heights in the same memory, or both are flat.
+    pub fn shares(&self, other: &Self) -> bool {
+        match (&self.heights_m, &other.heights_m) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+
+    /// Height at the centre of a column, m. Panics outside the grid.
+    pub fn column_m(&self, x: usize, y: usize) -> f64 {
+        match &self.heights_m {
+            Some(h) => f64::from(h[x * GridSpec::NY + y]),
+            None => 0.0,
+        }
+    }
+
+    /// Sets the height of one column, m; the caller keeps it finite and within the limit.
+    pub fn set(&mut self, x: usize, y: usize, height_m: f32) {
+        if self.is_flat() && height_m == 0.0 {
+            return;
+        }
+        let heights = self
+            .heights_m
+            .get_or_insert_with(|| Arc::new(vec![0.0; GridSpec::COLUMNS]));
+        Arc::make_mut(heights)[x * GridSpec::NY + y] = height_m;
+    }
+
+    /// Height at a point of the ego frame, m: bilinear between column centres, continued level outside the grid; 0 for NaN.
+    pub fn height_m(&self, p: DVec2) -> f64 {
+        let Some(heights) = &self.heights_m else {
+            return 0.0;
+        };
+        let u = GridSpec::to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
+        if u.is_nan() {
+            return 0.0;
+        }
+        let last = [GridSpec::NX - 1, GridSpec::NY - 1];
+        let (x, y) = (u.x.clamp(0.0, last[0] as f64), u.y.clamp(0.0, last[1] as f64));
+        let (x0, y0) = ((x as usize).min(last[0] - 1), (y as usize).min(last[1] - 1));
+        let (tx, ty) = (x - x0 as f64, y - y0 as f64);
+        let at = |i: usize, j: usize| f64::from(heights[i * GridSpec::NY + j]);
+        let low = at(x0, y0) * (1.0 - tx) + at(x0 + 1, y0) * tx;
+        let high = at(x0, y0 + 1) * (1.0 - tx) + at(x0 + 1, y0 + 1) * tx;
+        low * (1.0 - ty) + high * ty
+    }
+
+    /// Upward unit normal of the ground at a point of the ego frame.
+    pub fn normal(&self, p: DVec2) -> DVec3 {
+        if self.is_flat() {
+            return DVec3::Z;
+        }
+        let h = GridSpec::VOXEL_M;
+        let dx = self.height_m(p + DVec2::X * h) - self.height_m(p - DVec2::X * h);
+        let dy = self.height_m(p + DVec2::Y * h) - self.height_m(p - DVec2::Y * h);
+        DVec3::new(-dx, -dy, 2.0 * h).normalize_or(DVec3::Z)
+    }
+
+    /// Pose of a vehicle that stands on the ground at a point, its heading turned by `yaw_rad`: it pitches and rolls with
+    /// the ground.
+    pub fn pose_on(&self, p: DVec2, yaw_rad: f64) -> Pose {
+        if self.is_flat() {
+            return Pose::planar(p.x, p.y, yaw_rad);
+        }
+        let up = self.normal(p);
+        let ahead = DVec2::from_angle(yaw_rad).extend(0.0);
+        let left = up.cross(ahead).normalize_or(DVec3::Y);
+        let rotation = DQuat::from_mat3(&DMat3::from_cols(left.cross(up), left, up));
+        Pose {
+            rotation,
+            translation_m: p.extend(self.height_m(p)),
+        }
+    }
+
+    /// Bin of the grid that the ground of this height lies in, in the convention of the Occ3D labels (the road of the ego
+    /// vehicle in bin 0, two bins below its physical height), cut to the grid.
+    pub fn label_bin(height_m: f64) -> usize {
+        Self::physical_bin(height_m).saturating_sub(2)
+    }
+
+    /// Bin of the grid that holds this height, cut to the grid.
+    pub fn physical_bin(height_m: f64) -> usize {
+        let z = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, height_m)).z;
+        z.floor().clamp(0.0, (GridSpec::NZ - 1) as f64) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_is_read_back_between_and_beyond_the_columns() {
+        let relief = Relief::from_fn(|p| 0.05 * p.x - 0.02 * p.y);
+        for p in [DVec2::ZERO, DVec2::new(12.34, -7.0), DVec2::new(-39.7, 39.7)] {
+            assert!(
+                (relief.height_m(p) - (0.05 * p.x - 0.02 * p.y)).abs() < 1e-5,
+                "{p}"
+            );
+        }
+        let edge = relief.height_m(DVec2::new(39.8, 0.0));
+        assert!((relief.height_m(DVec2::new(500.0, 0.0)) - edge).abs() < 1e-6);
+        assert_eq!(relief.height_m(DVec2::NAN), 0.0);
+        let n = relief.normal(DVec2::ZERO);
+        assert!(
+            (n - DVec3::new(-0.05, 0.02, 1.0).normalize()).length() < 1e-5,
+            "{n}"
+        );
+        let pose = relief.pose_on(DVec2::new(4.0, 1.0), 0.3);
+        assert!((pose.apply(DVec3::Z) - pose.translation_m - n).length() < 1e-5);
+        let ahead = pose.apply(DVec3::X) - pose.translation_m;
+        assert!((ahead.y.atan2(ahead.x) - 0.3).abs() < 1e-2, "{ahead}");
+    }
+
+    #[test]
+    fn flat_ground_is_free_and_bad_heights_are_refused() {
+        assert!(
+            Relief::from_heights(vec![0.0; GridSpec::COLUMNS])
+                .expect("sound")
+                .is_flat()
+        );
+        assert!(Relief::from_heights(vec![0.0; 7]).is_err());
+        let mut heights = vec![0.0; GridSpec::COLUMNS];
+        heights[9] = f32::NAN;
+        assert!(Relief::from_heights(heights.clone()).is_err());
+        heights[9] = 1e6;
+        let error = Relief::from_heights(heights).expect_err("too high");
+        assert!(error.contains("column (0, 9)"), "{error}");
+        assert!(Relief::from_fn(|_| f64::NAN).is_flat());
+    }
+
+    #[test]
+    fn the_ego_road_is_in_bin_0_and_a_rise_climbs() {
+        assert_eq!(Relief::label_bin(0.0), 0);
+        assert_eq!(Relief::label_bin(0.45), 1);
+        assert_eq!(Relief::label_bin(2.0), 5);
+        assert_eq!(Relief::label_bin(-30.0), 0);
+        assert_eq!(Relief::label_bin(90.0), 13);
+    }
+}

@@ -1,0 +1,51 @@
+//! Solids to voxels: which voxels of the grid a solid fills, and how much of each.
+
+use glam::DVec3;
+
+use super::Solid;
+use crate::scene::GridSpec;
+
+/// Sub-voxel samples along each axis.
+const SAMPLES: usize = 3;
+/// Samples in a voxel that make it the solid's, of 27: a third.
+const NEEDED: u8 = 9;
+
+/// Visits every voxel that the solid fills, with the number of the voxel's 27 samples inside it: those a third full, or
+/// touched at all if the solid is thinner than a voxel. `column` says which columns count.
+pub fn fill(
+    solid: &Solid,
+    mut column: impl FnMut(usize, usize) -> bool,
+    mut visit: impl FnMut(usize, usize, usize, u8),
+) {
+    let reach = solid.reach();
+    let lo = GridSpec::to_voxel_units(solid.center - reach);
+    let hi = GridSpec::to_voxel_units(solid.center + reach);
+    let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    let span = |axis: usize| {
+        (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize)
+    };
+    let thin = reach.min_element() < GridSpec::VOXEL_M * 0.75;
+    let needed = if thin { 1 } else { NEEDED };
+    for x in span(0) {
+        for y in span(1) {
+            if !column(x, y) {
+                continue;
+            }
+            for z in span(2) {
+                let mut votes = 0;
+                for i in 0..SAMPLES.pow(3) {
+                    let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+                    let u = DVec3::new(
+                        x as f64 + f(i % SAMPLES),
+                        y as f64 + f(i / SAMPLES % SAMPLES),
+                        z as f64 + f(i / SAMPLES.pow(2)),
+                    );
+                    votes += u8::from(solid.contains(GridSpec::from_voxel_units(u)));
+                }
+                if votes >= needed {
+                    visit(x, y, z, votes);
+                }
+            }
+        }
+    }
+}
