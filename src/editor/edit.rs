@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::{
-    BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Frame, GridSpec, Polyline, Scene, SceneBox,
-    SensorRig, SourceFrame, VoxelGrid, VoxelPaint, Waiver, raster,
+    BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Form, Frame, GridSpec, Polyline, Scene, SceneBox,
+    SensorRig, SourceFrame, ThingId, VoxelGrid, VoxelPaint, Waiver, raster,
 };
 
 use super::Shape;
 use super::checks::waive;
 use super::shape::at_least;
-use super::{immediate, junction};
+use super::{immediate, junction, things};
 
 /// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
@@ -84,6 +84,40 @@ pub enum Edit {
         /// True sets, false clears.
         value: bool,
     },
+    /// Puts things beside the road, and their voxels.
+    AddThings {
+        /// What and where, world frame.
+        forms: Vec<Form>,
+    },
+    /// Takes things out, and their voxels.
+    RemoveThings {
+        /// The things.
+        ids: Vec<ThingId>,
+    },
+    /// Moves and turns things together.
+    MoveThings {
+        /// The things.
+        ids: Vec<ThingId>,
+        /// How far in the world frame, m.
+        by_m: DVec2,
+        /// Turn about the middle of them all, degrees counter-clockwise.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        turn_deg: f64,
+    },
+    /// Makes things higher (or, with a negative number, lower).
+    RaiseThings {
+        /// The things.
+        ids: Vec<ThingId>,
+        /// By how much, m; a storey is 3 m.
+        by_m: f64,
+    },
+    /// Gives a thing another form.
+    ChangeThing {
+        /// The thing.
+        id: ThingId,
+        /// What and where from now on, world frame.
+        form: Form,
+    },
     /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
     AddPolylines {
         /// What they mean and where they run, ego frame, m; at least two vertices each.
@@ -151,6 +185,10 @@ pub enum Edit {
     },
 }
 
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
 /// Why an edit was refused; the scene is then as before. One line each.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
@@ -166,6 +204,15 @@ pub enum EditError {
         /// The id asked for.
         id: BoxId,
     },
+    /// No thing of that id.
+    #[error("thing {} does not exist in this scene", .id.0)]
+    UnknownThing {
+        /// The id asked for.
+        id: ThingId,
+    },
+    /// The thing that would result is not sound; see [`Form::problem`].
+    #[error("{0}")]
+    BadThing(String),
     /// No id is left for a new box.
     #[error("no box id is left above {}", u32::MAX)]
     NoIdLeft,
@@ -246,6 +293,15 @@ impl Edit {
                 if *scene.rig != **rig {
                     scene.rev = crate::scene::SceneRev::fresh();
                     scene.rig = Arc::new(SensorRig::clone(rig));
+                }
+            }
+            Self::AddThings { .. }
+            | Self::RemoveThings { .. }
+            | Self::MoveThings { .. }
+            | Self::RaiseThings { .. }
+            | Self::ChangeThing { .. } => {
+                if let Some(background) = things::changed(self, &scene.background)? {
+                    things::replace_background(scene, background);
                 }
             }
             edit => {
@@ -380,7 +436,14 @@ impl Edit {
             } => Arc::make_mut(&mut frame.waivers).retain(|w| !same_finding(w, check, *box_id, *where_m)),
             Self::ClearPaint {} => frame.painted = VoxelPaint::new(),
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
-            Self::SetPrompt { .. } | Self::SetRig { .. } => {} // concern the scene, see `apply`
+            // These concern the scene, see `apply`.
+            Self::SetPrompt { .. }
+            | Self::SetRig { .. }
+            | Self::AddThings { .. }
+            | Self::RemoveThings { .. }
+            | Self::MoveThings { .. }
+            | Self::RaiseThings { .. }
+            | Self::ChangeThing { .. } => {}
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::scene::draft::{box_columns, ground_bin, ground_class};
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, Class, Frame, GridSpec, SceneBox};
+use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec, SceneBox, VoxelGrid};
 
 /// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
 const MARGIN_M: f64 = 0.6;
@@ -46,7 +46,7 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
             *frame.occupancy.column_mut(x, y) = column;
         }
     });
-    refill_ground(frame, &emptied);
+    refill_ground(&mut frame.occupancy, &frame.layout, &emptied);
 }
 
 /// What comes back where an object leaves: walls and plants that it was put on top of. Objects do
@@ -107,26 +107,22 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
 
 /// Lays ground in columns that were emptied: what the layout says, else what most of the
 /// nearest ground columns around have, else terrain.
-fn refill_ground(frame: &mut Frame, emptied: &[[usize; 2]]) {
+pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &[[usize; 2]]) {
     // Looked up before any is laid, so that the order of the columns does not matter.
     let filled: Vec<u8> = emptied
         .iter()
-        .map(|&[x, y]| {
-            let cell = frame.layout.cell(x, y);
-            match ground_class(cell) {
-                Class::Terrain => nearby_ground(frame, x, y),
-                named => named.id(),
-            }
+        .map(|&[x, y]| match ground_class(layout.cell(x, y)) {
+            Class::Terrain => nearby_ground(grid, layout, x, y),
+            named => named.id(),
         })
         .collect();
     for (&[x, y], ground) in emptied.iter().zip(filled) {
-        let bin = ground_bin(&frame.layout, x, y);
-        frame.occupancy.set(x, y, bin, ground);
+        grid.set(x, y, ground_bin(layout, x, y), ground);
     }
 }
 
 /// Ground class that most columns have on the smallest square ring around (x, y) with any ground.
-fn nearby_ground(frame: &Frame, x: usize, y: usize) -> u8 {
+fn nearby_ground(grid: &VoxelGrid, layout: &BevLayout, x: usize, y: usize) -> u8 {
     for reach in 1..=MAX_REACH {
         let mut votes = [0usize; Class::COUNT];
         let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
@@ -134,7 +130,7 @@ fn nearby_ground(frame: &Frame, x: usize, y: usize) -> u8 {
             for j in ys.clone() {
                 let on_ring = i.abs_diff(x).max(j.abs_diff(y)) == reach;
                 if on_ring {
-                    let below = frame.occupancy.get(i, j, ground_bin(&frame.layout, i, j));
+                    let below = grid.get(i, j, ground_bin(layout, i, j));
                     if is_ground(below) {
                         votes[below as usize] += 1;
                     }

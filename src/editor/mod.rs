@@ -13,6 +13,7 @@ pub mod lanes;
 pub mod measure;
 pub mod pick;
 pub mod shape;
+mod things;
 pub mod transform;
 pub mod voxel_ops;
 

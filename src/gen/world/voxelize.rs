@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::World;
 use super::draw::Draw;
 use crate::scene::raster::bev_channels;
-use crate::scene::solid::fill::fill;
+use crate::scene::solid::fill::{SMEAR, fill, smear_down};
 use crate::scene::{BevLayer, Class, GridSpec, LidarPattern, Polyline, PolylineKind, Relief, VoxelGrid};
 
 /// Where the ground sits vertically.
@@ -21,7 +21,6 @@ pub enum Vertical {
     Physical,
 }
 
-const SMEAR: usize = 2;
 /// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
 const HIGHEST_UNDERSIDE: usize = 4;
 /// Ground this many bins above other ground is a deck that stands over it.
@@ -62,19 +61,8 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
 
 /// Puts the ground below what stands on it and applies the vertical convention.
 fn finish_column(column: &mut [u8; GridSpec::NZ], ground: Option<(usize, u8)>, vertical: Vertical) {
-    let solid = *column;
     if vertical == Vertical::Occ3d {
-        for z in 0..GridSpec::NZ {
-            if solid[z] != Class::FREE {
-                for down in 1..=SMEAR.min(z) {
-                    if solid[z - down] == Class::FREE {
-                        column[z - down] = solid[z];
-                    } else {
-                        break;
-                    }
-                }
-            }
-        }
+        smear_down(column);
     }
     if let Some((bin, class)) = ground {
         let shift = if vertical == Vertical::Occ3d { SMEAR } else { 0 };

@@ -3,7 +3,23 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::scene::GridSpec;
+use crate::scene::{Class, GridSpec};
+
+/// Labels are extended downward by so many bins in the Occ3D convention.
+pub const SMEAR: usize = 2;
+
+/// Extends what stands in a column downward by [`SMEAR`] bins, as far as there is free space: the Occ3D convention.
+pub fn smear_down(column: &mut [u8; GridSpec::NZ]) {
+    let solid = *column;
+    for (z, class) in solid.iter().enumerate().filter(|(_, c)| **c != Class::FREE) {
+        for down in 1..=SMEAR.min(z) {
+            if solid[z - down] != Class::FREE {
+                break;
+            }
+            column[z - down] = *class;
+        }
+    }
+}
 
 /// Sub-voxel samples along each axis.
 const SAMPLES: usize = 3;

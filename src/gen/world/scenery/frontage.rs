@@ -175,7 +175,11 @@ fn line_up(site: &mut Site<'_>, line: &[DVec2], lots: &Lots, setting: Setting, r
             && front > 0.6 * lots.width[0]
             && let Some(building) = building(site, a, b, depth, lots, &side, usual, storey_shift, pick)
         {
-            site.put(Form::Building(building), 0.4);
+            // Houses wall to wall share their edge.
+            site.put(
+                Form::Building(building),
+                if lots.gap[1] > 0.0 { 0.4 } else { 0.0 },
+            );
         }
         // On a bend the chord is shorter than the way along the line; what stands there is as wide as the chord.
         at += width.min(total) + gap;
@@ -223,8 +227,10 @@ fn building(
     } else {
         facade
     };
-    for share in [1.0, 0.7, 0.5] {
+    for (share, cut_m) in [(1.0, 0.0), (1.0, 0.7), (0.7, 0.7), (0.6, 1.6)] {
         let depth = depth * share;
+        // On the inside of a bend neighbours would meet at the back: a narrower one fits.
+        let (a, b) = (a + along * cut_m, b - along * cut_m);
         let (c, d) = (b + away * depth, a + away * depth);
         // Some have a wing at the back: an L.
         let wing = draw.chance(0.25) && a.distance(b) > 11.0 && share == 1.0;
@@ -241,7 +247,7 @@ fn building(
                 d,
             ];
         }
-        if !site.free_outline(&outline_m, 0.2) {
+        if a.distance(b) < 4.0 || !site.free_outline(&outline_m, 0.2) {
             continue;
         }
         let roof = match pitched && outline_m.len() == 4 {

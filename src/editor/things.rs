@@ -1,0 +1,298 @@
+//! Edits of the background: the things change, and at once their voxels in every frame and in its source, so that
+//! nothing waits for the networks. All other voxels stay as they are.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::edit::{Edit, EditError};
+use super::immediate::refill_ground;
+use super::shape::at_least;
+use crate::scene::draft::ground_bin;
+use crate::scene::grid::NOT_PAINTED;
+use crate::scene::solid::fill::{fill, smear_down};
+use crate::scene::{
+    Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
+    VoxelPaint,
+};
+
+/// Voxels of a thing's class this close to it go with it, columns: what a network drew of it is not exact.
+const MARGIN: usize = 1;
+/// Most things in one edit.
+const MOST: usize = Background::MAX_THINGS;
+
+/// The background after an edit of things; `None` if it changes nothing.
+pub(super) fn changed(edit: &Edit, background: &Background) -> Result<Option<Background>, EditError> {
+    let mut after = background.clone();
+    match edit {
+        Edit::AddThings { forms } => {
+            at_least("forms", forms.len(), 1)?;
+            let total = background.len() + forms.len();
+            if forms.len() > MOST || total > MOST {
+                return Err(EditError::BadThing(format!(
+                    "the background would hold {total} things, expected at most {MOST}"
+                )));
+            }
+            for form in forms {
+                after.add(sound(form.clone())?);
+            }
+        }
+        Edit::RemoveThings { ids } => {
+            at_least("ids", ids.len(), 1)?;
+            for id in ids {
+                after.remove(*id).ok_or(EditError::UnknownThing { id: *id })?;
+            }
+        }
+        Edit::MoveThings { ids, by_m, turn_deg } => {
+            at_least("ids", ids.len(), 1)?;
+            number("by_m", by_m.is_finite(), || format!("[{}, {}]", by_m.x, by_m.y))?;
+            number("turn_deg", turn_deg.is_finite(), || turn_deg.to_string())?;
+            let middles = ids.iter().map(|id| Ok(known(background, *id)?.form.middle_m()));
+            let middles: Vec<DVec2> = middles.collect::<Result<_, EditError>>()?;
+            let pivot = middles.iter().sum::<DVec2>() / middles.len() as f64;
+            let turn_rad = turn_deg.rem_euclid(360.0).to_radians();
+            let turn = DVec2::from_angle(turn_rad);
+            let move_point = |p: DVec2| match turn_rad == 0.0 {
+                true => p + *by_m,
+                false => pivot + turn.rotate(p - pivot) + *by_m,
+            };
+            for_each(&mut after, ids, |form| form.map_points(move_point, turn_rad))?;
+        }
+        Edit::RaiseThings { ids, by_m } => {
+            at_least("ids", ids.len(), 1)?;
+            number("by_m", by_m.is_finite(), || by_m.to_string())?;
+            for_each(&mut after, ids, |form| raise(form, *by_m))?;
+        }
+        Edit::ChangeThing { id, form } => {
+            let new = sound(form.clone())?;
+            for_each(&mut after, &[*id], |form| form.clone_from(&new))?;
+        }
+        _ => return Ok(None),
+    }
+    Ok((after != *background).then_some(after))
+}
+
+fn number(field: &'static str, finite: bool, found: impl Fn() -> String) -> Result<(), EditError> {
+    match finite {
+        true => Ok(()),
+        false => Err(EditError::Number {
+            field,
+            found: found(),
+            expected: "finite numbers",
+        }),
+    }
+}
+
+fn known(background: &Background, id: ThingId) -> Result<&Thing, EditError> {
+    background.get(id).ok_or(EditError::UnknownThing { id })
+}
+
+fn sound(form: Form) -> Result<Form, EditError> {
+    match form.problem() {
+        Some(problem) => Err(EditError::BadThing(problem)),
+        None => Ok(form),
+    }
+}
+
+fn for_each(
+    background: &mut Background,
+    ids: &[ThingId],
+    mut change: impl FnMut(&mut Form),
+) -> Result<(), EditError> {
+    for id in ids {
+        let mut thing = known(background, *id)?.clone();
+        change(&mut thing.form);
+        thing.form = sound(thing.form)?;
+        background.insert(thing);
+    }
+    Ok(())
+}
+
+fn raise(form: &mut Form, by_m: f64) {
+    match form {
+        Form::Building(b) => b.height_m += by_m,
+        Form::Tree(t) => t.height_m += by_m,
+        Form::Shrubs(s) => s.height_m += by_m,
+        Form::Line(l) => l.height_m += by_m,
+        Form::Post(p) => p.height_m += by_m,
+        Form::Bridge(b) => b.height_m += by_m,
+    }
+}
+
+/// Puts a background in place of the scene's: the voxels of things that differ follow in all frames.
+pub(super) fn replace_background(scene: &mut Scene, after: Background) {
+    let before = std::mem::replace(&mut scene.background, Arc::new(after));
+    let after = scene.background.clone();
+    let differs = |a: &Background, b: &Background| -> Vec<Thing> {
+        let gone = a.iter().filter(|t| b.get(t.id) != Some(t));
+        gone.cloned().collect()
+    };
+    let (gone, come) = (differs(&before, &after), differs(&after, &before));
+    scene.rev = SceneRev::fresh();
+    for frame in &mut scene.frames {
+        let frame = Arc::make_mut(frame);
+        let to_ego = frame.world_from_ego.inverse();
+        let here = |list: &[Thing]| -> Vec<Thing> {
+            let moved = list.iter().map(|t| Thing {
+                form: t.form.in_frame(&to_ego),
+                ..t.clone()
+            });
+            moved.filter(in_grid).collect()
+        };
+        let (gone, come) = (here(&gone), here(&come));
+        if gone.is_empty() && come.is_empty() {
+            continue;
+        }
+        let kept: Vec<Thing> = after.iter().cloned().collect();
+        let kept = here(&kept);
+        let Frame {
+            layout,
+            occupancy,
+            painted,
+            source,
+            ..
+        } = frame;
+        redraw(occupancy, layout, painted, &gone, &come, &kept);
+        let source = Arc::make_mut(source);
+        redraw(
+            &mut source.occupancy,
+            &source.layout,
+            painted,
+            &gone,
+            &come,
+            &kept,
+        );
+    }
+}
+
+fn in_grid(thing: &Thing) -> bool {
+    let (lo, hi) = thing.form.bounds_m();
+    lo.max_element() < 40.0 && hi.min_element() > -40.0
+}
+
+type Columns = BTreeMap<[usize; 2], [u8; GridSpec::NZ]>;
+
+/// Voxels of a thing in the Occ3D convention, from the bin of the ground upward.
+fn columns_of(thing: &Thing, layout: &BevLayout) -> Columns {
+    let mut solids = Vec::new();
+    thing.solids(&|p| layout.relief.height_m(p), &mut solids);
+    let mut columns = Columns::new();
+    for solid in &solids {
+        fill(
+            solid,
+            |_, _| true,
+            |x, y, z, _| {
+                let column = columns.entry([x, y]).or_insert([Class::FREE; GridSpec::NZ]);
+                column[z] = solid.class.id();
+            },
+        );
+    }
+    for ([x, y], column) in &mut columns {
+        smear_down(column);
+        column[..ground_bin(layout, *x, *y)].fill(Class::FREE);
+    }
+    columns
+}
+
+/// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out.
+fn redraw(
+    grid: &mut VoxelGrid,
+    layout: &BevLayout,
+    painted: &VoxelPaint,
+    gone: &[Thing],
+    come: &[Thing],
+    kept: &[Thing],
+) {
+    let mut cleared: BTreeSet<[usize; 3]> = BTreeSet::new();
+    for thing in gone {
+        clear(grid, painted, thing, layout, &mut cleared);
+    }
+    let emptied: BTreeSet<[usize; 2]> = cleared
+        .iter()
+        .map(|[x, y, _]| [*x, *y])
+        .filter(|[x, y]| grid.get(*x, *y, ground_bin(layout, *x, *y)) == Class::FREE)
+        .collect();
+    refill_ground(grid, layout, &emptied.into_iter().collect::<Vec<_>>());
+    if !cleared.is_empty() {
+        for thing in kept.iter().filter(|t| gone.iter().any(|g| near(t, g))) {
+            stamp(grid, layout, painted, thing, |voxel| cleared.contains(&voxel));
+        }
+    }
+    for thing in come {
+        stamp(grid, layout, painted, thing, |_| true);
+    }
+}
+
+fn near(a: &Thing, b: &Thing) -> bool {
+    let ((a_lo, a_hi), (b_lo, b_hi)) = (a.form.bounds_m(), b.form.bounds_m());
+    let reach = DVec2::splat(2.0 * GridSpec::VOXEL_M);
+    a_lo.cmple(b_hi + reach).all() && b_lo.cmple(a_hi + reach).all()
+}
+
+fn clear(
+    grid: &mut VoxelGrid,
+    painted: &VoxelPaint,
+    thing: &Thing,
+    layout: &BevLayout,
+    cleared: &mut BTreeSet<[usize; 3]>,
+) {
+    let own = columns_of(thing, layout);
+    let around: BTreeSet<[usize; 2]> = own
+        .keys()
+        .flat_map(|[x, y]| {
+            let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
+            let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(GridSpec::NX - 1);
+            xs.flat_map(move |x| ys.clone().map(move |y| [x, y]))
+        })
+        .collect();
+    let class = thing.form.class().id();
+    let top = own
+        .values()
+        .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
+        .max();
+    let top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
+    for [x, y] in around {
+        let locked = *painted.column(x, y);
+        let mut column = *grid.column(x, y);
+        for z in 0..=top {
+            // Its own voxels of any class (a deck, a bin), and its class right around it.
+            let is_own = own
+                .get(&[x, y])
+                .is_some_and(|c| c[z] != Class::FREE && c[z] == column[z]);
+            if (is_own || column[z] == class) && locked[z] == NOT_PAINTED {
+                column[z] = Class::FREE;
+                cleared.insert([x, y, z]);
+            }
+        }
+        if column != *grid.column(x, y) {
+            *grid.column_mut(x, y) = column;
+        }
+    }
+}
+
+fn stamp(
+    grid: &mut VoxelGrid,
+    layout: &BevLayout,
+    painted: &VoxelPaint,
+    thing: &Thing,
+    wanted: impl Fn([usize; 3]) -> bool,
+) {
+    for ([x, y], voxels) in columns_of(thing, layout) {
+        let locked = *painted.column(x, y);
+        let mut column = *grid.column(x, y);
+        for z in 0..GridSpec::NZ {
+            let taken = Class::from_id(column[z]).is_some_and(Class::is_object);
+            if voxels[z] != Class::FREE && !taken && locked[z] == NOT_PAINTED && wanted([x, y, z]) {
+                column[z] = voxels[z];
+            }
+        }
+        if column != *grid.column(x, y) {
+            *grid.column_mut(x, y) = column;
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "things_tests.rs"]
+mod tests;

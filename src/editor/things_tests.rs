@@ -1,0 +1,285 @@
+//! Tests of edits of the background: local, undoable, in every frame, and refused in one line.
+
+use glam::DVec3;
+
+use super::*;
+use crate::editor::Document;
+use crate::scene::background::{Building, Facade, Line, LineKind, Roof, Tree, TreeKind};
+use crate::scene::{BoxId, Pose, Relief, SceneBox, SensorRig};
+
+fn building(height_m: f64) -> Form {
+    Form::Building(Building {
+        outline_m: vec![
+            DVec2::new(10.0, 10.0),
+            DVec2::new(20.0, 10.0),
+            DVec2::new(20.0, 18.0),
+            DVec2::new(10.0, 18.0),
+        ],
+        height_m,
+        roof: Roof::Flat,
+        facade: Facade::Balconies,
+    })
+}
+
+fn tree(x: f64, y: f64) -> Form {
+    Form::Tree(Tree {
+        position_m: DVec2::new(x, y),
+        height_m: 5.0,
+        crown_radius_m: 1.6,
+        kind: TreeKind::Broadleaf,
+    })
+}
+
+fn scene(relief: Relief) -> Scene {
+    let mut layout = BevLayout::default();
+    layout.relief = relief;
+    let car = SceneBox {
+        id: BoxId(1),
+        class: Class::Car,
+        center_m: DVec3::new(5.0, 0.0, 0.85),
+        size_m: DVec3::new(4.6, 1.95, 1.7),
+        yaw_rad: 0.0,
+        velocity_mps: DVec2::ZERO,
+        label: Default::default(),
+    };
+    let boxes: BTreeMap<_, _> = [(car.id, car)].into_iter().collect();
+    let grid = crate::scene::draft::draft(&layout, boxes.values());
+    Scene::single(
+        "test",
+        Frame::new(layout, boxes, grid),
+        SensorRig::default().into(),
+        1,
+    )
+}
+
+fn columns_changed(a: &VoxelGrid, b: &VoxelGrid) -> Vec<DVec2> {
+    let all = (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY));
+    let changed = all.filter(|(x, y)| a.column(*x, *y) != b.column(*x, *y));
+    changed
+        .map(|(x, y)| GridSpec::center(x, y, 0).truncate())
+        .collect()
+}
+
+/// A building raised, a tree row deleted, a hedge drawn: only their own ground changes, and undo brings all back.
+#[test]
+fn edits_of_things_are_local_and_undoable() {
+    for relief in [Relief::FLAT, Relief::from_fn(|p| 0.03 * p.x + 0.02 * p.y)] {
+        let mut doc = Document::new(scene(relief));
+        let empty = doc.scene().frame().occupancy.clone();
+        let row: Vec<Form> = (0..5).map(|i| tree(-20.0 + 6.0 * f64::from(i), -9.0)).collect();
+        let forms = [row, vec![building(3.0)]].concat();
+        doc.apply("Add", &Edit::AddThings { forms }).expect("sound");
+        let with_all = doc.scene().frame().occupancy.clone();
+        assert!(with_all.class_counts()[Class::Vegetation as usize] > 150);
+        assert!(with_all.class_counts()[Class::Manmade as usize] > 2000);
+
+        let house = ThingId(6);
+        doc.apply(
+            "Raise",
+            &Edit::RaiseThings {
+                ids: vec![house],
+                by_m: 6.0,
+            },
+        )
+        .expect("sound");
+        let raised = doc.scene().frame().occupancy.clone();
+        assert!(raised.count_set() > with_all.count_set() + 500);
+        for p in columns_changed(&with_all, &raised) {
+            assert!(p.x > 8.0 && p.x < 22.0 && p.y > 8.0 && p.y < 20.0, "{p}");
+        }
+
+        doc.apply(
+            "Remove",
+            &Edit::RemoveThings {
+                ids: (1..=5).map(ThingId).collect(),
+            },
+        )
+        .expect("there");
+        let cut = doc.scene().frame().occupancy.clone();
+        assert_eq!(cut.class_counts()[Class::Vegetation as usize], 0);
+        for p in columns_changed(&raised, &cut) {
+            assert!((p.y + 9.0).abs() < 3.0, "{p}");
+        }
+        // Where trees stood the ground is back.
+        let trees_only = columns_changed(&empty, &cut);
+        assert!(trees_only.iter().all(|p| p.x > 8.0 && p.y > 8.0));
+
+        let hedge = Line::typical(
+            LineKind::Hedge,
+            vec![DVec2::new(-10.0, 6.0), DVec2::new(6.0, 6.0)],
+        );
+        doc.apply(
+            "Hedge",
+            &Edit::AddThings {
+                forms: vec![Form::Line(hedge)],
+            },
+        )
+        .expect("sound");
+        let hedged = &doc.scene().frame().occupancy;
+        let changed = columns_changed(&cut, hedged);
+        assert!(changed.len() > 60 && changed.iter().all(|p| (p.y - 6.0).abs() < 1.2));
+        // Nothing is pending: the source shows the same.
+        assert_eq!(*hedged, doc.scene().frame().source.occupancy);
+        for _ in 0..4 {
+            doc.undo().expect("a step");
+        }
+        assert_eq!(doc.scene().frame().occupancy, empty);
+        assert!(doc.scene().background.is_empty());
+    }
+}
+
+#[test]
+fn a_neighbour_of_what_goes_stays_whole() {
+    let mut alone = Document::new(scene(Relief::FLAT));
+    let add = |forms: Vec<Form>| Edit::AddThings { forms };
+    alone
+        .apply("Add", &add(vec![tree(0.0, 8.0), building(6.0)]))
+        .expect("sound");
+    let mut doc = Document::new(scene(Relief::FLAT));
+    doc.apply("Add", &add(vec![tree(0.0, 8.0), building(6.0), tree(2.2, 8.0)]))
+        .expect("sound");
+    doc.apply(
+        "Remove",
+        &Edit::RemoveThings {
+            ids: vec![ThingId(3)],
+        },
+    )
+    .expect("there");
+    assert_eq!(
+        doc.scene()
+            .frame()
+            .occupancy
+            .count_different(&alone.scene().frame().occupancy),
+        0
+    );
+}
+
+#[test]
+fn every_frame_of_a_clip_follows_in_its_own_coordinates() {
+    let mut clip = scene(Relief::FLAT);
+    let mut second = Frame::clone(clip.frame());
+    second.world_from_ego = Pose::planar(8.0, 0.0, 0.0);
+    clip.frames.push(Arc::new(second));
+    let mut doc = Document::new(clip);
+    doc.apply(
+        "Add",
+        &Edit::AddThings {
+            forms: vec![tree(0.0, 12.0)],
+        },
+    )
+    .expect("sound");
+    for (frame, x) in doc.scene().frames.iter().zip([0.0, -8.0]) {
+        let plants = frame
+            .occupancy
+            .iter_set()
+            .filter(|v| v.3 == Class::Vegetation.id());
+        let (n, sum) = plants.fold((0, 0.0), |(n, sum), v| {
+            (n + 1, sum + GridSpec::center(v.0, v.1, v.2).x)
+        });
+        assert!(n > 30 && (sum / f64::from(n) - x).abs() < 0.5, "{n} {sum}");
+    }
+}
+
+#[test]
+fn painted_voxels_and_cars_are_left_alone() {
+    let mut doc = Document::new(scene(Relief::FLAT));
+    doc.apply(
+        "Paint",
+        &Edit::PaintVoxels {
+            cells: vec![[100, 130, 5]],
+            class: Class::Barrier,
+        },
+    )
+    .expect("inside");
+    let cars = doc.scene().frame().occupancy.class_counts()[Class::Car as usize];
+    let over = Line::typical(LineKind::Wall, vec![DVec2::new(5.0, 0.0), DVec2::new(0.2, 12.2)]);
+    doc.apply(
+        "Wall",
+        &Edit::AddThings {
+            forms: vec![Form::Line(over)],
+        },
+    )
+    .expect("sound");
+    let grid = &doc.scene().frame().occupancy;
+    assert_eq!(grid.class_counts()[Class::Car as usize], cars);
+    assert_eq!(grid.get(100, 130, 5), Class::Barrier.id());
+}
+
+#[test]
+fn bad_edits_leave_the_scene_as_it_was() {
+    let mut doc = Document::new(scene(Relief::FLAT));
+    doc.apply(
+        "Add",
+        &Edit::AddThings {
+            forms: vec![building(6.0)],
+        },
+    )
+    .expect("sound");
+    let rev = doc.scene().rev;
+    let mut crossed = building(6.0);
+    if let Form::Building(b) = &mut crossed {
+        b.outline_m.swap(1, 2);
+    }
+    let id = ThingId(1);
+    for (edit, says) in [
+        (
+            Edit::AddThings {
+                forms: vec![tree(0.0, 0.0), crossed],
+            },
+            "cross",
+        ),
+        (
+            Edit::AddThings {
+                forms: vec![tree(0.0, 0.0); 100_000],
+            },
+            "100001 things",
+        ),
+        (Edit::AddThings { forms: vec![] }, "at least 1"),
+        (
+            Edit::RemoveThings {
+                ids: vec![ThingId(99)],
+            },
+            "thing 99",
+        ),
+        (
+            Edit::RaiseThings {
+                ids: vec![id],
+                by_m: -6.0,
+            },
+            "height_m is 0",
+        ),
+        (
+            Edit::RaiseThings {
+                ids: vec![id],
+                by_m: f64::NAN,
+            },
+            "by_m is NaN",
+        ),
+        (
+            Edit::RaiseThings {
+                ids: vec![id],
+                by_m: 1e6,
+            },
+            "height_m",
+        ),
+        (
+            Edit::MoveThings {
+                ids: vec![id],
+                by_m: DVec2::new(f64::INFINITY, 0.0),
+                turn_deg: 0.0,
+            },
+            "by_m",
+        ),
+        (
+            Edit::ChangeThing {
+                id,
+                form: building(f64::NAN),
+            },
+            "height_m is NaN",
+        ),
+    ] {
+        let error = doc.apply("Bad", &edit).expect_err(says).to_string();
+        assert!(error.contains(says) && !error.contains('\n'), "{error}");
+        assert_eq!(doc.scene().rev, rev);
+    }
+}
