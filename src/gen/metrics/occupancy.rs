@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::scene::{Class, GridSpec, Relief, VoxelGrid};
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 /// Distance in the flat `[x][y][z]` array to the next voxel along each axis.
@@ -19,18 +19,21 @@ pub struct OccupancyStatistics {
 
 impl OccupancyStatistics {
     /// Counts one frame.
-    pub fn add(&mut self, grid: &VoxelGrid) {
+    ///
+    /// What concerns heights is counted from the bin of the ground: `relief` is what the labels were made on.
+    pub fn add(&mut self, grid: &VoxelGrid, relief: &Relief) {
         let labels = flat(grid);
+        let level = levelled(&labels, relief);
         self.class_mix(&labels);
         self.neighbours(&labels);
-        self.vertical(&labels);
+        self.vertical(&level);
         self.thickness(&labels);
         self.cars(&labels);
         for (cells, name) in [
             (2, "driveable.holes_closing_0.8m"),
             (5, "driveable.holes_closing_2.0m"),
         ] {
-            let (holes, area) = road_holes(&labels, cells);
+            let (holes, area) = road_holes(&level, cells);
             self.ratio(name, holes, area);
         }
     }
@@ -246,6 +249,20 @@ fn components(labels: &[u8], class: u8) -> Vec<Vec<usize>> {
     out
 }
 
+/// Labels with every column lowered by the bin that its ground lies in.
+fn levelled(labels: &[u8], relief: &Relief) -> Vec<u8> {
+    let mut out = labels.to_vec();
+    if relief.is_flat() {
+        return out;
+    }
+    for (c, column) in out.chunks_exact_mut(GridSpec::NZ).enumerate() {
+        let down = Relief::label_bin(relief.column_m(c / GridSpec::NY, c % GridSpec::NY));
+        column[..down].fill(Class::FREE);
+        column.rotate_left(down);
+    }
+    out
+}
+
 /// Columns inside the road, closed with a disc of `radius` columns, that hold nothing in bin 0; and
 /// the columns of the closed road. What lies outside the grid does not limit the closing.
 fn road_holes(labels: &[u8], radius: usize) -> (usize, usize) {
@@ -293,7 +310,7 @@ mod tests {
 
     fn means(grid: &VoxelGrid) -> BTreeMap<String, f64> {
         let mut statistics = OccupancyStatistics::default();
-        statistics.add(grid);
+        statistics.add(grid, &Relief::FLAT);
         let means = statistics.means();
         means.into_iter().map(|(k, v)| (k.to_string(), v)).collect()
     }

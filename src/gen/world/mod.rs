@@ -235,7 +235,7 @@ mod tests {
     /// The walk over bins must find what testing every solid finds.
     #[test]
     fn cast_equals_brute_force() {
-        let world = World::random(5);
+        let world = World::new(template::any_layout(5), BTreeMap::new(), 5);
         let mut draw = draw::Draw::new(1, "test rays");
         let mut hits = 0;
         for _ in 0..4000 {

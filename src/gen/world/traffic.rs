@@ -130,7 +130,8 @@ impl Placer<'_> {
             .filter(|l| l.kind == PolylineKind::LaneCenter)
         {
             // Gaps of 7 m in a queue up to 60 m on an empty road.
-            let gap = 6.5 + self.draw.range(4.0, 40.0) / busy.max(0.05);
+            let (free, queue) = (self.draw.range(4.0, 40.0), self.draw.chance(0.1 * amount));
+            let gap = if queue { 7.4 } else { 6.5 + free / busy.max(0.05) };
             let mut next = self.draw.range(0.0, gap);
             let mut along = 0.0;
             for pair in lane.points_m.windows(2) {
@@ -146,15 +147,13 @@ impl Placer<'_> {
                         Class::ConstructionVehicle,
                     ][self.draw.weighted(&[0.72, 0.13, 0.05, 0.05, 0.03, 0.01, 0.01])];
                     let at = pair[0] + d * (next - along) + d.perp() * self.draw.range(-0.4, 0.4);
-                    let speed = if self.draw.chance(0.3) {
-                        0.0
-                    } else {
-                        self.draw.range(2.0, 14.0)
-                    };
+                    let (stands, moving) = (self.draw.chance(0.3), self.draw.range(2.0, 14.0));
+                    let speed = if stands || queue { 0.0 } else { moving };
                     let yaw = d.to_angle() + self.draw.range(-0.03, 0.03);
                     let road = BevLayer::DrivableArea.bit();
                     self.try_add(class, at, yaw, speed, |cell| cell & road != 0);
-                    next += gap * self.draw.range(0.5, 1.6);
+                    let spread = self.draw.range(0.5, 1.6);
+                    next += gap * if queue { 0.9 + 0.15 * spread } else { spread };
                 }
                 along += length;
             }
@@ -195,12 +194,37 @@ impl Placer<'_> {
         let cells: Vec<usize> = (0..GridSpec::COLUMNS)
             .filter(|&c| layout.cells()[c] & lot != 0)
             .collect();
-        for _ in 0..(cells.len() as f64 * 0.012 * amount) as usize {
-            let c = cells[self.draw.below(cells.len())];
-            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
-            let quarter = std::f64::consts::FRAC_PI_2 * self.draw.below(4) as f64;
-            let yaw = quarter + self.draw.range(-0.05, 0.05);
-            self.try_add(Class::Car, p, yaw, 0.0, |cell| cell & lot != 0);
+        self.parked_rows(&cells, share);
+    }
+
+    /// Bays in double rows with aisles between them, over all car parks; `share` of them are taken.
+    fn parked_rows(&mut self, cells: &[usize], share: f64) {
+        const BAY_M: DVec2 = DVec2::new(2.6, 5.2);
+        const AISLE_M: f64 = 6.0;
+        let (Some(first), lot) = (cells.first(), BevLayer::CarparkArea.bit()) else {
+            return;
+        };
+        let center = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+        let middle = cells.iter().map(|c| center(*c)).sum::<DVec2>() / cells.len() as f64;
+        let along = DVec2::from_angle(self.heading_near(middle).unwrap_or(0.0));
+        // Rows are counted from one corner of the lot, so that they run the whole of it.
+        let origin = center(*first) + along.perp() * self.draw.range(0.0, 3.0);
+        let period = 2.0 * BAY_M.y + AISLE_M;
+        for row in -16..16 {
+            for half in [-0.5, 0.5] {
+                let v = f64::from(row) * period + half * BAY_M.y;
+                for bay in -32..32 {
+                    let (taken, jitter) = (self.draw.chance(share), self.draw.range(-0.2, 0.2));
+                    let (nose_in, turn) = (self.draw.chance(0.7), self.draw.range(-0.05, 0.05));
+                    let at = origin + along * (f64::from(bay) * BAY_M.x) + along.perp() * (v + jitter);
+                    if !taken || at.abs().max_element() > 39.0 {
+                        continue;
+                    }
+                    let facing = if nose_in == (half > 0.0) { -1.0 } else { 1.0 };
+                    let yaw = (along.perp() * facing).to_angle() + turn;
+                    self.try_add(Class::Car, at, yaw, 0.0, |cell| cell & lot != 0);
+                }
+            }
         }
     }
 
@@ -253,10 +277,19 @@ impl Placer<'_> {
         if cells.is_empty() {
             return;
         }
-        let busy = (self.draw.unit().powi(2) * 34.0 * amount) as usize + 1;
-        for _ in 0..busy {
-            let c = cells[self.draw.below(cells.len())];
-            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+        let busy = (self.draw.unit().powi(2) * 40.0 * amount) as usize + 1;
+        // Now and then a crowd: an event, a stop, a school.
+        let crowd = if self.draw.chance(0.12 * amount) {
+            12 + self.draw.below(30)
+        } else {
+            0
+        };
+        let centre = cells[self.draw.below(cells.len())];
+        for i in 0..busy + crowd {
+            let any = cells[self.draw.below(cells.len())];
+            let p = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let spread = DVec2::from_angle(self.draw.range(0.0, 6.3)) * self.draw.range(0.3, 6.5);
+            let p = if i < busy { p(any) } else { p(centre) + spread };
             let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
             let yaw = self.draw.range(-3.1, 3.1);
             let speed = if self.draw.chance(0.6) {

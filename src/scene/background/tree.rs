@@ -87,13 +87,13 @@ impl Tree {
                 trunk(fork + deep * 0.6);
                 let bare = self.kind == TreeKind::Bare;
                 let porosity = if bare { 0.85 } else { draw.range(0.35, 0.55) };
-                let boughs = 6 + draw.below(6);
+                let boughs = 8 + draw.below(6);
                 let middle = base + DVec3::Z * (fork + deep / 2.0);
-                let core = DVec3::new(crown * 0.55, crown * 0.55, deep * 0.42);
+                let core = DVec3::new(crown * 0.35, crown * 0.35, deep * 0.4);
                 out.push(Solid::ellipsoid(Class::Vegetation, middle, core, porosity));
                 for i in 0..boughs {
                     let angle = (i as f64 + draw.unit()) / boughs as f64 * std::f64::consts::TAU;
-                    let size = draw.range(0.3, 0.5);
+                    let size = draw.range(0.2, 0.42);
                     let away = crown * (1.0 - size);
                     let up = draw.range(-0.6, 0.8) * deep / 2.0 * (1.0 - size);
                     let center = middle + (DVec2::from_angle(angle) * away).extend(up);

@@ -23,6 +23,8 @@ pub fn smear_down(column: &mut [u8; GridSpec::NZ]) {
 
 /// Sub-voxel samples along each axis.
 const SAMPLES: usize = 3;
+/// Half width below which a pole or plate could pass between the samples, m.
+const THINNEST_M: f64 = 0.095;
 /// Samples in a voxel that make it the solid's, of 27: a third.
 const NEEDED: u8 = 9;
 
@@ -33,6 +35,7 @@ pub fn fill(
     mut column: impl FnMut(usize, usize) -> bool,
     mut visit: impl FnMut(usize, usize, usize, u8),
 ) {
+    let solid = &solid.at_least(THINNEST_M);
     let reach = solid.reach();
     let lo = GridSpec::to_voxel_units(solid.center - reach);
     let hi = GridSpec::to_voxel_units(solid.center + reach);

@@ -131,6 +131,25 @@ impl Solid {
         }
     }
 
+    /// The same with a radius or half width of at least `half_m` on the ground.
+    fn at_least(&self, half_m: f64) -> Self {
+        let mut out = self.clone();
+        match &mut out.shape {
+            Shape::Hull { half, top, .. } => {
+                let thin = half.truncate().cmplt(DVec2::splat(half_m));
+                *top = DVec2::select(thin, top.max(DVec2::splat(half_m)), *top);
+                let floor = DVec2::splat(half_m);
+                *half = half.truncate().max(floor).extend(half.z);
+            }
+            Shape::Frustum { bottom, top, .. } => {
+                *bottom = bottom.max(half_m);
+                *top = if *top > 0.02 { top.max(half_m) } else { *top };
+            }
+            Shape::Ellipsoid { .. } | Shape::Prism { .. } => {}
+        }
+        out
+    }
+
     /// Half extents of the axis-aligned box around it, m.
     pub fn reach(&self) -> DVec3 {
         match &self.shape {
@@ -161,12 +180,22 @@ impl Solid {
         )
     }
 
+    /// A hash of the lump that holds a point. Lumps are counted from the middle of the solid: they move with it.
+    fn lump(&self, p: DVec3) -> u64 {
+        let q = ((p - self.center) / LUMP_M).floor();
+        let size = match &self.shape {
+            Shape::Hull { half, .. } | Shape::Prism { half, .. } => half.x,
+            Shape::Frustum { bottom, .. } => *bottom,
+            Shape::Ellipsoid { radii } => radii.x,
+        };
+        hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64 ^ size.to_bits())))
+    }
+
     fn is_pore(&self, p: DVec3) -> bool {
         if self.porosity <= 0.0 {
             return false;
         }
-        let q = (p / LUMP_M).floor();
-        let h = hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64)));
+        let h = self.lump(p);
         ((h >> 11) as f64) < self.porosity * (1u64 << 53) as f64
     }
 
@@ -202,8 +231,7 @@ impl Solid {
     /// their normal is a hash of the lump.
     pub fn normal(&self, p: DVec3) -> DVec3 {
         if self.porosity > 0.0 {
-            let q = (p / LUMP_M).floor();
-            let h = hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64)) ^ 0x1eaf);
+            let h = hash(self.lump(p) ^ 0x1eaf);
             let unit = |shift: u32| f64::from((h >> shift) as u16) / 32767.5 - 1.0;
             return DVec3::new(unit(0), unit(16), unit(32)).normalize_or(DVec3::Z);
         }

@@ -39,8 +39,8 @@ impl Eval {
                 .map(|i| occupancy_frame(TEST_SEED, *i as u64, |_| None).labels)
                 .collect();
             for (i, labels) in some.iter().zip(&made) {
-                statistics.add(labels);
                 let (world, _) = world_of(TEST_SEED, *i as u64, |_| None);
+                statistics.add(labels, &world.layout.relief);
                 for (class, name) in [(Class::Car, "cars"), (Class::Pedestrian, "pedestrians")] {
                     let count = world.boxes.values().filter(|b| b.class == class).count();
                     statistics.ratio(&format!("layout.{name}_per_frame_pm40"), count, 1);

@@ -12,30 +12,30 @@ use crate::scene::{Form, GridSpec};
 /// Trees per 1,000 m² of open ground, how much they gather in groves (0 to 1), and weights of [`TreeKind::ALL`].
 fn wood(setting: Setting) -> (f64, f64, [f64; 4]) {
     match setting {
-        Setting::Forest => (42.0, 0.15, [0.5, 0.38, 0.04, 0.08]),
-        Setting::Park => (13.0, 0.6, [0.7, 0.14, 0.1, 0.06]),
-        Setting::Suburb => (13.0, 0.4, [0.6, 0.18, 0.14, 0.08]),
-        Setting::Country => (9.0, 0.85, [0.66, 0.18, 0.06, 0.1]),
-        Setting::Motorway => (10.0, 0.7, [0.6, 0.24, 0.04, 0.12]),
-        Setting::City => (7.0, 0.3, [0.7, 0.04, 0.18, 0.08]),
-        Setting::OldTown => (3.0, 0.3, [0.75, 0.02, 0.15, 0.08]),
-        Setting::Industry => (5.0, 0.5, [0.6, 0.1, 0.22, 0.08]),
-        Setting::Retail => (5.0, 0.2, [0.7, 0.05, 0.2, 0.05]),
+        Setting::Forest => (50.0, 0.15, [0.5, 0.38, 0.04, 0.08]),
+        Setting::Park => (19.0, 0.6, [0.7, 0.14, 0.1, 0.06]),
+        Setting::Suburb => (19.0, 0.4, [0.6, 0.18, 0.14, 0.08]),
+        Setting::Country => (15.0, 0.85, [0.66, 0.18, 0.06, 0.1]),
+        Setting::Motorway => (18.0, 0.7, [0.6, 0.24, 0.04, 0.12]),
+        Setting::City => (11.0, 0.3, [0.7, 0.04, 0.18, 0.08]),
+        Setting::OldTown => (5.0, 0.3, [0.75, 0.02, 0.15, 0.08]),
+        Setting::Industry => (9.0, 0.5, [0.6, 0.1, 0.22, 0.08]),
+        Setting::Retail => (9.0, 0.2, [0.7, 0.05, 0.2, 0.05]),
     }
 }
 
 /// Shrub patches per 1,000 m² of open ground.
 fn undergrowth(setting: Setting) -> f64 {
     match setting {
-        Setting::Forest => 13.0,
-        Setting::Park => 5.0,
-        Setting::Suburb => 7.0,
-        Setting::Country => 7.0,
-        Setting::Motorway => 9.0,
-        Setting::City => 3.0,
-        Setting::OldTown => 1.5,
-        Setting::Industry => 4.0,
-        Setting::Retail => 3.0,
+        Setting::Forest => 20.0,
+        Setting::Park => 11.0,
+        Setting::Suburb => 13.0,
+        Setting::Country => 16.0,
+        Setting::Motorway => 18.0,
+        Setting::City => 7.0,
+        Setting::OldTown => 4.0,
+        Setting::Industry => 9.0,
+        Setting::Retail => 7.0,
     }
 }
 
@@ -138,7 +138,7 @@ pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
         let form = Shrubs {
             outline_m,
             height_m: own.range(0.5, 2.4),
-            per_m2: own.range(0.35, 1.3),
+            per_m2: own.range(0.3, 1.1),
         };
         site.put(Form::Shrubs(form), 0.0);
     }
