@@ -289,7 +289,7 @@ pub(super) fn new_box(frame: &Frame, class: Class, at_m: DVec2, yaw_rad: f64) ->
     Some(SceneBox {
         id: BoxId(id),
         class,
-        center_m: at_m.extend(size_m.z / 2.0),
+        center_m: at_m.extend(frame.layout.relief.height_m(at_m) + size_m.z / 2.0),
         size_m,
         yaw_rad,
         velocity_mps: DVec2::ZERO,

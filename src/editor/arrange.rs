@@ -236,11 +236,11 @@ fn mirrored(b: &SceneBox, keep_direction: bool) -> SceneBox {
     }
 }
 
-/// Lets boxes stand on the ground plane z = 0 of the ego frame.
+/// Lets boxes stand on the ground.
 pub fn drop_to_ground(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
     let boxes = boxes_of(frame, ids).into_iter();
     boxes
-        .map(|b| place(&b, standing(&b, b.center_m.truncate()), None))
+        .map(|b| place(&b, standing(frame, &b, b.center_m.truncate()), None))
         .collect()
 }
 
@@ -253,17 +253,17 @@ pub fn to_lane(frame: &Frame, ids: &[BoxId]) -> Vec<Edit> {
         match nearest_lane(&frame.layout, at_m, LANE_REACH_M) {
             Some(lane) => {
                 let yaw_deg = wrapped_deg(lane.yaw_rad.to_degrees());
-                place(&b, standing(&b, lane.at_m), Some(yaw_deg))
+                place(&b, standing(frame, &b, lane.at_m), Some(yaw_deg))
             }
-            None => place(&b, standing(&b, at_m), None),
+            None => place(&b, standing(frame, &b, at_m), None),
         }
     };
     boxes.map(edit).collect()
 }
 
 /// Centre of a box that stands on the ground at a point, m.
-pub fn standing(b: &SceneBox, at_m: DVec2) -> DVec3 {
-    at_m.extend(b.size_m.z / 2.0)
+pub fn standing(frame: &Frame, b: &SceneBox, at_m: DVec2) -> DVec3 {
+    at_m.extend(frame.layout.relief.height_m(at_m) + b.size_m.z / 2.0)
 }
 
 fn place(b: &SceneBox, center_m: DVec3, yaw_deg: Option<f64>) -> Edit {

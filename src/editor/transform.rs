@@ -198,8 +198,13 @@ impl Transform {
                 center_m = lane.at_m.extend(center_m.z);
                 yaw_deg = Some(wrapped_deg(lane.yaw_rad.to_degrees()));
             }
+            if self.axis != Some(Axis::Z) {
+                // It stays as high above the ground as it was.
+                let ground_m = |p: DVec3| frame.layout.relief.height_m(p.truncate());
+                center_m.z += ground_m(center_m) - ground_m(b.center_m);
+            }
             if snap.ground && self.axis != Some(Axis::Z) {
-                center_m = standing(b, center_m.truncate());
+                center_m = standing(frame, b, center_m.truncate());
             }
             Edit::MoveBox {
                 id: b.id,

@@ -327,7 +327,7 @@ impl UiState {
         let size_m = self.tools.size_of(class)?;
         Some(SceneBox {
             size_m,
-            center_m: at_m.extend(size_m.z / 2.0),
+            center_m: at_m.extend(frame.layout.relief.height_m(at_m) + size_m.z / 2.0),
             ..b
         })
     }

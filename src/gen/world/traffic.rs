@@ -39,6 +39,7 @@ struct Placer<'a> {
     layout: &'a BevLayout,
     draw: Draw,
     taken: Vec<bool>,
+    clearance_m: f64, // around every box
     boxes: BTreeMap<BoxId, SceneBox>,
 }
 
@@ -48,6 +49,7 @@ pub fn place(layout: &BevLayout, seed: u64, spec: &TrafficSpec) -> BTreeMap<BoxI
         layout,
         draw: Draw::new(seed, "traffic"),
         taken: vec![false; GridSpec::COLUMNS],
+        clearance_m: 0.35,
         boxes: BTreeMap::new(),
     };
     p.keep_ego_clear();
@@ -106,7 +108,7 @@ impl Placer<'_> {
         }
         let mut free = true;
         let mut cells = Vec::new();
-        box_cells(&b, 0.35, |x, y| {
+        box_cells(&b, self.clearance_m, |x, y| {
             free &= !self.taken[x * GridSpec::NY + y];
             cells.push(x * GridSpec::NY + y);
         });
@@ -210,6 +212,7 @@ impl Placer<'_> {
         // Rows are counted from one corner of the lot, so that they run the whole of it.
         let origin = center(*first) + along.perp() * self.draw.range(0.0, 3.0);
         let period = 2.0 * BAY_M.y + AISLE_M;
+        let usual_m = std::mem::replace(&mut self.clearance_m, 0.1); // doors barely open
         for row in -16..16 {
             for half in [-0.5, 0.5] {
                 let v = f64::from(row) * period + half * BAY_M.y;
@@ -226,6 +229,7 @@ impl Placer<'_> {
                 }
             }
         }
+        self.clearance_m = usual_m;
     }
 
     fn works(&mut self, amount: f64) {

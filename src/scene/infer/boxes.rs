@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, BoxLabel, Class, GridSpec, SceneBox, VoxelGrid};
+use crate::scene::{BoxId, BoxLabel, Class, GridSpec, Relief, SceneBox, VoxelGrid};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -17,11 +17,14 @@ const SMEAR_M: f64 = 2.0 * GridSpec::VOXEL_M;
 /// A box for every object in the labels. Which end of it is the front is a guess.
 pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
     let mut out = BTreeMap::new();
+    let relief = super::relief(labels);
     for class in Class::OBJECTS {
-        for component in components(labels, class) {
+        for component in components(labels, class, &relief) {
             for part in split(class, &component) {
                 let id = BoxId(out.len() as u32 + 1);
-                out.insert(id, part.to_box(id, class));
+                let mut b = part.to_box(id, class);
+                b.center_m.z += relief.height_m(b.center_m.truncate());
+                out.insert(id, b);
             }
         }
     }
@@ -48,17 +51,20 @@ pub fn boxes_around(class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
     parts.map(|(part, id)| part.to_box(BoxId(id), class)).collect()
 }
 
-/// Columns of one object: centres on the ground and the highest voxel.
+/// Columns of one object: centres on the ground and the highest voxel, counted from the bin of the ground.
 struct Component {
     points_m: Vec<DVec2>,
     top: usize,
 }
 
 /// Connected columns (8 neighbours) that hold a class; small ones are left out.
-fn components(labels: &VoxelGrid, class: Class) -> Vec<Component> {
+fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Component> {
     let height = |c: usize| {
         let column = labels.column(c / GridSpec::NY, c % GridSpec::NY);
-        column.iter().rposition(|l| *l == class.id())
+        let top = column.iter().rposition(|l| *l == class.id())?;
+        Some(top.saturating_sub(Relief::label_bin(
+            relief.column_m(c / GridSpec::NY, c % GridSpec::NY),
+        )))
     };
     let voxels = |c: usize| {
         let column = labels.column(c / GridSpec::NY, c % GridSpec::NY);

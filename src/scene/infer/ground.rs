@@ -7,9 +7,10 @@ const REACH: usize = 8;
 
 /// Drivable area from driveable surface and walkways from sidewalk. Objects hide the ground that they
 /// stand on, and labels have holes: a column without ground that has the same ground on two opposite
-/// sides within reach gets it too.
+/// sides within reach gets it too. The relief is read from the bins that ground lies in.
 pub fn layout(labels: &VoxelGrid) -> BevLayout {
     let mut layout = BevLayout::default();
+    layout.relief = super::relief(labels);
     for (class, layer) in [
         (Class::DriveableSurface, BevLayer::DrivableArea),
         (Class::Sidewalk, BevLayer::Walkway),

@@ -3,6 +3,8 @@
 
 mod boxes;
 mod ground;
+mod relief;
 
 pub use boxes::{boxes, boxes_around};
 pub use ground::layout;
+pub use relief::relief;
