@@ -15,9 +15,9 @@ const STEP_M: f64 = 0.4;
 
 pub(super) struct Ground {
     classes: Vec<Class>, // [x][y]
+    above_m: Vec<f32>,   // kerbs and bumps over the relief, [x][y]
     relief: Relief,
     highest_m: Vec<f64>, // per bin of the world
-    seed: u64,
 }
 
 impl Ground {
@@ -35,14 +35,25 @@ impl Ground {
             }
             most + MOST_ABOVE_RELIEF_M
         };
+        let classes = classes(layout, seed);
+        let above = |(c, class): (usize, &Class)| {
+            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let height_m = match class {
+                Class::Sidewalk => KERB_M + 0.05 * noise(seed, p.x / 14.0, p.y / 14.0),
+                Class::Terrain => 0.08 + 0.1 * noise(seed, p.x / 9.0, p.y / 9.0),
+                Class::OtherFlat => 0.15,
+                _ => 0.0,
+            };
+            height_m as f32
+        };
         Self {
-            classes: classes(layout, seed),
+            above_m: classes.iter().enumerate().map(above).collect(),
+            classes,
             highest_m: match relief.is_flat() {
                 true => Vec::new(),
                 false => (0..BINS * BINS).map(highest).collect(),
             },
             relief,
-            seed,
         }
     }
 
@@ -55,13 +66,7 @@ impl Ground {
         let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
             return self.relief.height_m(p);
         };
-        let above = match self.class(x, y) {
-            Class::Sidewalk => KERB_M + 0.05 * noise(self.seed, p.x / 14.0, p.y / 14.0),
-            Class::Terrain => 0.08 + 0.1 * noise(self.seed, p.x / 9.0, p.y / 9.0),
-            Class::OtherFlat => 0.15,
-            _ => 0.0,
-        };
-        self.relief.height_m(p) + above
+        self.relief.height_m(p) + f64::from(self.above_m[x * GridSpec::NY + y])
     }
 
     /// Where a ray meets ground without relief; `None` if there is relief.

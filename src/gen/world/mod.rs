@@ -40,6 +40,35 @@ pub struct Surface {
     pub part: u8,
 }
 
+/// A sphere around a solid: most rays through its bin miss it, which this tells at little cost.
+#[derive(Clone, Copy)]
+struct Sphere {
+    center: DVec3,
+    radius_squared: f64,
+}
+
+impl Sphere {
+    fn around(solid: &Solid) -> Self {
+        Self {
+            center: solid.center,
+            radius_squared: solid.reach().length_squared() * (1.0 + 1e-9) + 1e-9,
+        }
+    }
+
+    /// False if the ray passes it, or meets it only beyond `limit`; `dir` is a unit vector.
+    fn is_met(&self, origin: DVec3, dir: DVec3, limit: f64) -> bool {
+        let to = self.center - origin;
+        let along = to.dot(dir);
+        let aside_squared = to.length_squared() - along * along;
+        let left = self.radius_squared - aside_squared;
+        // Half the chord inside the sphere is the root of `left`.
+        left >= 0.0 && (along >= 0.0 || along * along <= left) && {
+            let early = along - limit;
+            early <= 0.0 || early * early <= left
+        }
+    }
+}
+
 const BIN_M: f64 = 4.0;
 const BINS: usize = 20;
 /// Instances of things of the background carry this bit, so that a bush never shares a number with a car.
@@ -54,6 +83,7 @@ pub struct World {
     /// What stands beside the road.
     pub background: Background,
     solids: Vec<Solid>,
+    spheres: Vec<Sphere>,   // around each solid
     owners: Vec<(u32, u8)>, // instance and part of each solid
     bins: Vec<Vec<u32>>,    // [x][y] of 4 m, indices of solids that reach in
     ground: Ground,
@@ -107,6 +137,7 @@ impl World {
             layout,
             boxes,
             background,
+            spheres: solids.iter().map(Sphere::around).collect(),
             solids,
             owners,
             bins,
@@ -194,6 +225,9 @@ impl World {
             }
             let bin = x as usize * BINS + y as usize;
             for &i in &self.bins[bin] {
+                if !self.spheres[i as usize].is_met(origin, dir, best) {
+                    continue;
+                }
                 let s = &self.solids[i as usize];
                 if let Some(t) = s.enter(origin, dir, best)
                     && t < best

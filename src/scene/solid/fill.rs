@@ -23,6 +23,9 @@ pub fn smear_down(column: &mut [u8; GridSpec::NZ]) {
 
 /// Sub-voxel samples along each axis.
 const SAMPLES: usize = 3;
+/// Samples at the corners of a voxel, and in its middle.
+const CORNERS: [usize; 8] = [0, 2, 6, 8, 18, 20, 24, 26];
+const MIDDLE: usize = 13;
 /// Half width below which a pole or plate could pass between the samples, m.
 const THINNEST_M: f64 = 0.095;
 /// Samples in a voxel that make it the solid's, of 27: a third.
@@ -51,16 +54,28 @@ pub fn fill(
                 continue;
             }
             for z in span(2) {
-                let mut votes = 0;
-                for i in 0..SAMPLES.pow(3) {
+                let sample = |i: usize| {
                     let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
                     let u = DVec3::new(
                         x as f64 + f(i % SAMPLES),
                         y as f64 + f(i / SAMPLES % SAMPLES),
                         z as f64 + f(i / SAMPLES.pow(2)),
                     );
-                    votes += u8::from(solid.contains(GridSpec::from_voxel_units(u)));
-                }
+                    u8::from(solid.contains(GridSpec::from_voxel_units(u)))
+                };
+                let corners: u8 = CORNERS.map(sample).iter().sum();
+                // Without pores a voxel whose corners are all inside is full; a third of one needs a corner or the middle.
+                let votes = match corners {
+                    8 if solid.porosity <= 0.0 => 27,
+                    0 if !thin && solid.porosity <= 0.0 && sample(MIDDLE) == 0 => 0,
+                    _ => {
+                        corners
+                            + (0..SAMPLES.pow(3))
+                                .filter(|i| !CORNERS.contains(i))
+                                .map(sample)
+                                .sum::<u8>()
+                    }
+                };
                 if votes >= needed {
                     visit(x, y, z, votes);
                 }

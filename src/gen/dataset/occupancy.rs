@@ -1,0 +1,89 @@
+//! Frames of the occupancy networks: worlds, complete and as labels, with their layout and draft.
+
+use safetensors::tensor::Dtype;
+
+use super::shard::Shard;
+use crate::generation::world::draw::hash;
+use crate::generation::world::voxelize::{Drive, Vertical, complete, labels};
+use crate::generation::world::{World, template, terrain::Terrain, traffic};
+use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
+
+/// One training frame of the occupancy networks.
+pub struct OccupancyFrame {
+    /// Every voxel of the world.
+    pub dense: VoxelGrid,
+    /// What a labelling drive through the world saw.
+    pub labels: VoxelGrid,
+    /// The layout extruded naively: a condition of the diffusion transformer.
+    pub draft: VoxelGrid,
+    /// 18 BEV layers as bits, `[x][y]`.
+    pub bev: Vec<u32>,
+    /// Headings of objects as [`raster::headings`] gives them, `[x][y]`.
+    pub heading: Vec<u8>,
+}
+
+/// The world of frame `index` of the data set of `seed`, and the frame's own seed. `roads` may give a
+/// layout for that seed, such as a place on an imported road; where it gives none, a template does.
+pub fn world_of(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> (World, u64) {
+    let seed = hash(hash(seed) ^ index);
+    let mut layout = roads(seed).unwrap_or_else(|| template::any_layout(seed));
+    if layout.relief.is_flat() {
+        layout.relief = Terrain::drawn(seed).relief(&layout, seed);
+    }
+    let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
+    (World::new(layout, boxes, seed), seed)
+}
+
+/// Frame `index` of the data set of `seed`; the same arguments give the same frame.
+pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> OccupancyFrame {
+    let (world, seed) = world_of(seed, index, roads);
+    let rig = SensorRig::default();
+    OccupancyFrame {
+        dense: complete(&world, Vertical::Occ3d),
+        labels: labels(&world, &rig.lidars[0], &Drive::default(), Vertical::Occ3d, seed),
+        draft: draft::draft(&world.layout, world.boxes.values()),
+        bev: raster::bev_channels(&world.layout, world.boxes.values()),
+        heading: raster::headings(world.boxes.values()),
+    }
+}
+
+impl OccupancyFrame {
+    /// A frame of a data set that has labels and nothing else: they are both what is seen and what is
+    /// aimed at; layout and boxes are inferred.
+    pub fn of_labels(labels: VoxelGrid) -> Self {
+        let (layout, boxes) = (infer::layout(&labels), infer::boxes(&labels));
+        Self {
+            draft: draft::draft(&layout, boxes.values()),
+            bev: raster::bev_channels(&layout, boxes.values()),
+            heading: raster::headings(boxes.values()),
+            dense: labels.clone(),
+            labels,
+        }
+    }
+}
+
+impl Shard for OccupancyFrame {
+    const ARRAYS: &'static [&'static str] = &["dense", "labels", "draft", "bev", "heading"];
+
+    /// u8 `dense`, `labels`, `draft` `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`.
+    fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
+        let (grid, columns) = (VOXELS.to_vec(), VOXELS[..2].to_vec());
+        let bev = frames.iter().flat_map(|f| &f.bev).flat_map(|b| b.to_le_bytes());
+        let heading = frames.iter().flat_map(|f| &f.heading).copied();
+        vec![
+            (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.dense))),
+            (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.labels))),
+            (Dtype::U8, grid, voxels(frames.iter().map(|f| &f.draft))),
+            (Dtype::I32, columns.clone(), bev.collect()),
+            (Dtype::U8, columns, heading.collect()),
+        ]
+    }
+}
+
+/// Shape of a grid.
+pub(super) const VOXELS: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+
+/// Voxels of some frames, one after another.
+pub(super) fn voxels<'a>(grids: impl Iterator<Item = &'a VoxelGrid>) -> Vec<u8> {
+    grids.flat_map(VoxelGrid::to_dense).collect()
+}
