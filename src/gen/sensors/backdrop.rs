@@ -123,6 +123,11 @@ impl Backdrop {
         &self.border
     }
 
+    /// Gives that edge back.
+    pub fn into_border(self) -> Border {
+        self.border
+    }
+
     /// The roads that leave the grid.
     pub fn exits(&self) -> &[Exit] {
         &self.exits
@@ -352,10 +357,10 @@ mod tests {
         let backdrop = Backdrop::of_grid(&grid, 0.0);
         let (origin, dir) = (
             DVec3::new(0.0, 0.0, 6.0),
-            DVec3::new(1.0, 0.0, -0.03).normalize(),
+            DVec3::new(1.0, 0.0, -0.05).normalize(),
         );
-        let hit = backdrop.cast(origin, dir, 100.0);
-        let hit = hit.filter(|h| h.solid.is_none()).expect("the ground");
+        let hit = backdrop.ground(origin, dir, leaves_grid(origin, dir), 100.0);
+        let hit = hit.expect("the ground");
         let p = origin + dir * hit.range_m;
         assert!((p.z - 3.0).abs() < 0.1, "{p}"); // the top of bin 9
     }

@@ -76,7 +76,9 @@ pub struct Met<'a> {
 
 /// Materials of one world.
 pub struct Materials<'a> {
-    world: &'a World,
+    seed: u64,
+    /// For what is painted on its roads; without it nothing is.
+    world: Option<&'a World>,
     /// Brightness of everything, and of this world's roads, in logarithms.
     gain: f64,
     road: f64,
@@ -89,12 +91,24 @@ impl<'a> Materials<'a> {
     pub fn new(world: &'a World) -> Self {
         let mut draw = Draw::new(world.seed(), "road surface");
         let road = gaussian(&mut draw);
-        let wet = if draw.chance(WET) { draw.range(0.3, 0.8) } else { 0.0 };
+        let wet = if draw.chance(WET) { draw.range(0.3, 1.0) } else { 0.0 };
         Self {
-            world,
+            seed: world.seed(),
+            world: Some(world),
             gain: 0.22 * gaussian(&mut draw),
             road: 0.8 * road,
             wet,
+        }
+    }
+
+    /// Those of a scene without a world behind it: dry, of ordinary brightness, nothing painted.
+    pub fn ordinary(seed: u64) -> Materials<'static> {
+        Materials {
+            seed,
+            world: None,
+            gain: 0.0,
+            road: 0.0,
+            wet: 0.0,
         }
     }
 
@@ -112,7 +126,7 @@ impl<'a> Materials<'a> {
     pub fn lost(&self, material: &Material, met: &Met) -> f64 {
         let dark = match met.class {
             Class::DriveableSurface => {
-                let patch = noise(self.world.seed() ^ 0xda12, met.at.x / 3.0, met.at.y / 3.0);
+                let patch = noise(self.seed ^ 0xda12, met.at.x / 3.0, met.at.y / 3.0);
                 self.road + 1.4 * patch
             }
             _ => 0.5 * (material.strength.max(0.3) / 7.0).ln(),
@@ -121,15 +135,16 @@ impl<'a> Materials<'a> {
         let signal = met.cosine.max(1e-3).ln() - 2.0 * (met.range_m.max(1.0) / 10.0).ln() + dark;
         let weak = match material.retro {
             true => 0.0,
-            false => 1.0 / (1.0 + (0.6 * signal + 4.1).exp()),
+            false => 1.0 / (1.0 + (0.62 * signal + 4.7).exp()),
         };
-        let mirrored = material.mirror * (1.0 - met.cosine).powi(2);
+        // Schlick's approximation of Fresnel's law.
+        let mirrored = material.mirror * (1.0 - met.cosine).powi(5);
         1.0 - (1.0 - material.lost) * (1.0 - weak) * (1.0 - mirrored.clamp(0.0, 1.0))
     }
 
     /// The material of a place; `detail` is uniform in 0..1 and stands for what is finer than a solid.
     pub fn of(&self, met: &Met, detail: f64) -> Material {
-        let (seed, surface, p) = (self.world.seed(), met.surface, met.at);
+        let (seed, surface, p) = (self.seed, met.surface, met.at);
         let mut own = Draw::new(hash(seed ^ u64::from(surface.instance)), "paint");
         let (kind, tone) = (own.unit(), gaussian(&mut own));
         let patch = noise(seed ^ 0x70ad, p.x / 1.5, p.y / 1.5);
@@ -148,7 +163,7 @@ impl<'a> Materials<'a> {
             Class::Vegetation => of(12.0 + 16.0 * (met.range_m / 30.0).min(1.0), 0.42, 0.05),
             Class::Manmade if is_sign(met.solid) => retro(112.0),
             // Reflectors on posts and lamps' plates.
-            Class::Manmade if is_post(met.solid) && detail < 0.06 => retro(100.0),
+            Class::Manmade if is_post(met.solid) && detail < 0.03 => retro(100.0),
             Class::Manmade => {
                 // Windows every three metres along and up a facade: mirrors at a slant, else half transparent.
                 let along = p.x * surface.normal.y - p.y * surface.normal.x;
@@ -160,30 +175,30 @@ impl<'a> Materials<'a> {
                     surface.normal.z.abs() < 0.3,
                 ];
                 if tall && window && pane {
-                    glass(4.0, 0.12, 0.9)
+                    glass(4.0, 0.1, 1.0)
                 } else {
                     // Sheet metal, white plaster, name plates: patches of half a metre.
-                    let plate = noise(seed ^ 0x91a7e, along / 0.6, p.z / 0.6) > 0.72;
+                    let plate = noise(seed ^ 0x91a7e, along / 0.6, p.z / 0.6) > 0.86;
                     match plate && pane {
-                        true => of(70.0, 0.4, 0.005),
-                        false => of(15.5 * (0.85 * tone).exp(), 0.42, 0.012),
+                        true => of(60.0, 0.4, 0.005),
+                        false => of(15.5 * (0.75 * tone).exp(), 0.42, 0.01),
                     }
                 }
             }
             Class::Car => {
                 // Black, coloured, white or silver.
                 let (paint, lost) = match kind {
-                    k if k < 0.4 => (1.8, 0.05),
+                    k if k < 0.4 => (1.8, 0.03),
                     k if k < 0.75 => (8.0, 0.015),
                     _ => (28.0, 0.005),
                 };
                 match surface.part {
                     // The cabin is mostly glass, but for the roof.
-                    1 if surface.normal.z < 0.8 => glass(1.2, 0.22, 0.85),
+                    1 if surface.normal.z < 0.8 => glass(1.2, 0.1, 1.0),
                     2.. => of(2.0, 0.4, 0.06),
-                    _ if detail < 0.02 => retro(105.0), // plates and reflectors
+                    _ if detail < 0.012 => retro(105.0), // plates and reflectors
                     _ => Material {
-                        mirror: 0.35,
+                        mirror: 0.25,
                         ..of(paint, 0.45, lost)
                     },
                 }
@@ -213,8 +228,10 @@ impl<'a> Materials<'a> {
             | BevLayer::LaneDivider.bit()
             | BevLayer::RoadDivider.bit()
             | BevLayer::StopLine.bit();
-        GridSpec::column_at(p.x, p.y)
-            .is_some_and(|[x, y]| self.world.layout.cells()[x * GridSpec::NY + y] & painted != 0)
+        let column = GridSpec::column_at(p.x, p.y);
+        self.world.zip(column).is_some_and(|(world, [x, y])| {
+            world.layout.cells()[x * GridSpec::NY + y] & painted != 0
+        })
     }
 }
 

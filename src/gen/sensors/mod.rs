@@ -4,7 +4,7 @@
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
 pub mod appearance;
-
+pub mod around;
 pub mod backdrop;
 pub mod border;
 pub mod caster;
@@ -24,5 +24,6 @@ mod plots;
 pub mod project;
 pub mod raycast;
 pub mod splat;
+mod texture;
 mod tile;
 pub mod truth;

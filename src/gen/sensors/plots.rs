@@ -12,10 +12,12 @@ use crate::generation::world::shapes::Solid;
 use crate::scene::{BoxId, Class, SceneBox};
 
 /// Roads are lined up to this far from the edge, m.
-const LINED_M: f64 = 85.0;
+const LINED_M: f64 = 70.0;
 /// Length of a plot along a road, and edge of one between the roads, m.
 const FRONT_M: [f64; 2] = [9.0, 20.0];
 const BLOCK_M: f64 = 12.0;
+/// Blocks between the roads are up to this far from the edge, m.
+const BLOCKS_M: f64 = 52.0;
 /// Samples of the edge this near to the road's side tell what lines it, m.
 const NEAR_M: f64 = 22.0;
 /// Depth of a house, m.
@@ -23,7 +25,7 @@ const DEPTH_M: [f64; 2] = [7.0, 12.0];
 /// Nothing stands nearer to the grid than this, m.
 const CLEAR_M: f64 = 0.4;
 /// Share of plots with something on them.
-const FILLED: f64 = 0.8;
+const FILLED: f64 = 0.85;
 /// Cars: places along a lane and at the kerb, m, and the share that is taken.
 const LANE_GAP_M: f64 = 17.0;
 const PARKED_GAP_M: f64 = 6.6;
@@ -196,7 +198,7 @@ fn blocks(border: &Border, exits: &[Exit], usual: Character, seed: u64, things: 
             + DVec2::new(draw.range(-2.0, 2.0), draw.range(-2.0, 2.0));
         let far_m = at.abs().max_element() - GRID_M;
         // The farther out, the less is seen: only the first rows are worth it.
-        if far_m < 1.0 || far_m > 62.0 {
+        if !(1.0..=BLOCKS_M).contains(&far_m) {
             continue;
         }
         match plot(usual, &mut draw) {
