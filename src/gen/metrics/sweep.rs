@@ -83,11 +83,7 @@ impl SweepFigures {
             let returned = end.filter(|p| !near(p.range_m));
             self.slot(i / columns, own, returned.is_some());
             if let Some(point) = returned {
-                self.echo(
-                    f64::from(point.range_m),
-                    f64::from(point.intensity),
-                    point.class,
-                );
+                self.echo(f64::from(point.range_m), f64::from(point.intensity), point.class);
             }
         }
         self.sweeps += 1;

@@ -4,14 +4,14 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::backdrop::{Backdrop, SCENE_SEED};
+use super::backdrop::{Backdrop, SCENE_SEED, leaves_grid};
 use super::border::Border;
 use super::lidar::{EgoBox, Rays};
 use super::material::{Materials, Met};
 use super::own_body::{OwnBody, is_blind};
 use crate::generation::world::Surface;
 use crate::generation::world::draw::{Draw, hash};
-use crate::scene::{Class, LidarPattern, LidarPoint, VoxelGrid};
+use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, VoxelGrid};
 
 /// Rays that one thread works on in a row.
 const RAYS: usize = 512;
@@ -128,8 +128,11 @@ impl Around {
                 let strength = OWN_STRENGTH * (0.5 + fate);
                 return Outside::Own(seen.then(|| point(range_m, Class::Others, strength, 0.0)));
             }
+            // Of what is higher than the voxels nobody knows how far it reaches.
+            let over = origin.z + direction.z * leaves_grid(origin, direction) > GridSpec::MAX_M[2];
             let hit = backdrop
                 .as_ref()
+                .filter(|_| !over)
                 .and_then(|b| Some((b, b.cast(origin, direction, pattern.max_range_m)?)));
             let Some((backdrop, hit)) = hit else {
                 return Outside::Nothing;

@@ -75,11 +75,7 @@ pub struct Backdrop {
 impl Backdrop {
     /// That of a procedural world.
     pub fn of_world(world: &World) -> Self {
-        Self::new(
-            Border::of_world(world),
-            &world.layout.polylines,
-            world.seed(),
-        )
+        Self::new(Border::of_world(world), &world.layout.polylines, world.seed())
     }
 
     /// That of voxels; `lift_m` is what labels put the ground too low.
@@ -150,8 +146,7 @@ impl Backdrop {
         let mut best = self.ground(origin, dir, out_m, max_range_m);
         let limit = best.map_or(max_range_m, |b| b.range_m);
         if let Some((range_m, i)) = self.first_solid(origin, dir, out_m, limit) {
-            let (solid, (instance, part)) =
-                (&self.things.solids[i as usize], self.things.owners[i as usize]);
+            let (solid, (instance, part)) = (&self.things.solids[i as usize], self.things.owners[i as usize]);
             best = Some(Behind {
                 range_m,
                 class: solid.class,
@@ -263,7 +258,7 @@ impl Backdrop {
 
 /// Distance at which a ray is out of the grid's square for good; 0 for one that begins beyond it, infinite for a
 /// vertical one.
-fn leaves_grid(origin: DVec3, dir: DVec3) -> f64 {
+pub(super) fn leaves_grid(origin: DVec3, dir: DVec3) -> f64 {
     let side = |axis: usize| match dir[axis] {
         d if d.abs() < 1e-12 => f64::INFINITY,
         d => (GRID_M * d.signum() - origin[axis]) / d,
@@ -301,10 +296,7 @@ mod tests {
                 things += usize::from(hit.instance > 0);
                 far += usize::from(hit.range_m > 60.0);
             }
-            assert!(
-                found > 1000 && things > 500 && far > 50,
-                "{found} {things} {far}"
-            );
+            assert!(found > 1000 && things > 500 && far > 50, "{found} {things} {far}");
             for bad in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::Z, -DVec3::Z] {
                 let hit = backdrop.cast(origin, bad, 90.0);
                 assert!(hit.is_none_or(|h| h.range_m.is_finite()));
@@ -330,7 +322,11 @@ mod tests {
                 for far_m in [1.0, 15.0, 40.0] {
                     let p = exit.at + exit.heading * far_m;
                     if p.abs().max_element() > GRID_M + 0.5 {
-                        assert_eq!(backdrop.ground_class(p), Some(Class::DriveableSurface), "{exit:?}");
+                        assert_eq!(
+                            backdrop.ground_class(p),
+                            Some(Class::DriveableSurface),
+                            "{exit:?}"
+                        );
                     }
                 }
             }
@@ -339,7 +335,10 @@ mod tests {
                 let ground = backdrop.ground_class(solid.center.truncate());
                 let on_road = ground == Some(Class::DriveableSurface);
                 cars += usize::from(solid.class == Class::Car);
-                assert!(!on_road || solid.class == Class::Car || solid.center.z > 1.5, "{solid:?}");
+                assert!(
+                    !on_road || solid.class == Class::Car || solid.center.z > 1.5,
+                    "{solid:?}"
+                );
             }
         }
         assert!(roads > 12 && cars > 20, "{roads} {cars}");
@@ -355,10 +354,7 @@ mod tests {
             }
         }
         let backdrop = Backdrop::of_grid(&grid, 0.0);
-        let (origin, dir) = (
-            DVec3::new(0.0, 0.0, 6.0),
-            DVec3::new(1.0, 0.0, -0.05).normalize(),
-        );
+        let (origin, dir) = (DVec3::new(0.0, 0.0, 6.0), DVec3::new(1.0, 0.0, -0.05).normalize());
         let hit = backdrop.ground(origin, dir, leaves_grid(origin, dir), 100.0);
         let hit = hit.expect("the ground");
         let p = origin + dir * hit.range_m;

@@ -44,8 +44,16 @@ impl Side {
 
     /// The cell at a depth and a place along the side.
     pub fn cell(self, depth: usize, along: usize) -> [usize; 2] {
-        let out = if self.high { GridSpec::NX - 1 - depth } else { depth };
-        if self.axis == 0 { [out, along] } else { [along, out] }
+        let out = if self.high {
+            GridSpec::NX - 1 - depth
+        } else {
+            depth
+        };
+        if self.axis == 0 {
+            [out, along]
+        } else {
+            [along, out]
+        }
     }
 
     /// Middle of a cell, m.
@@ -57,7 +65,11 @@ impl Side {
     /// Outward unit normal.
     pub fn normal(self) -> DVec2 {
         let sign = if self.high { 1.0 } else { -1.0 };
-        if self.axis == 0 { DVec2::X * sign } else { DVec2::Y * sign }
+        if self.axis == 0 {
+            DVec2::X * sign
+        } else {
+            DVec2::Y * sign
+        }
     }
 }
 
@@ -167,6 +179,12 @@ impl Border {
         }
     }
 
+    /// True if a change of the columns from `low` to `high` may change the edge.
+    pub fn is_touched(low: [f64; 2], high: [f64; 2]) -> bool {
+        let (deep, inner) = (DEEP as f64 + 1.0, GridSpec::NX as f64 - DEEP as f64 - 1.0);
+        (0..2).any(|axis| low[axis] <= deep || high[axis] >= inner)
+    }
+
     /// Ground of a cell; `depth` counts in [`DEPTHS`].
     pub fn ground(&self, side: Side, depth: usize, along: usize) -> Class {
         self.ground[(side.index() * DEPTHS.len() + depth) * GridSpec::NX + along]
@@ -243,6 +261,10 @@ mod tests {
         let tall = |b: &Border| b.stands().iter().filter(|s| s.class != Class::Free).count();
         let (a, b) = (tall(&exact), tall(&voxels));
         assert!(a > 10 && b * 2 > a && a * 2 > b, "{a} {b}");
+        assert!(
+            Border::is_touched([100.0, 10.0], [110.0, 14.0]) && Border::is_touched([181.0; 2], [182.0; 2])
+        );
+        assert!(!Border::is_touched([30.0; 2], [170.0; 2]));
         assert!(!exact.is_empty() && Border::of_grid(&VoxelGrid::new(), 0.0).is_empty());
     }
 }

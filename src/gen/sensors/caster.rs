@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::around::{Around, Height};
+use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
 use crate::scene::grid::{BRICK, BRICKS};
@@ -90,7 +91,10 @@ impl Caster {
             .filter_map(|&b| changed_in(&self.grid, grid, b))
             .collect();
         self.grid = grid.clone();
-        if !changed.is_empty() {
+        if changed
+            .iter()
+            .any(|c| Border::is_touched([c.low.x, c.low.y], [c.high.x, c.high.y]))
+        {
             self.around.update(grid, &self.pattern, &self.rays);
         }
         if changed.is_empty() {

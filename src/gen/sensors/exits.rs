@@ -81,7 +81,9 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
             let wide = 0.5 * GridSpec::VOXEL_M;
             let at = (a + b) / 2.0 + side.normal() * wide;
             let near = |p: DVec2| p.distance(at) < (cells as f64 / 2.0 + 2.0) * GridSpec::VOXEL_M;
-            let lanes = ends.iter().filter(|[p, _]| near(*p) && out_m(*p, side) < AT_EDGE_M);
+            let lanes = ends
+                .iter()
+                .filter(|[p, _]| near(*p) && out_m(*p, side) < AT_EDGE_M);
             let along: DVec2 = lanes.map(|[_, direction]| *direction).sum();
             let heading = along
                 .try_normalize()
@@ -90,7 +92,10 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
                 .unwrap_or(side.normal());
             let cosine = heading.dot(side.normal());
             // Right and left of the heading, in the order of the cells along the side.
-            let walks = [walk(border, side, run[0], false), walk(border, side, run[1], true)];
+            let walks = [
+                walk(border, side, run[0], false),
+                walk(border, side, run[1], true),
+            ];
             let low_is_left = heading.perp_dot(a - at) > 0.0;
             let walk_m = if low_is_left { [walks[1], walks[0]] } else { walks };
             out.push(Exit {

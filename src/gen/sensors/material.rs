@@ -10,6 +10,8 @@ use crate::scene::{BevLayer, Class, GridSpec};
 
 /// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.
 pub const DIFFUSE_MOST: f64 = 100.0;
+/// Where ordinary echoes begin to sink under the threshold, m.
+const REACH_M: f64 = 63.0;
 /// Share of worlds whose roads are wet.
 const WET: f64 = 0.2;
 
@@ -91,11 +93,15 @@ impl<'a> Materials<'a> {
     pub fn new(world: &'a World) -> Self {
         let mut draw = Draw::new(world.seed(), "road surface");
         let road = gaussian(&mut draw);
-        let wet = if draw.chance(WET) { draw.range(0.3, 1.0) } else { 0.0 };
+        let wet = if draw.chance(WET) {
+            draw.range(0.3, 1.0)
+        } else {
+            0.0
+        };
         Self {
             seed: world.seed(),
             world: Some(world),
-            gain: 0.22 * gaussian(&mut draw),
+            gain: 0.1 + 0.22 * gaussian(&mut draw),
             road: 0.8 * road,
             wet,
         }
@@ -133,9 +139,11 @@ impl<'a> Materials<'a> {
         };
         // Lambert's law and the square of the distance, in logarithms; the slope is that of real roads by ring.
         let signal = met.cosine.max(1e-3).ln() - 2.0 * (met.range_m.max(1.0) / 10.0).ln() + dark;
+        // Near the end of its range the sensor's threshold takes over.
+        let threshold = (met.range_m / REACH_M).powi(4);
         let weak = match material.retro {
             true => 0.0,
-            false => 1.0 / (1.0 + (0.62 * signal + 4.7).exp()),
+            false => 1.0 / (1.0 + (0.62 * signal + 4.7 - threshold).exp()),
         };
         // Schlick's approximation of Fresnel's law.
         let mirrored = material.mirror * (1.0 - met.cosine).powi(5);
@@ -150,17 +158,19 @@ impl<'a> Materials<'a> {
         let patch = noise(seed ^ 0x70ad, p.x / 1.5, p.y / 1.5);
         let of = diffuse;
         match met.class {
-            Class::DriveableSurface if self.is_painted(p.truncate()) && detail < 0.6 => {
-                of(34.0, 0.4, 0.003)
-            }
+            Class::DriveableSurface if self.is_painted(p.truncate()) && detail < 0.6 => of(34.0, 0.4, 0.003),
             Class::DriveableSurface => Material {
                 mirror: self.wet,
-                ..of(8.0 * (0.7 * patch + 0.2 * self.road).exp() * (1.0 - 0.4 * self.wet), 0.42, 0.004)
+                ..of(
+                    8.3 * (0.8 * patch + 0.2 * self.road).exp() * (1.0 - 0.4 * self.wet),
+                    0.5,
+                    0.004,
+                )
             },
-            Class::Sidewalk => of(13.5 * (0.6 * patch).exp(), 0.38, 0.002),
+            Class::Sidewalk => of(14.5 * (0.6 * patch).exp(), 0.42, 0.002),
             Class::OtherFlat => of(13.0 * (0.6 * patch).exp(), 0.38, 0.003),
-            Class::Terrain => of(17.0 * (0.5 * patch).exp(), 0.42, 0.008),
-            Class::Vegetation => of(12.0 + 16.0 * (met.range_m / 30.0).min(1.0), 0.42, 0.05),
+            Class::Terrain => of(18.0 * (0.55 * patch).exp(), 0.45, 0.008),
+            Class::Vegetation => of(15.0 + 16.0 * (met.range_m / 30.0).min(1.0), 0.45, 0.05),
             Class::Manmade if is_sign(met.solid) => retro(112.0),
             // Reflectors on posts and lamps' plates.
             Class::Manmade if is_post(met.solid) && detail < 0.03 => retro(100.0),
@@ -178,10 +188,10 @@ impl<'a> Materials<'a> {
                     glass(4.0, 0.1, 1.0)
                 } else {
                     // Sheet metal, white plaster, name plates: patches of half a metre.
-                    let plate = noise(seed ^ 0x91a7e, along / 0.6, p.z / 0.6) > 0.86;
+                    let plate = noise(seed ^ 0x91a7e, along / 0.6, p.z / 0.6) > 0.82;
                     match plate && pane {
-                        true => of(60.0, 0.4, 0.005),
-                        false => of(15.5 * (0.75 * tone).exp(), 0.42, 0.01),
+                        true => of(48.0, 0.4, 0.005),
+                        false => of(16.5 * (0.76 * tone).exp(), 0.45, 0.01),
                     }
                 }
             }
@@ -204,14 +214,14 @@ impl<'a> Materials<'a> {
                 }
             }
             Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => match detail {
-                d if d < 0.035 => retro(110.0), // contour marking
+                d if d < 0.02 => retro(110.0), // contour marking
                 _ => Material {
                     // A bus is glass for a good part.
                     mirror: if met.class == Class::Bus { 0.5 } else { 0.1 },
                     ..of(27.0 * (0.25 * tone).exp(), 0.4, 0.015)
                 },
             },
-            Class::Pedestrian if detail < if kind < 0.1 { 0.3 } else { 0.008 } => retro(105.0), // vests
+            Class::Pedestrian if detail < if kind < 0.1 { 0.2 } else { 0.006 } => retro(105.0), // vests
             Class::Pedestrian => of(20.0 * (0.5 * tone).exp(), 0.5, 0.045),
             Class::TrafficCone if detail < 0.25 => retro(170.0), // its collar
             Class::TrafficCone => of(17.0, 0.6, 0.03),
@@ -229,9 +239,9 @@ impl<'a> Materials<'a> {
             | BevLayer::RoadDivider.bit()
             | BevLayer::StopLine.bit();
         let column = GridSpec::column_at(p.x, p.y);
-        self.world.zip(column).is_some_and(|(world, [x, y])| {
-            world.layout.cells()[x * GridSpec::NY + y] & painted != 0
-        })
+        self.world
+            .zip(column)
+            .is_some_and(|(world, [x, y])| world.layout.cells()[x * GridSpec::NY + y] & painted != 0)
     }
 }
 

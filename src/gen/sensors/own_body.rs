@@ -147,10 +147,16 @@ mod tests {
         let down = DVec3::new(0.3, 0.0, -0.8).normalize();
         let at = |z| DVec3::new(0.94, 0.0, z);
         assert!(body.meets(at(1.84), down).is_some());
-        assert!(body.meets(at(1.84), -DVec3::Z).is_some_and(|r| (r - 0.33).abs() < 1e-9));
+        assert!(
+            body.meets(at(1.84), -DVec3::Z)
+                .is_some_and(|r| (r - 0.33).abs() < 1e-9)
+        );
         assert!(body.meets(at(1.4), down).is_none(), "below the roof");
         assert!(body.meets(at(4.0), down).is_none(), "on a mast of its own");
-        assert!(body.meets(DVec3::new(3.2, 0.0, 1.84), down).is_none(), "ahead of it");
+        assert!(
+            body.meets(DVec3::new(3.2, 0.0, 1.84), down).is_none(),
+            "ahead of it"
+        );
         assert!(body.meets(at(1.84), DVec3::X).is_none());
         for bad in [DVec3::NAN, DVec3::ZERO, DVec3::INFINITY, -DVec3::INFINITY] {
             assert_eq!(body.meets(bad, down), None);

@@ -50,15 +50,7 @@ pub(super) fn draw_up(border: &Border, exits: &[Exit], seed: u64, things: &mut T
     for i in 0..exits.len() {
         let key = hash(seed ^ i as u64);
         for left in [false, true] {
-            line(
-                border,
-                exits,
-                i,
-                left,
-                usual,
-                hash(key ^ u64::from(left)),
-                things,
-            );
+            line(border, exits, i, left, usual, hash(key ^ u64::from(left)), things);
         }
         cars(border, exits, i, key, things);
     }
@@ -97,7 +89,11 @@ fn character(border: &Border, off: impl Fn(DVec2) -> Option<f64>) -> Character {
         green: share(green),
         house_m: middle(&mut houses_m, 7.0).clamp(3.0, 20.0),
         tree_m: middle(&mut trees_m, 5.0).clamp(2.5, 12.0),
-        setback_m: if setback_m.is_finite() { setback_m.clamp(0.5, 12.0) } else { 4.0 },
+        setback_m: if setback_m.is_finite() {
+            setback_m.clamp(0.5, 12.0)
+        } else {
+            4.0
+        },
     }
 }
 
@@ -154,7 +150,11 @@ fn line(
         let middle_m = along_m + front_m / 2.0;
         match plot(c, &mut draw) {
             Plot::House => {
-                let gap_m = if draw.chance(0.5) { 0.2 } else { draw.range(1.5, 5.0) };
+                let gap_m = if draw.chance(0.5) {
+                    0.2
+                } else {
+                    draw.range(1.5, 5.0)
+                };
                 let (depth_m, back_m) = (draw.range(DEPTH_M[0], DEPTH_M[1]), draw.range(0.0, 1.0));
                 let off_m = exit.reach_m(left) + c.setback_m + back_m + depth_m / 2.0;
                 let at = exit.point(middle_m, sign * off_m);
@@ -164,8 +164,7 @@ fn line(
             Plot::Trees => {
                 for k in 0..2 {
                     let off_m = exit.reach_m(left) + draw.range(0.8, 2.0 + c.setback_m);
-                    let at =
-                        exit.point(middle_m + front_m * (f64::from(k) - 0.5) / 2.0, sign * off_m);
+                    let at = exit.point(middle_m + front_m * (f64::from(k) - 0.5) / 2.0, sign * off_m);
                     tree(border, exits, at, c, &mut draw, things);
                 }
             }
@@ -180,7 +179,9 @@ fn line(
         let at = exit.point(along_m, sign * (exit.half_m + 0.5));
         if clear(exits, at, 0.1) {
             let base = at.extend(border.height_m(at));
-            things.solids.push(Solid::frustum(Class::Manmade, base, 6.0, 0.12, 0.08));
+            things
+                .solids
+                .push(Solid::frustum(Class::Manmade, base, 6.0, 0.12, 0.08));
             things.close();
         }
         along_m += gap_m;
@@ -242,9 +243,7 @@ fn house(
 ) {
     let height_m = (c.house_m * draw.range(0.7, 1.4)).clamp(2.8, 24.0);
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 0.0)];
-    let corner = |(u, v): (f64, f64)| {
-        at + heading * (u * size.x / 2.0) + heading.perp() * (v * size.y / 2.0)
-    };
+    let corner = |(u, v): (f64, f64)| at + heading * (u * size.x / 2.0) + heading.perp() * (v * size.y / 2.0);
     if !corners.iter().all(|k| clear(exits, corner(*k), 0.3)) {
         return;
     }
@@ -267,14 +266,7 @@ fn house(
     things.close();
 }
 
-fn tree(
-    border: &Border,
-    exits: &[Exit],
-    at: DVec2,
-    c: Character,
-    draw: &mut Draw,
-    things: &mut Things,
-) {
+fn tree(border: &Border, exits: &[Exit], at: DVec2, c: Character, draw: &mut Draw, things: &mut Things) {
     let height_m = c.tree_m * draw.range(0.8, 1.4);
     let crown_m = (height_m * draw.range(0.28, 0.42)).min(3.5);
     if !clear(exits, at, 0.3) || at.abs().max_element() < GRID_M + crown_m + CLEAR_M {
@@ -337,10 +329,7 @@ fn car(
         let q = exit.local(at);
         i == own || q.x < -4.0 || q.y.abs() > exit.half_m + 3.0
     });
-    if !alone
-        || at.abs().max_element() < GRID_M + 3.0
-        || at.abs().max_element() > REACH_M - 4.0
-    {
+    if !alone || at.abs().max_element() < GRID_M + 3.0 || at.abs().max_element() > REACH_M - 4.0 {
         return;
     }
     let heading = exits[own].heading;

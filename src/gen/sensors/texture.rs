@@ -8,7 +8,7 @@ use crate::generation::world::draw::{Draw, hash};
 use crate::scene::Class;
 
 /// Edge of a patch of one material, m.
-const PATCH_M: f64 = 0.5;
+const PATCH_M: f64 = 0.3;
 const SEED: u64 = 0x7e87_0e5e;
 
 /// How uneven a class is: spread of patches and of single echoes, in logarithms; share of patches that send light back
@@ -28,10 +28,10 @@ fn of(class: Class) -> Uneven {
         retro_strength,
     };
     match class {
-        Class::DriveableSurface => uneven(0.45, 0.4, 0.0, 0.0),
-        Class::Sidewalk | Class::OtherFlat | Class::Terrain => uneven(0.4, 0.35, 0.0, 0.0),
-        Class::Vegetation => uneven(0.3, 0.45, 0.0, 0.0),
-        Class::Manmade => uneven(0.85, 0.35, 0.03, 100.0),
+        Class::DriveableSurface => uneven(0.6, 0.5, 0.0, 0.0),
+        Class::Sidewalk | Class::OtherFlat | Class::Terrain => uneven(0.5, 0.45, 0.0, 0.0),
+        Class::Vegetation => uneven(0.35, 0.5, 0.0, 0.0),
+        Class::Manmade => uneven(0.85, 0.4, 0.02, 100.0),
         Class::Car => uneven(0.7, 0.5, 0.012, 105.0),
         Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => {
             uneven(0.4, 0.4, 0.03, 110.0)
@@ -59,9 +59,12 @@ pub fn textured(usual: f32, class: Class, at: DVec3, ray: u64) -> f32 {
         false => (f64::from(usual) * (kind.patches * tone + kind.echoes * echo).exp()).min(DIFFUSE_MOST),
     };
     // Sensors report whole numbers.
-    if bright.is_nan() { 0.0 } else { bright.round().clamp(0.0, 255.0) as f32 }
+    if bright.is_nan() {
+        0.0
+    } else {
+        bright.round().clamp(0.0, 255.0) as f32
+    }
 }
-
 
 #[cfg(test)]
 mod tests {
@@ -75,7 +78,11 @@ mod tests {
                 .collect();
             found.sort_by(f32::total_cmp);
             let (p50, p99) = (found[10_000], found[19_800]);
-            let usual = if class == Class::TrafficCone { 6.0..40.0 } else { 10.0..14.5 };
+            let usual = if class == Class::TrafficCone {
+                6.0..40.0
+            } else {
+                10.0..14.5
+            };
             assert!(usual.contains(&p50) && p99 > 2.0 * p50, "{class:?}: {p50} {p99}");
             assert!(found.iter().all(|v| (0.0..=255.0).contains(v)));
         }
