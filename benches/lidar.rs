@@ -5,6 +5,7 @@ use sceneloom::generation::model::lidar::LidarNet;
 use sceneloom::generation::model::lidar::field::Sampling;
 use sceneloom::generation::sensors::learned;
 use sceneloom::generation::sensors::learned_caster::LearnedCaster;
+use sceneloom::generation::sensors::truth;
 use sceneloom::generation::world::World;
 use sceneloom::generation::world::voxelize::{Vertical, complete};
 use sceneloom::scene::{Class, SensorRig};
@@ -16,7 +17,11 @@ fn main() {
     let net = LidarNet::bundled().expect("the shipped weights");
     let rig = SensorRig::default();
     for seed in [3, 11] {
-        let grid = complete(&World::random(seed), Vertical::Occ3d);
+        let world = World::random(seed);
+        timing::time("true sweep of the world", 15, || {
+            truth::sweep(&world, &rig.lidars[0], seed).len()
+        });
+        let grid = complete(&world, Vertical::Occ3d);
         let field = net.field(&grid).expect("a finite field");
         println!("world {seed}: {} voxels", field.keys.len());
         timing::time("field", 15, || net.field(&grid).map_or(0, |f| f.keys.len()));

@@ -95,7 +95,13 @@ fn main() {
         let masks = ColumnMasks::from_grid(&grid);
         usize::from(masks.column(3, 4))
     });
-    let pattern = &SensorRig::default().lidars[0];
+    let full = &SensorRig::default().lidars[0];
+    timing::time("sweep with what lies beyond the grid", 20, || {
+        lidar::sweep(&grid, full, None).points.len()
+    });
+    let mut inside = full.clone();
+    inside.beyond_grid = false;
+    let pattern = &inside;
     timing::time("sweep with masks", 60, || {
         lidar::sweep(&grid, pattern, None).points.len()
     });

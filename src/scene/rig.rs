@@ -150,6 +150,13 @@ pub struct LidarPattern {
     pub max_range_m: f64,
     /// Nearest return, m.
     pub min_range_m: f64,
+    /// The own vehicle's roof is in the way of a sensor above it and sends pulses back, as in real sweeps; else it is
+    /// looked through.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub own_body: bool,
+    /// Pulses that leave the grid meet a continuation of the scene: roads, houses, trees.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub beyond_grid: bool,
     /// Sensor frame to ego: quaternion w, x, y, z.
     pub rotation_wxyz: [f64; 4],
     /// Origin in the ego frame, m.
@@ -195,6 +202,14 @@ impl LidarPattern {
 
 fn is_zero(v: &f64) -> bool {
     *v == 0.0
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(v: &bool) -> bool {
+    *v
 }
 
 fn full_turn() -> f64 {

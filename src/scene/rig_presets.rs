@@ -68,6 +68,8 @@ fn level(
         spin_hz: 0.0,
         max_range_m,
         min_range_m: 1.0,
+        own_body: true,
+        beyond_grid: true,
         rotation_wxyz: [1.0, 0.0, 0.0, 0.0],
         translation_m: [0.94, 0.0, height_m],
     }

@@ -287,6 +287,26 @@ fn lidar_fields(
         0,
     );
     field(&spin, "Change spin", set(new.clone()), commands);
+    for (text, hover, name) in [
+        (
+            "Own vehicle",
+            "The own roof is in the way of a sensor above it and sends pulses back, as in real sweeps",
+            "Change own vehicle",
+        ),
+        (
+            "Beyond the grid",
+            "Pulses that leave the grid meet a continuation of the scene: roads, houses, trees",
+            "Change beyond the grid",
+        ),
+    ] {
+        let on = match name {
+            "Change own vehicle" => &mut new.own_body,
+            _ => &mut new.beyond_grid,
+        };
+        if ui.checkbox(on, text).on_hover_text(hover).changed() {
+            commands.push(Command::Apply(name, vec![set(new.clone())]));
+        }
+    }
     let mut kmh = rig.ego_speed_mps * 3.6;
     let speed = number(
         ui,

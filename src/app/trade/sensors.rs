@@ -134,6 +134,8 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
         let (low, high) = (-30.0, 10.0);
         let step = (high - low) / f64::from(beams - 1);
         pattern.elevations_deg = (0..beams).map(|b| low + step * f64::from(b)).collect();
+        // The cast alone, without what lies beyond the voxels.
+        pattern.beyond_grid = false;
         let mut walls = Vec::new();
         for i in 0..frames as u64 {
             let grid = held_out(i).frame().occupancy.clone();

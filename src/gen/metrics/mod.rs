@@ -7,11 +7,13 @@ pub mod iou;
 pub mod kernel;
 pub mod layout;
 pub mod lidar;
+pub mod logistic;
 pub mod maps;
 pub mod occupancy;
 #[cfg(test)]
 mod reference;
 pub mod stats;
+pub mod sweep;
 
 use thiserror::Error;
 

@@ -1,22 +1,29 @@
-//! What a LiDAR sees of the town around a procedural world: level ground, houses and trees beyond the grid. Without it
-//! every pulse that leaves the grid would be one without an echo, which real sweeps do not show (`real_statistics.md`,
-//! section 3: a tenth of the echoes come from beyond 34 m).
+//! What a LiDAR sees of the town around a scene: the roads that leave the grid go on, lined like those at the edge, and
+//! the blocks between them. Without it every pulse that leaves the grid would be one without an echo, which real sweeps
+//! do not show (`real_statistics.md`, section 3: a hundredth of the echoes come from beyond 49 to 71 m).
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+use super::border::{Border, GRID_M};
+use super::exits::{Exit, exits};
+use super::plots;
 use crate::generation::world::World;
-use crate::generation::world::draw::{Draw, hash, noise};
-use crate::scene::{BevLayer, Class, GridSpec};
+use crate::scene::solid::Solid;
+use crate::scene::{Class, Polyline, VoxelGrid};
 
-/// Half the edge of the grid, m.
-const GRID_M: f64 = 40.0;
-/// How far beyond it rows of houses and trees stand, m.
-const ROWS_M: [f64; 3] = [2.5, 11.0, 24.0];
-/// Length of a plot along a row, m.
-const PLOT_M: f64 = 9.0;
-/// Shares of plots that are open, and that are open or built on; the others have trees.
-const OPEN: f64 = 0.4;
-const BUILT: f64 = 0.75;
+/// How far the continuation reaches from the middle, m.
+pub const REACH_M: f64 = 128.0;
+/// Bins of solids.
+const BIN_M: f64 = 8.0;
+const BINS: usize = 32;
+/// Instances of the continuation begin here: boxes are below, scenery of the world is in the other half.
+const INSTANCES: u32 = 1 << 30;
+/// Ground that varies by more than this is searched along the ray, m.
+const FLAT_M: f64 = 0.6;
+/// Step of that search, m.
+const STEP_M: f64 = 3.0;
+/// The seed of the continuation of a scene that has none.
+pub const SCENE_SEED: u64 = 0x6ac4_d0b1;
 
 /// A surface beyond the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,127 +34,330 @@ pub struct Behind {
     pub class: Class,
     /// Outward unit normal.
     pub normal: DVec3,
-    /// Names the house or tree, never 0; the ground is 0.
+    /// Names the house, tree or car, never 0; the ground is 0.
     pub instance: u32,
+    /// Which of the thing's solids.
+    pub part: u8,
+    /// A window, a lamp post or the like is told by the solid; `None` is the ground.
+    pub solid: Option<u32>,
 }
 
-/// The first surface beyond the grid along a ray that meets nothing inside it; `dir` is a unit vector.
-pub fn cast(world: &World, origin: DVec3, dir: DVec3, max_range_m: f64) -> Option<Behind> {
-    let mut best: Option<Behind> = None;
-    if dir.z < -1e-6 {
-        let range_m = -origin.z / dir.z;
-        let p = origin + dir * range_m;
-        if GridSpec::column_at(p.x, p.y).is_none() && range_m > 0.0 && range_m <= max_range_m {
-            let class = if is_street(world, p) {
-                Class::DriveableSurface
-            } else {
-                Class::Terrain
-            };
+/// Solids of the continuation, each with its owner and part.
+#[derive(Default)]
+pub(super) struct Things {
+    /// The solids.
+    pub solids: Vec<Solid>,
+    /// Number of the thing that each belongs to, and which of its solids it is.
+    pub owners: Vec<(u32, u8)>,
+    things: u32,
+}
+
+impl Things {
+    /// Takes the solids added since the last call as one thing.
+    pub fn close(&mut self) {
+        let first = self.owners.len();
+        let owner = |i: usize| (INSTANCES + self.things, (i - first).min(255) as u8);
+        self.owners.extend((first..self.solids.len()).map(owner));
+        self.things += 1;
+    }
+}
+
+/// The continuation of one scene beyond the grid.
+pub struct Backdrop {
+    border: Border,
+    exits: Vec<Exit>,
+    things: Things,
+    bins: Vec<Vec<u32>>, // [x][y] of 8 m
+    top_m: f64,
+    heights_m: [f64; 2],
+}
+
+impl Backdrop {
+    /// That of a procedural world.
+    pub fn of_world(world: &World) -> Self {
+        Self::new(Border::of_world(world), &world.layout.polylines, world.seed())
+    }
+
+    /// That of voxels; `lift_m` is what labels put the ground too low.
+    pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
+        Self::new(Border::of_grid(grid, lift_m), &[], SCENE_SEED)
+    }
+
+    /// Draws up what lies beyond an edge. `lines` are those of the layout, for the directions of lanes; without any the
+    /// direction of a road comes from its ground.
+    pub fn new(border: Border, lines: &[Polyline], seed: u64) -> Self {
+        let (mut things, mut found) = (Things::default(), Vec::new());
+        if !border.is_empty() {
+            found = exits(&border, lines);
+            plots::draw_up(&border, &found, seed, &mut things);
+        }
+        let mut bins = vec![Vec::new(); BINS * BINS];
+        let bin = |v: f64| (((v + REACH_M) / BIN_M).max(0.0) as usize).min(BINS - 1);
+        let mut top_m = f64::NEG_INFINITY;
+        for (i, solid) in things.solids.iter().enumerate() {
+            let (low, high) = (solid.center - solid.reach(), solid.center + solid.reach());
+            top_m = f64::max(top_m, high.z);
+            for x in bin(low.x)..=bin(high.x) {
+                for y in bin(low.y)..=bin(high.y) {
+                    bins[x * BINS + y].push(i as u32);
+                }
+            }
+        }
+        let heights_m = border.heights_m();
+        Self {
+            border,
+            exits: found,
+            things,
+            bins,
+            top_m: top_m.max(heights_m[1]),
+            heights_m,
+        }
+    }
+
+    /// The edge that it was drawn up from.
+    pub fn border(&self) -> &Border {
+        &self.border
+    }
+
+    /// Gives that edge back.
+    pub fn into_border(self) -> Border {
+        self.border
+    }
+
+    /// The roads that leave the grid.
+    pub fn exits(&self) -> &[Exit] {
+        &self.exits
+    }
+
+    /// A solid that [`cast`](Self::cast) named.
+    pub fn solid(&self, index: u32) -> Option<&Solid> {
+        self.things.solids.get(index as usize)
+    }
+
+    /// The first surface beyond the grid along a ray that meets nothing inside it; `dir` is a unit vector.
+    pub fn cast(&self, origin: DVec3, dir: DVec3, max_range_m: f64) -> Option<Behind> {
+        if !(origin.is_finite() && dir.is_finite() && self.heights_m[0].is_finite()) {
+            return None;
+        }
+        let out_m = leaves_grid(origin, dir);
+        if !(out_m < max_range_m) || (dir.z >= 0.0 && origin.z + dir.z * out_m > self.top_m) {
+            return None;
+        }
+        let mut best = self.ground(origin, dir, out_m, max_range_m);
+        let limit = best.map_or(max_range_m, |b| b.range_m);
+        if let Some((range_m, i)) = self.first_solid(origin, dir, out_m, limit) {
+            let (solid, (instance, part)) = (&self.things.solids[i as usize], self.things.owners[i as usize]);
             best = Some(Behind {
                 range_m,
-                class,
-                normal: DVec3::Z,
-                instance: 0,
-            });
-        }
-    }
-    for (row, beyond_m) in ROWS_M.into_iter().enumerate() {
-        // Where the ray leaves the square on whose sides the row stands.
-        let reach = GRID_M + beyond_m;
-        let side = |axis: usize| -> f64 {
-            match dir[axis] {
-                d if d.abs() < 1e-12 => f64::INFINITY,
-                d => (reach * d.signum() - origin[axis]) / d,
-            }
-        };
-        let axis = usize::from(side(1) < side(0));
-        let range_m = side(axis);
-        let limit = best.map_or(max_range_m, |b| b.range_m);
-        // Written so that NaN is no hit.
-        if !(range_m > 0.0 && range_m < limit) {
-            continue;
-        }
-        let p = origin + dir * range_m;
-        if let Some((class, instance)) = stands(world, p, axis, row) {
-            let mut normal = DVec3::ZERO;
-            normal[axis] = -dir[axis].signum();
-            return Some(Behind {
-                range_m,
-                class,
-                normal,
+                class: solid.class,
+                normal: solid.normal(origin + dir * range_m),
                 instance,
+                part,
+                solid: Some(i),
             });
         }
+        best
     }
-    best
+
+    /// Walks the bins under the ray from where it leaves the grid.
+    fn first_solid(&self, origin: DVec3, dir: DVec3, out_m: f64, limit: f64) -> Option<(f64, u32)> {
+        let to_bin = |v: f64| (v + REACH_M) / BIN_M;
+        let from = origin + dir * out_m;
+        let (mut x, mut y) = (to_bin(from.x).floor() as i64, to_bin(from.y).floor() as i64);
+        let next = |cell: i64, o: f64, d: f64| match d == 0.0 {
+            true => f64::INFINITY,
+            false => ((cell + i64::from(d > 0.0)) as f64 * BIN_M - REACH_M - o) / d,
+        };
+        let (mut best, mut found) = (limit, None);
+        let mut entered_m = out_m;
+        for _ in 0..2 * BINS + 2 {
+            let inside = (0..BINS as i64).contains(&x) && (0..BINS as i64).contains(&y);
+            if !inside || entered_m > best || (dir.z > 0.0 && origin.z + dir.z * entered_m > self.top_m) {
+                break;
+            }
+            for &i in &self.bins[x as usize * BINS + y as usize] {
+                if let Some(t) = self.things.solids[i as usize].enter(origin, dir, best)
+                    && t < best
+                    && t > out_m
+                {
+                    (best, found) = (t, Some(i));
+                }
+            }
+            let (tx, ty) = (next(x, origin.x, dir.x), next(y, origin.y, dir.y));
+            entered_m = tx.min(ty);
+            if tx < ty {
+                x += dir.x.signum() as i64;
+            } else {
+                y += dir.y.signum() as i64;
+            }
+        }
+        found.map(|i| (best, i))
+    }
+
+    fn ground(&self, origin: DVec3, dir: DVec3, out_m: f64, max_range_m: f64) -> Option<Behind> {
+        let height_m = |t: f64| self.border.height_m((origin + dir * t).truncate());
+        let range_m = if self.heights_m[1] - self.heights_m[0] > FLAT_M {
+            // The first step that ends under the ground, halved until it is a centimetre.
+            let under = |t: f64| origin.z + dir.z * t <= height_m(t);
+            let steps = ((max_range_m - out_m) / STEP_M).ceil().min(200.0) as usize;
+            let mut above_m = out_m + 1e-6;
+            let below = (1..=steps).map(|i| out_m + STEP_M * i as f64).find(|t| {
+                let found = under(*t);
+                above_m = if found { above_m } else { *t };
+                found
+            });
+            let mut below_m = below?;
+            for _ in 0..9 {
+                let middle = (above_m + below_m) / 2.0;
+                *(if under(middle) { &mut below_m } else { &mut above_m }) = middle;
+            }
+            below_m
+        } else {
+            if dir.z >= -1e-6 {
+                return None;
+            }
+            let flat = |height_m: f64| (height_m - origin.z) / dir.z;
+            let mut t = flat(self.heights_m[0]).max(out_m);
+            for _ in 0..2 {
+                t = flat(height_m(t)).max(out_m);
+            }
+            t
+        };
+        let p = origin + dir * range_m;
+        if !(range_m <= max_range_m && p.truncate().abs().max_element() < REACH_M * 2.0) {
+            return None;
+        }
+        let class = self.ground_class(p.truncate())?;
+        Some(Behind {
+            range_m,
+            class,
+            normal: DVec3::Z,
+            instance: 0,
+            part: 0,
+            solid: None,
+        })
+    }
+
+    /// Ground at a point beyond the grid: the roads and their sidewalks, terrain between. `None` where the edge is
+    /// unknown.
+    pub fn ground_class(&self, p: DVec2) -> Option<Class> {
+        let on = self.exits.iter().filter_map(|exit| exit.ground(p));
+        let best = on.min_by_key(|class| u8::from(*class != Class::DriveableSurface));
+        if best.is_some() {
+            return best;
+        }
+        let nearest = self.border.nearest_ground(p);
+        match nearest {
+            Class::Free => None,
+            // What is at the edge goes on for a few metres, so that a road along it is not cut off.
+            _ if p.abs().max_element() < GRID_M + 3.0 => Some(nearest),
+            _ => Some(Class::Terrain),
+        }
+    }
 }
 
-/// What stands at a point of a row.
-fn stands(world: &World, p: DVec3, axis: usize, row: usize) -> Option<(Class, u32)> {
-    if p.z < 0.0 || is_street(world, p) {
-        return None;
+/// Distance at which a ray is out of the grid's square for good; 0 for one that begins beyond it, infinite for a
+/// vertical one.
+pub(super) fn leaves_grid(origin: DVec3, dir: DVec3) -> f64 {
+    let side = |axis: usize| match dir[axis] {
+        d if d.abs() < 1e-12 => f64::INFINITY,
+        d => (GRID_M * d.signum() - origin[axis]) / d,
+    };
+    if origin.truncate().abs().max_element() >= GRID_M {
+        return 0.0;
     }
-    let along = p[1 - axis];
-    let plot = (along / PLOT_M).floor();
-    let side = (axis * 2) as u64 + u64::from(p[axis] > 0.0);
-    let key = hash(world.seed() ^ hash(plot as i64 as u64 ^ hash(side * 8 + row as u64)));
-    let mut draw = Draw::new(key, "backdrop");
-    let (kind, size) = (draw.unit(), draw.unit());
-    let instance = (key as u32).max(1);
-    let inside = (along / PLOT_M - plot - 0.5).abs() * PLOT_M;
-    if kind < OPEN {
-        None
-    } else if kind < BUILT {
-        (p.z < 3.5 + 10.0 * size && inside < 0.47 * PLOT_M).then_some((Class::Manmade, instance))
-    } else {
-        let top = 3.0 + 6.0 * size + 1.5 * noise(key, along * 0.8, 0.0);
-        // Light falls through crowns, and under them.
-        let leafy = noise(key, along * 2.5, p.z * 2.5) > -0.25;
-        (p.z < top && p.z > 0.9 && leafy).then_some((Class::Vegetation, instance))
-    }
-}
-
-/// True where a street that leaves the grid would go on.
-fn is_street(world: &World, p: DVec3) -> bool {
-    let most = GRID_M - 0.2;
-    let edge = p
-        .truncate()
-        .clamp(glam::DVec2::splat(-most), glam::DVec2::splat(most));
-    GridSpec::column_at(edge.x, edge.y)
-        .is_some_and(|[x, y]| world.layout.cells()[x * GridSpec::NY + y] & BevLayer::DrivableArea.bit() != 0)
+    side(0).min(side(1)).max(0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generation::world::voxelize::{Vertical, complete};
 
-    /// All hits lie beyond the grid and within range, streets stay open, rays of any kind are survived.
+    /// All hits lie beyond the grid and within range; rays of any kind are survived.
     #[test]
     fn hits_lie_beyond_the_grid() {
         let world = World::random(4);
-        let origin = DVec3::new(0.9, 0.0, 1.84);
-        let (mut found, mut walls, mut street) = (0, 0, 0);
-        for i in 0..4000 {
-            let (a, z) = (f64::from(i) * 0.0157, f64::from(i % 37) * 0.01 - 0.06);
-            let dir = DVec3::new(a.cos(), a.sin(), z).normalize();
-            let hit = cast(&world, origin, dir, 90.0);
-            assert_eq!(hit, cast(&world, origin, dir, 90.0));
-            let Some(hit) = hit else { continue };
-            let p = origin + dir * hit.range_m;
-            assert!(p.truncate().abs().max_element() >= GRID_M - 1e-9 && hit.range_m <= 90.0);
-            assert!(hit.normal.dot(dir) < 0.0 && (hit.normal.length() - 1.0).abs() < 1e-12);
-            found += 1;
-            walls += usize::from(hit.instance > 0);
-            street += usize::from(hit.instance > 0 && is_street(&world, p));
+        let voxels = complete(&world, Vertical::Occ3d);
+        for backdrop in [Backdrop::of_world(&world), Backdrop::of_grid(&voxels, 0.6)] {
+            let origin = DVec3::new(0.9, 0.0, 1.84);
+            let (mut found, mut things, mut far) = (0, 0, 0);
+            for i in 0..4000 {
+                let (a, z) = (f64::from(i) * 0.0157, f64::from(i % 37) * 0.01 - 0.06);
+                let dir = DVec3::new(a.cos(), a.sin(), z).normalize();
+                let hit = backdrop.cast(origin, dir, 90.0);
+                assert_eq!(hit, backdrop.cast(origin, dir, 90.0));
+                let Some(hit) = hit else { continue };
+                let p = origin + dir * hit.range_m;
+                assert!(p.truncate().abs().max_element() >= GRID_M - 1e-9 && hit.range_m <= 90.0);
+                assert!((hit.normal.length() - 1.0).abs() < 1e-9 && hit.class != Class::Free);
+                assert_eq!(hit.instance == 0, hit.solid.is_none());
+                found += 1;
+                things += usize::from(hit.instance > 0);
+                far += usize::from(hit.range_m > 60.0);
+            }
+            assert!(found > 1000 && things > 500 && far > 50, "{found} {things} {far}");
+            for bad in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::Z, -DVec3::Z] {
+                let hit = backdrop.cast(origin, bad, 90.0);
+                assert!(hit.is_none_or(|h| h.range_m.is_finite()));
+                assert!(
+                    backdrop
+                        .cast(bad * f64::INFINITY, DVec3::X, 90.0)
+                        .is_none_or(|h| h.range_m.is_finite())
+                );
+            }
         }
-        assert!(
-            found > 1000 && walls > 500 && street == 0,
-            "{found} {walls} {street}"
-        );
-        for bad in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::Z, -DVec3::Z] {
-            let hit = cast(&world, origin, bad, 90.0);
-            assert!(hit.is_none_or(|h| h.range_m.is_finite()));
-            assert!(cast(&world, bad * f64::INFINITY, DVec3::X, 90.0).is_none_or(|h| h.range_m.is_finite()));
+        let nothing = Backdrop::of_grid(&VoxelGrid::new(), 0.0);
+        assert_eq!(nothing.cast(DVec3::Z, DVec3::new(0.8, 0.0, -0.1), 90.0), None);
+    }
+
+    /// Where a road leaves the grid, there is road beyond it, and nothing but cars stands on it.
+    #[test]
+    fn roads_go_on() {
+        let (mut roads, mut cars) = (0, 0);
+        for seed in 0..12 {
+            let backdrop = Backdrop::of_world(&World::random(seed));
+            for exit in backdrop.exits() {
+                roads += 1;
+                for far_m in [1.0, 15.0, 40.0] {
+                    let p = exit.at + exit.heading * far_m;
+                    if p.abs().max_element() > GRID_M + 0.5 {
+                        assert_eq!(
+                            backdrop.ground_class(p),
+                            Some(Class::DriveableSurface),
+                            "{exit:?}"
+                        );
+                    }
+                }
+            }
+            for solid in &backdrop.things.solids {
+                assert!(solid.center.truncate().abs().max_element() > GRID_M, "{solid:?}");
+                let ground = backdrop.ground_class(solid.center.truncate());
+                let on_road = ground == Some(Class::DriveableSurface);
+                cars += usize::from(solid.class == Class::Car);
+                assert!(
+                    !on_road || solid.class == Class::Car || solid.center.z > 1.5,
+                    "{solid:?}"
+                );
+            }
         }
+        assert!(roads > 12 && cars > 20, "{roads} {cars}");
+    }
+
+    /// On a slope the ground is met where it lies.
+    #[test]
+    fn a_slope_is_met_at_its_height() {
+        let mut grid = VoxelGrid::new();
+        for x in 0..200 {
+            for y in 0..200 {
+                grid.set(x, y, x / 20, Class::Terrain.id());
+            }
+        }
+        let backdrop = Backdrop::of_grid(&grid, 0.0);
+        let (origin, dir) = (DVec3::new(0.0, 0.0, 6.0), DVec3::new(1.0, 0.0, -0.05).normalize());
+        let hit = backdrop.ground(origin, dir, leaves_grid(origin, dir), 100.0);
+        let hit = hit.expect("the ground");
+        let p = origin + dir * hit.range_m;
+        assert!((p.z - 3.0).abs() < 0.1, "{p}"); // the top of bin 9
     }
 }

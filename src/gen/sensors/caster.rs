@@ -4,6 +4,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::around::{Around, Height};
+use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
 use crate::scene::grid::{BRICK, BRICKS};
@@ -38,6 +40,8 @@ pub struct Caster {
     /// Per ray: how far it is free, m, and what it returns.
     found: Vec<Found>,
     cast: usize,
+    /// The own vehicle and what lies beyond the grid.
+    around: Around,
 }
 
 /// Changed voxels, half-open, in voxel units.
@@ -58,6 +62,7 @@ impl Caster {
     ) -> Self {
         let rays = Rays::new(pattern, ego_speed_mps);
         let mut caster = Self {
+            around: Around::new(grid, pattern, &rays, exclude, Height::AsLabelled),
             pattern: pattern.clone(),
             exclude,
             columns: rays.origins.len(),
@@ -86,6 +91,12 @@ impl Caster {
             .filter_map(|&b| changed_in(&self.grid, grid, b))
             .collect();
         self.grid = grid.clone();
+        if changed
+            .iter()
+            .any(|c| Border::is_touched([c.low.x, c.low.y], [c.high.x, c.high.y]))
+        {
+            self.around.update(grid, &self.pattern, &self.rays);
+        }
         if changed.is_empty() {
             self.cast = 0;
             return;
@@ -130,8 +141,19 @@ impl Caster {
 
     /// Returns in beam-major order.
     pub fn sweep(&self) -> LidarSweep {
+        let end = |(ray, (free_m, point)): (usize, &Found)| {
+            let met = free_m.is_finite();
+            // Nothing is known of the strength of exact echoes.
+            let strengthless = |p| LidarPoint {
+                intensity: 0.0,
+                drop_probability: 0.0,
+                ..p
+            };
+            let instead = self.around.instead(ray, met);
+            instead.map_or(*point, |p| p.map(strengthless))
+        };
         LidarSweep {
-            points: self.found.iter().filter_map(|(_, point)| *point).collect(),
+            points: self.found.iter().enumerate().filter_map(end).collect(),
             rays: self.found.len(),
             physical: false,
         }

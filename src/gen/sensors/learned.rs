@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
+use super::around::{Around, Height};
 use super::lidar::{EgoBox, Rays};
+use super::texture::textured;
 use crate::generation::model::ModelError;
 use crate::generation::model::lidar::field::{Field, Ray, Sampling};
 use crate::generation::model::lidar::{LearnedRay, LidarNet};
@@ -67,7 +69,11 @@ fn class_is_ground(label: impl Into<u8>) -> bool {
 
 /// The rays of a pattern, beam-major; see [`Rays::new`].
 pub fn rays(pattern: &LidarPattern, ego_speed_mps: f64) -> Vec<Ray> {
-    let rays = Rays::new(pattern, ego_speed_mps);
+    rays_of(pattern, &Rays::new(pattern, ego_speed_mps))
+}
+
+/// The same for rays that are there already.
+pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
     let ray = |i| {
         let (origin, direction) = rays.get(i);
         Ray {
@@ -79,14 +85,15 @@ pub fn rays(pattern: &LidarPattern, ego_speed_mps: f64) -> Vec<Ray> {
     (0..rays.directions.len()).map(ray).collect()
 }
 
-/// Casts the pattern, beam-major; only what was met and not dropped becomes a point.
+/// Casts the pattern through the grid alone, beam-major; only what was met and not dropped becomes a point.
 pub fn sweep(net: &LidarNet, field: &Field, pattern: &LidarPattern, drops: Drops) -> LidarSweep {
     let rays = rays(pattern, 0.0);
     let answers = net.shoot(field, &rays, Sampling::Prior);
-    points(&rays, &answers, pattern.columns_in_sector(), drops)
+    points(&rays, &answers, pattern.columns_in_sector(), drops, None)
 }
 
-/// The sweep of the first LiDAR of a rig on its moving vehicle; empty if it has none.
+/// The sweep of the first LiDAR of a rig on its moving vehicle, with the vehicle itself and what lies beyond the grid;
+/// empty if it has none.
 pub fn rig_sweep(
     net: &LidarNet,
     grid: &VoxelGrid,
@@ -96,38 +103,53 @@ pub fn rig_sweep(
     let Some(pattern) = rig.lidars.first() else {
         return Ok(LidarSweep::default());
     };
-    let field = field(net, grid, Some(EgoBox::of_rig(rig)))?;
-    let rays = rays(pattern, rig.ego_speed_mps);
+    let ego = Some(EgoBox::of_rig(rig));
+    let field = field(net, grid, ego)?;
+    let shape = Rays::new(pattern, rig.ego_speed_mps);
+    let around = Around::new(grid, pattern, &shape, ego, Height::Physical);
+    let rays = rays_of(pattern, &shape);
     let answers = net.shoot(&field, &rays, Sampling::Prior);
-    Ok(points(&rays, &answers, pattern.columns_in_sector(), drops))
+    let columns = pattern.columns_in_sector();
+    Ok(points(&rays, &answers, columns, drops, Some(&around)))
 }
 
-/// The points of answered rays.
-pub fn points(rays: &[Ray], answers: &[LearnedRay], columns: u32, drops: Drops) -> LidarSweep {
+/// The points of answered rays, and of those that end on what is `around` the grid.
+pub fn points(
+    rays: &[Ray],
+    answers: &[LearnedRay],
+    columns: u32,
+    drops: Drops,
+    around: Option<&Around>,
+) -> LidarSweep {
     let columns = columns.max(1) as usize;
+    let is_lost = |ray: usize, probability: f32, dropped: bool| match drops {
+        Drops::Keep => false,
+        Drops::Likely => dropped,
+        Drops::Drawn(seed) => Draw::new(hash(seed ^ ray as u64), "lost echo").chance(f64::from(probability)),
+    };
     let mut points = Vec::with_capacity(rays.len());
     for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
         let range_m = answer.met.median_m;
-        let lost = match drops {
-            Drops::Keep => false,
-            Drops::Likely => is_dropped(answer.drop_logit),
-            Drops::Drawn(seed) => {
-                Draw::new(hash(seed ^ i as u64), "lost echo").chance(f64::from(answer.drop_probability()))
-            }
-        };
-        if lost || !answer.is_hit() || !range_m.is_finite() {
-            continue;
-        }
         let position: DVec3 = ray.origin + ray.direction * f64::from(range_m);
-        points.push(LidarPoint {
+        let class = Class::from_id(answer.met.class).unwrap_or(Class::Others);
+        let inside = || LidarPoint {
             position_in_ego: position.as_vec3().to_array(),
             range_m,
             ring: (i / columns) as u16,
             azimuth: (i % columns) as u16,
-            class: Class::from_id(answer.met.class).unwrap_or(Class::Others),
-            intensity: answer.intensity,
+            class,
+            intensity: textured(answer.intensity, class, position, i as u64),
             drop_probability: answer.drop_probability(),
-        });
+        };
+        let met = answer.is_hit();
+        let kept = match around.and_then(|around| around.instead(i, met)) {
+            Some(other) => other.filter(|p| !is_lost(i, p.drop_probability, p.drop_probability >= 0.5)),
+            None => {
+                let found = (met && range_m.is_finite()).then(inside);
+                found.filter(|p| !is_lost(i, p.drop_probability, is_dropped(answer.drop_logit)))
+            }
+        };
+        points.extend(kept);
     }
     LidarSweep {
         points,

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::around::{Around, Height};
 use super::learned::{self, Drops};
-use super::lidar::EgoBox;
+use super::lidar::{EgoBox, Rays};
 use crate::generation::model::ModelError;
 use crate::generation::model::lidar::field::{Field, Ray, Sampling};
 use crate::generation::model::lidar::update::{Changed, Region};
@@ -26,7 +27,9 @@ pub struct LearnedCaster {
     net: Arc<LidarNet>,
     exclude: Option<EgoBox>,
     rays: Vec<Ray>,
-    columns: u32,
+    pattern: LidarPattern,
+    shape: Rays,
+    around: Around,
     field: Field,
     answers: Vec<LearnedRay>,
     shot: Vec<u32>, // rays of the last update, rising
@@ -56,11 +59,14 @@ impl LearnedCaster {
         exclude: Option<EgoBox>,
     ) -> Result<Self, ModelError> {
         let field = learned::field(&net, grid, exclude)?;
-        let rays = learned::rays(pattern, ego_speed_mps);
+        let shape = Rays::new(pattern, ego_speed_mps);
+        let rays = learned::rays_of(pattern, &shape);
         let answers = net.shoot(&field, &rays, Sampling::Prior);
         Ok(Self {
             exclude,
-            columns: pattern.columns_in_sector(),
+            around: Around::new(grid, pattern, &shape, exclude, Height::Physical),
+            pattern: pattern.clone(),
+            shape,
             shot: (0..rays.len() as u32).collect(),
             net,
             rays,
@@ -87,6 +93,7 @@ impl LearnedCaster {
             }
             Changed::In(regions) => self.shoot_again(&regions),
         };
+        self.around.update(grid, &self.pattern, &self.shape);
         Ok(())
     }
 
@@ -111,7 +118,8 @@ impl LearnedCaster {
 
     /// The points, beam-major.
     pub fn sweep(&self, drops: Drops) -> LidarSweep {
-        learned::points(&self.rays, &self.answers, self.columns, drops)
+        let columns = self.pattern.columns_in_sector();
+        learned::points(&self.rays, &self.answers, columns, drops, Some(&self.around))
     }
 
     /// Rays that the last update shot.
@@ -186,6 +194,7 @@ fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::around::is_own;
     use super::*;
     use crate::generation::world::World;
     use crate::generation::world::draw::Draw;
@@ -235,6 +244,7 @@ mod tests {
         kept.update(&grid).expect("finite");
         assert_eq!(kept.shot_last(), 0, "nothing changed");
         kept.update(&VoxelGrid::new()).expect("finite");
-        assert!(kept.sweep(Drops::Keep).points.is_empty() && kept.shot_last() == rays);
+        let nothing = kept.sweep(Drops::Keep);
+        assert!(nothing.points.iter().all(is_own) && kept.shot_last() == rays);
     }
 }

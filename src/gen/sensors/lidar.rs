@@ -143,6 +143,8 @@ mod tests {
             spin_hz: 0.0,
             max_range_m: 100.0,
             min_range_m: 0.0,
+            own_body: true,
+            beyond_grid: true,
             rotation_wxyz: [1.0, 0.0, 0.0, 0.0],
             translation_m: [0.0, 0.0, 1.0],
         }

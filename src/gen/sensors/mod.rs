@@ -4,19 +4,26 @@
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
 pub mod appearance;
+pub mod around;
 pub mod backdrop;
+pub mod border;
 pub mod caster;
 pub mod cloud;
 pub mod color;
+pub mod exits;
 pub mod learned;
 pub mod learned_caster;
 pub mod lidar;
 pub mod march;
+pub mod material;
 pub mod mpi;
 pub mod order;
+pub mod own_body;
 pub mod perspective;
+mod plots;
 pub mod project;
 pub mod raycast;
 pub mod splat;
+mod texture;
 mod tile;
 pub mod truth;

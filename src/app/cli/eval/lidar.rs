@@ -4,16 +4,18 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
+use super::world_lidar::lidar_rows;
 use super::{Bar, Eval, TEST_SEED};
 use crate::app::cli::output;
 use crate::app::cli::progress::Progress;
 use crate::generation::dataset::world_of;
 use crate::generation::metrics::lidar::{bird_map, jsd, mmd};
 use crate::generation::metrics::stats::median;
+use crate::generation::metrics::sweep::SweepFigures;
 use crate::generation::model::lidar::field::{Ray, Sampling};
 use crate::generation::model::lidar::sites::physical;
 use crate::generation::model::lidar::{LearnedRay, LidarNet};
-use crate::generation::sensors::learned;
+use crate::generation::sensors::learned::{self, Drops};
 use crate::generation::sensors::raycast::ColumnMasks;
 use crate::generation::sensors::truth::{self, Echo, TruthRay};
 use crate::generation::world::draw::{Draw, hash};
@@ -314,6 +316,8 @@ impl Eval {
         let rays = learned::rays(&pattern, 0.0);
         let mut suites = [("complete", Suite::default()), ("labels", Suite::default())];
         let [mut returned, mut lost, mut nothing] = [0usize; 3];
+        let rig = SensorRig::default();
+        let (mut product, mut real) = (SweepFigures::default(), SweepFigures::default());
         for i in 0..self.frames {
             progress.at("lidar", i, self.frames);
             let (world, seed) = world_of(TEST_SEED, i as u64, |_| None);
@@ -330,6 +334,9 @@ impl Eval {
                 complete(&world, Vertical::Occ3d),
                 labels(&world, &pattern, &Drive::default(), Vertical::Occ3d, seed),
             ];
+            real.add_truth(&truth, &pattern);
+            let sweep = learned::rig_sweep(&net, &grids[0], &rig, Drops::Drawn(seed))?;
+            product.add_sweep(&sweep, &pattern);
             for ((_, suite), grid) in suites.iter_mut().zip(&grids) {
                 suite.add(&[&net, &flat], grid, &rays, &truth, seed)?;
             }
@@ -342,6 +349,9 @@ impl Eval {
         let share = |n: usize| n as f64 / all;
         report["truth"] =
             json!({ "returned": share(returned), "lost": share(lost), "nothing": share(nothing) });
+        // A logistic fit on class, range, angle and ring: what a drop head can learn at least.
+        report["truth"]["lost_auc"] = json!(real.loss_auc());
+        report["sweeps"] = lidar_rows(&product)?.0.into();
         report["model"] = net.name().into();
         report["peak_rss_mb"] = json!(output::peak_rss_mb());
         Ok((report, bars))

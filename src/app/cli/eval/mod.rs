@@ -11,6 +11,7 @@ mod lidar;
 mod splat;
 mod vae;
 mod world;
+mod world_lidar;
 
 use std::path::PathBuf;
 

@@ -13,8 +13,9 @@ use crate::scene::Class;
 /// Figures of real labels.
 const TARGETS: &str = include_str!("../../../../assets/statistics/occ3d.json");
 
+/// A file of `assets/statistics`.
 #[derive(Deserialize)]
-struct Targets {
+pub(super) struct Targets {
     targets: Vec<Target>,
 }
 
@@ -24,6 +25,30 @@ struct Target {
     metric: String,
     value: f64,
     accept: [f64; 2],
+}
+
+impl Targets {
+    /// One row per figure, and how many are inside their accepted range.
+    pub(super) fn compare(&self, found: impl Fn(&str) -> Option<f64>) -> (Vec<Value>, usize) {
+        let mut inside = 0;
+        let row = |target: &Target| {
+            let found = found(&target.metric);
+            let [low, high] = target.accept;
+            let accepted = found.is_some_and(|f| (low..=high).contains(&f));
+            inside += usize::from(accepted);
+            json!({
+                "metric": target.metric,
+                "found": found.map(|f| (f * 1e5).round() / 1e5),
+                "real": target.value,
+                "accept": target.accept,
+                "inside": accepted,
+                // In half widths of the accepted range: 0 is equal, 1 about at its edge.
+                "distance": found.map(|f| ((f - target.value).abs() / (high - low) * 2e3).round() / 1e3),
+            })
+        };
+        let rows = self.targets.iter().map(row).collect();
+        (rows, inside)
+    }
 }
 
 impl Eval {
@@ -48,28 +73,13 @@ impl Eval {
             }
         }
         let means = statistics.means();
-        let mut inside = 0;
-        let rows: Vec<Value> = targets
-            .targets
-            .iter()
-            .map(|target| {
-                let found = means.get(target.metric.as_str()).copied();
-                let [low, high] = target.accept;
-                let accepted = found.is_some_and(|f| (low..=high).contains(&f));
-                inside += usize::from(accepted);
-                json!({
-                    "metric": target.metric,
-                    "found": found.map(|f| (f * 1e5).round() / 1e5),
-                    "real": target.value,
-                    "accept": target.accept,
-                    "inside": accepted,
-                    // In half widths of the accepted range: 0 is equal, 1 about at its edge.
-                    "distance": found.map(|f| ((f - target.value).abs() / (high - low) * 2e3).round() / 1e3),
-                })
-            })
-            .collect();
-        let share = inside as f64 / rows.len() as f64;
-        let report = json!({ "statistics": rows, "inside": inside, "of": targets.targets.len() });
+        let (rows, mut inside) = targets.compare(|metric| means.get(metric).copied());
+        let (lidar, lidar_inside) = self.world_lidar(progress)?;
+        let mut of = rows.len();
+        inside += lidar_inside[0];
+        of += lidar_inside[1];
+        let share = inside as f64 / of as f64;
+        let report = json!({ "statistics": rows, "lidar": lidar, "inside": inside, "of": of });
         Ok((report, vec![("figures inside their accepted range", share, 1.0)]))
     }
 }

@@ -1,0 +1,214 @@
+//! What ends a pulse outside the voxels: the own vehicle's roof, and the continuation of the scene beyond the grid. Exact
+//! and learned sweeps put it around what they find in the grid.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::backdrop::{Backdrop, SCENE_SEED, leaves_grid};
+use super::border::Border;
+use super::lidar::{EgoBox, Rays};
+use super::material::{Materials, Met};
+use super::own_body::{OwnBody, is_blind};
+use crate::generation::world::Surface;
+use crate::generation::world::draw::{Draw, hash};
+use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, VoxelGrid};
+
+/// Rays that one thread works on in a row.
+const RAYS: usize = 512;
+/// Echo strength of the own paintwork, white, of 255.
+const OWN_STRENGTH: f64 = 18.0;
+
+/// Where the ground of the sweep lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Height {
+    /// Where labels have it, two bins too low.
+    AsLabelled,
+    /// Where it is.
+    Physical,
+}
+
+impl Height {
+    /// What is added to the top of a label's ground voxel, m.
+    fn lift_m(self) -> f64 {
+        match self {
+            Height::AsLabelled => 0.0,
+            // The top of bin 0 is at -0.6 m, the road at 0.
+            Height::Physical => 0.6,
+        }
+    }
+}
+
+/// What a ray meets outside the voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outside {
+    Nothing,
+    /// Beyond the grid, if nothing in the grid is in the way.
+    Beyond(LidarPoint),
+    /// The own vehicle; `None` if no echo comes back from it.
+    Own(Option<LidarPoint>),
+}
+
+/// What lies outside the voxels for every ray of one pattern.
+#[derive(Clone, Debug)]
+pub struct Around {
+    height: Height,
+    body: Option<OwnBody>,
+    /// The edge that the continuation was drawn up from; `None` without one.
+    border: Option<Border>,
+    outside: Vec<Outside>,
+}
+
+impl Around {
+    /// That of a pattern in a scene; `ego` is the vehicle that carries it, if it is known.
+    pub fn new(
+        grid: &VoxelGrid,
+        pattern: &LidarPattern,
+        rays: &Rays,
+        ego: Option<EgoBox>,
+        height: Height,
+    ) -> Self {
+        let body = ego.filter(|_| pattern.own_body).map(OwnBody::new);
+        let mut around = Self {
+            height,
+            body,
+            border: None,
+            outside: Vec::new(),
+        };
+        let border = pattern
+            .beyond_grid
+            .then(|| Border::of_grid(grid, height.lift_m()));
+        around.shoot(border, pattern, rays);
+        around
+    }
+
+    /// Brings it up to date with the voxels; true if what lies beyond the grid changed, which only what is near the edge
+    /// can bring about.
+    pub fn update(&mut self, grid: &VoxelGrid, pattern: &LidarPattern, rays: &Rays) -> bool {
+        let Some(known) = &self.border else {
+            return false;
+        };
+        let border = Border::of_grid(grid, self.height.lift_m());
+        if border == *known {
+            return false;
+        }
+        self.shoot(Some(border), pattern, rays);
+        true
+    }
+
+    /// What a ray returns instead of what it finds in the grid, of which the grid says that it `met` something there: the
+    /// outer `None` is "nothing else", the inner one an echo that does not come back.
+    #[inline]
+    pub fn instead(&self, ray: usize, met: bool) -> Option<Option<LidarPoint>> {
+        match self.outside.get(ray) {
+            Some(Outside::Own(point)) => Some(*point),
+            Some(Outside::Beyond(point)) if !met => Some(Some(*point)),
+            _ => None,
+        }
+    }
+
+    fn shoot(&mut self, border: Option<Border>, pattern: &LidarPattern, rays: &Rays) {
+        let backdrop = border.map(|border| Backdrop::new(border, &[], SCENE_SEED));
+        let materials = Materials::ordinary(SCENE_SEED);
+        let columns = rays.origins.len().max(1);
+        let outside = |ray: usize| {
+            let (origin, direction) = rays.get(ray);
+            let point = |range_m: f64, class, intensity: f64, lost: f64| LidarPoint {
+                position_in_ego: (origin + direction * range_m).as_vec3().to_array(),
+                range_m: range_m as f32,
+                ring: (ray / columns) as u16,
+                azimuth: (ray % columns) as u16,
+                class,
+                intensity: intensity as f32,
+                drop_probability: lost as f32,
+            };
+            let mut draw = Draw::new(hash(SCENE_SEED ^ ray as u64), "outside");
+            let (fate, detail) = (draw.unit(), draw.unit());
+            if let Some(range_m) = self.body.and_then(|body| body.meets(origin, direction)) {
+                let seen = range_m >= pattern.min_range_m && !is_blind(range_m, fate);
+                let strength = OWN_STRENGTH * (0.5 + fate);
+                return Outside::Own(seen.then(|| point(range_m, Class::Others, strength, 0.0)));
+            }
+            // Of what is higher than the voxels nobody knows how far it reaches.
+            let over = origin.z + direction.z * leaves_grid(origin, direction) > GridSpec::MAX_M[2];
+            let hit = backdrop
+                .as_ref()
+                .filter(|_| !over)
+                .and_then(|b| Some((b, b.cast(origin, direction, pattern.max_range_m)?)));
+            let Some((backdrop, hit)) = hit else {
+                return Outside::Nothing;
+            };
+            let surface = Surface {
+                normal: hit.normal,
+                instance: hit.instance,
+                part: hit.part,
+            };
+            let met = Met {
+                class: hit.class,
+                surface: &surface,
+                solid: hit.solid.and_then(|i| backdrop.solid(i)),
+                at: origin + direction * hit.range_m,
+                range_m: hit.range_m,
+                cosine: hit.normal.dot(direction).abs().clamp(0.0, 1.0),
+            };
+            let material = materials.of(&met, detail);
+            let strength = materials.strength(&material, met.cosine, (fate - 0.5) * 3.0);
+            let lost = materials.lost(&material, &met);
+            Outside::Beyond(point(hit.range_m, hit.class, strength.round(), lost))
+        };
+        self.outside = (0..rays.directions.len())
+            .into_par_iter()
+            .with_min_len(RAYS)
+            .map(outside)
+            .collect();
+        self.border = backdrop.map(Backdrop::into_border);
+    }
+}
+
+/// True if a point of a sweep may be on the own vehicle: nearer than any wheel of another.
+pub fn is_own(point: &LidarPoint) -> bool {
+    point.class == Class::Others && point.range_m < 3.0
+}
+
+/// True if a point of a sweep is on the continuation, beyond the grid.
+pub fn is_beyond(point: &LidarPoint) -> bool {
+    let p = DVec3::from_array(point.position_in_ego.map(f64::from));
+    p.truncate().abs().max_element() >= super::border::GRID_M
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::sensors::caster::Caster;
+    use crate::generation::world::World;
+    use crate::generation::world::voxelize::{Vertical, complete};
+    use crate::scene::SensorRig;
+
+    /// Both options off is the grid alone; on, only slots on the roof and slots without an echo change.
+    #[test]
+    fn what_is_around_replaces_no_voxel() {
+        let rig = SensorRig::default();
+        let (ego, mut pattern) = (Some(EgoBox::of_rig(&rig)), rig.lidars[0].clone());
+        let grid = complete(&World::random(6), Vertical::Occ3d);
+        let sweep = |p: &LidarPattern| Caster::new(&grid, p, 0.0, ego).sweep();
+        let with = sweep(&pattern);
+        (pattern.own_body, pattern.beyond_grid) = (false, false);
+        let bare = sweep(&pattern);
+        assert!(bare.points.iter().all(|p| !is_own(p) && !is_beyond(p)));
+        let own = with.points.iter().filter(|p| is_own(p)).count() as f64 / with.rays as f64;
+        let beyond = with.points.iter().filter(|p| is_beyond(p)).count();
+        assert!((0.09..0.14).contains(&own) && beyond > 1000, "{own} {beyond}");
+        let key = |p: &LidarPoint| (p.ring, p.azimuth);
+        let there: std::collections::HashMap<_, _> = bare.points.iter().map(|p| (key(p), *p)).collect();
+        for p in with.points.iter().filter(|p| !is_own(p)) {
+            match there.get(&key(p)) {
+                Some(same) => assert_eq!(p, same),
+                None => assert!(is_beyond(p), "{p:?}"),
+            }
+        }
+        // No ray comes twice, and the order stays.
+        assert!(with.points.windows(2).all(|w| key(&w[0]) < key(&w[1])));
+        pattern.own_body = true;
+        let own_only = sweep(&pattern);
+        assert!(own_only.points.iter().any(is_own) && !own_only.points.iter().any(is_beyond));
+    }
+}

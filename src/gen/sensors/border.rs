@@ -1,0 +1,270 @@
+//! What a scene is like at the edge of the grid: ground, its height, what stands near. The continuation beyond the grid
+//! ([`super::backdrop`]) is drawn up from this, so it is the same for a procedural world and for voxels.
+
+use glam::{DVec2, DVec3};
+
+use crate::generation::world::World;
+use crate::scene::{Class, GridSpec, VoxelGrid};
+
+/// Half the edge of the grid, m.
+pub const GRID_M: f64 = 40.0;
+/// Depths, in cells from the edge, at which the ground is looked at.
+pub const DEPTHS: [usize; 5] = [0, 5, 10, 15, 20];
+/// Every so many cells it is looked what stands there.
+const STRIDE: usize = 5;
+/// Cells from the edge inward up to which it is looked what stands there.
+const DEEP: usize = 20;
+/// A solid lower than this is none that a street is lined with, m.
+const LOW_M: f64 = 0.5;
+/// Where the search for the highest thing over a point begins, m.
+const SKY_M: f64 = 60.0;
+
+/// One side of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// 0 for x, 1 for y: the axis that leads out.
+    pub axis: usize,
+    /// True for the side at +40 m.
+    pub high: bool,
+}
+
+/// The four sides.
+pub const SIDES: [Side; 4] = [
+    Side { axis: 0, high: false },
+    Side { axis: 0, high: true },
+    Side { axis: 1, high: false },
+    Side { axis: 1, high: true },
+];
+
+impl Side {
+    /// Number of the side, as in [`SIDES`].
+    pub fn index(self) -> usize {
+        self.axis * 2 + usize::from(self.high)
+    }
+
+    /// The cell at a depth and a place along the side.
+    pub fn cell(self, depth: usize, along: usize) -> [usize; 2] {
+        let out = if self.high {
+            GridSpec::NX - 1 - depth
+        } else {
+            depth
+        };
+        if self.axis == 0 {
+            [out, along]
+        } else {
+            [along, out]
+        }
+    }
+
+    /// Middle of a cell, m.
+    pub fn point(self, depth: usize, along: usize) -> DVec2 {
+        let [x, y] = self.cell(depth, along);
+        GridSpec::center(x, y, 0).truncate()
+    }
+
+    /// Outward unit normal.
+    pub fn normal(self) -> DVec2 {
+        let sign = if self.high { 1.0 } else { -1.0 };
+        if self.axis == 0 {
+            DVec2::X * sign
+        } else {
+            DVec2::Y * sign
+        }
+    }
+}
+
+/// A thing near the edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stands {
+    /// Where, m.
+    pub at: DVec2,
+    /// What.
+    pub class: Class,
+    /// Its height above the ground, m.
+    pub height_m: f64,
+}
+
+/// The edge of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Border {
+    ground: Vec<Class>,  // [side][depth][along], free where nothing is known
+    height_m: Vec<f64>,  // [side][along], at the very edge
+    stands: Vec<Stands>, // sampled; also those that are nothing, class free
+}
+
+impl Border {
+    /// That of a procedural world.
+    pub fn of_world(world: &World) -> Self {
+        Self::new(
+            |x, y| {
+                let at = GridSpec::center(x, y, 0).truncate();
+                (world.ground_class(x, y), world.ground_height(at))
+            },
+            |x, y, ground_m| {
+                let at = GridSpec::center(x, y, 0).truncate().extend(ground_m + SKY_M);
+                // The ground itself is the class of a ground.
+                let hit = world.cast(at, DVec3::NEG_Z, SKY_M)?;
+                hit.solid?;
+                Some((hit.class, SKY_M - hit.range_m))
+            },
+        )
+    }
+
+    /// That of voxels; `lift_m` is what labels put the ground too low.
+    pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
+        let top = |z: usize| GridSpec::MIN_M[2] + GridSpec::VOXEL_M * (z + 1) as f64;
+        let known = |label: u8| Class::from_id(label).filter(|c| *c != Class::Free);
+        Self::new(
+            |x, y| {
+                let column = grid.column(x, y);
+                let ground = (0..GridSpec::NZ).find_map(|z| {
+                    let class = known(column[z]).filter(|c| c.is_ground())?;
+                    Some((class, top(z) + lift_m))
+                });
+                ground.unwrap_or((Class::Free, 0.0))
+            },
+            |x, y, ground_m| {
+                let column = grid.column(x, y);
+                (0..GridSpec::NZ).rev().find_map(|z| {
+                    let class = known(column[z]).filter(|c| !c.is_ground())?;
+                    // Nobody knows how far what reaches the ceiling goes on: some storeys.
+                    let more = if z + 1 == GridSpec::NZ { 4.0 } else { 0.0 };
+                    Some((class, top(z) + more - ground_m))
+                })
+            },
+        )
+    }
+
+    fn new(
+        ground_at: impl Fn(usize, usize) -> (Class, f64),
+        stands_at: impl Fn(usize, usize, f64) -> Option<(Class, f64)>,
+    ) -> Self {
+        let (mut ground, mut height_m, mut stands) = (Vec::new(), Vec::new(), Vec::new());
+        for side in SIDES {
+            for depth in DEPTHS {
+                for along in 0..GridSpec::NX {
+                    let [x, y] = side.cell(depth, along);
+                    let (class, at_m) = ground_at(x, y);
+                    ground.push(class);
+                    if depth == 0 {
+                        height_m.push(at_m);
+                    }
+                }
+            }
+            for depth in (2..DEEP).step_by(STRIDE) {
+                for along in (2..GridSpec::NX).step_by(STRIDE) {
+                    let [x, y] = side.cell(depth, along);
+                    let ground_m = height_m[side.index() * GridSpec::NX + along];
+                    let found = stands_at(x, y, ground_m).filter(|(_, h)| *h > LOW_M);
+                    let (class, height_m) = found.unwrap_or((Class::Free, 0.0));
+                    let at = side.point(depth, along);
+                    stands.push(Stands { at, class, height_m });
+                }
+            }
+        }
+        // Unknown ground lies as high as the last known.
+        let known = |i: usize| ground[i / GridSpec::NX * DEPTHS.len() * GridSpec::NX + i % GridSpec::NX];
+        let first = (0..height_m.len()).find(|i| known(*i) != Class::Free);
+        let mut last = first.map_or(0.0, |i| height_m[i]);
+        for (i, height_m) in height_m.iter_mut().enumerate() {
+            if known(i) == Class::Free || !height_m.is_finite() {
+                *height_m = last;
+            }
+            last = *height_m;
+        }
+        Self {
+            ground,
+            height_m,
+            stands,
+        }
+    }
+
+    /// True if a change of the columns from `low` to `high` may change the edge.
+    pub fn is_touched(low: [f64; 2], high: [f64; 2]) -> bool {
+        let (deep, inner) = (DEEP as f64 + 1.0, GridSpec::NX as f64 - DEEP as f64 - 1.0);
+        (0..2).any(|axis| low[axis] <= deep || high[axis] >= inner)
+    }
+
+    /// Ground of a cell; `depth` counts in [`DEPTHS`].
+    pub fn ground(&self, side: Side, depth: usize, along: usize) -> Class {
+        self.ground[(side.index() * DEPTHS.len() + depth) * GridSpec::NX + along]
+    }
+
+    /// True if nothing is known of the ground at the edge: then nothing goes on beyond it.
+    pub fn is_empty(&self) -> bool {
+        SIDES
+            .iter()
+            .all(|side| (0..GridSpec::NX).all(|along| self.ground(*side, 0, along) == Class::Free))
+    }
+
+    /// Height of the ground beyond the grid: that of the nearest place at the edge, m.
+    pub fn height_m(&self, p: DVec2) -> f64 {
+        let (side, along) = nearest(p);
+        self.height_m[side.index() * GridSpec::NX + along]
+    }
+
+    /// Class of the ground at the nearest place at the edge.
+    pub fn nearest_ground(&self, p: DVec2) -> Class {
+        let (side, along) = nearest(p);
+        self.ground(side, 0, along)
+    }
+
+    /// Lowest and highest ground, m.
+    pub fn heights_m(&self) -> [f64; 2] {
+        let fold = |f: fn(f64, f64) -> f64, from: f64| self.height_m.iter().copied().fold(from, f);
+        [fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY)]
+    }
+
+    /// What stands near the edge, sampled evenly; free where nothing does.
+    pub fn stands(&self) -> &[Stands] {
+        &self.stands
+    }
+}
+
+/// The place at the edge that is nearest to a point beyond it.
+fn nearest(p: DVec2) -> (Side, usize) {
+    let axis = usize::from(p.y.abs() > p.x.abs());
+    let side = Side {
+        axis,
+        high: p[axis] > 0.0,
+    };
+    // Casts saturate; NaN is 0.
+    let along = ((p[1 - axis] + GRID_M) / GridSpec::VOXEL_M) as usize;
+    (side, along.min(GridSpec::NX - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::world::voxelize::{Vertical, complete};
+
+    #[test]
+    fn a_world_and_its_voxels_have_the_same_edge() {
+        let world = World::random(4);
+        let (exact, voxels) = (
+            Border::of_world(&world),
+            Border::of_grid(&complete(&world, Vertical::Occ3d), 0.6),
+        );
+        let (mut same, mut of) = (0, 0);
+        for side in SIDES {
+            for along in 0..GridSpec::NX {
+                let found = voxels.ground(side, 0, along);
+                if found != Class::Free {
+                    of += 1;
+                    same += usize::from(found == exact.ground(side, 0, along));
+                }
+                let p = side.point(0, along) + side.normal() * 20.0;
+                assert!((voxels.height_m(p) - exact.height_m(p)).abs() < 0.5);
+            }
+        }
+        assert!(of > 600 && same * 10 > of * 9, "{same} of {of}");
+        let tall = |b: &Border| b.stands().iter().filter(|s| s.class != Class::Free).count();
+        let (a, b) = (tall(&exact), tall(&voxels));
+        assert!(a > 10 && b * 2 > a && a * 2 > b, "{a} {b}");
+        assert!(
+            Border::is_touched([100.0, 10.0], [110.0, 14.0]) && Border::is_touched([181.0; 2], [182.0; 2])
+        );
+        assert!(!Border::is_touched([30.0; 2], [170.0; 2]));
+        assert!(!exact.is_empty() && Border::of_grid(&VoxelGrid::new(), 0.0).is_empty());
+    }
+}
