@@ -14,11 +14,13 @@ use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
+use crate::generation::keep_clear::{keep_clear, keep_unobserved};
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::model::{DitCondition, OccModels, tokens_of};
 use crate::generation::redraw;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::edit_with_replay;
+use crate::generation::request::Request;
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::Sampler;
 use crate::scene::{GridSpec, VoxelGrid};
@@ -318,6 +320,9 @@ impl OccPipeline {
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
+            let (request, redraw) = (Request::of(frame), &params.redraw);
+            report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
+            report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
         if anew {
