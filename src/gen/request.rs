@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::region::Region;
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::box_cells;
-use crate::scene::{Class, Frame, GridSpec, SceneBox, draft};
+use crate::scene::{Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
 
 /// How far the voxels of an object may stand out of its box: one voxel.
 pub const OVERHANG_M: f64 = GridSpec::VOXEL_M;
@@ -80,7 +80,7 @@ impl<'a> Request<'a> {
     /// the request: calls `visit` with place and label of each.
     pub fn each_invented(
         &self,
-        after: &crate::scene::VoxelGrid,
+        after: &VoxelGrid,
         region: &Region,
         mut visit: impl FnMut(usize, usize, usize, u8),
     ) {
@@ -102,6 +102,16 @@ pub fn stands(label: u8) -> bool {
     Class::from_id(label).is_some_and(|c| c != Class::Free && !c.is_ground())
 }
 
+/// Voxels that a box accounts for: those of its class in its columns and a voxel around them, up to a voxel above it.
+pub fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> usize {
+    let (mut count, bins) = (0, usize::from(bins_of(b)));
+    box_cells(b, OVERHANG_M, |x, y| {
+        let column = grid.column(x, y)[..bins].iter();
+        count += column.filter(|l| **l == b.class.id()).count();
+    });
+    count
+}
+
 fn slot(label: u8) -> Option<usize> {
     let class = Class::from_id(label).filter(|c| c.is_object())?;
     Some(usize::from(class.id()) - 1)
@@ -121,7 +131,7 @@ pub(in crate::generation) mod tests {
 
     use super::*;
     use crate::generation::region::tests::car;
-    use crate::scene::{BevLayer, BevLayout, BoxId, VoxelGrid};
+    use crate::scene::{BevLayer, BevLayout, BoxId};
 
     /// A road over the whole map with two cars, of which the second was just removed.
     pub fn removal() -> Frame {
