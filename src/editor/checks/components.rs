@@ -4,6 +4,8 @@ use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
 const GROUND_BINS: u16 = 0b111;
+/// Ground above them carries what stands on it if so many voxels of it belong together: 16 m².
+const WIDE_GROUND: usize = 100;
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
 pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
@@ -14,16 +16,59 @@ pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
     out
 }
 
-/// What of `occupied` is connected to the ground bins through voxels that touch by a face, an edge or a corner.
-pub fn supported(occupied: &[u16]) -> Vec<u16> {
+/// One word per column, one bit per bin that holds ground.
+pub fn ground(grid: &VoxelGrid) -> Vec<u16> {
+    let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
+    of_labels(grid, is_ground)
+}
+
+/// One word per column, one bit per bin whose label is of that kind.
+pub fn of_labels(grid: &VoxelGrid, is: impl Fn(&u8) -> bool) -> Vec<u16> {
+    let word = |c: usize| {
+        let column = grid.column(c / GridSpec::NY, c % GridSpec::NY).iter();
+        let bits = column.enumerate().filter(|(_, l)| is(l));
+        bits.fold(0, |word, (z, _)| word | 1 << z)
+    };
+    (0..GridSpec::COLUMNS).map(word).collect()
+}
+
+/// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
+/// that touch by a face, an edge or a corner.
+pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
+    let low: Vec<u16> = occupied.iter().map(|bits| bits & GROUND_BINS).collect();
+    let out = reached(occupied, &low);
+    // A hill that meets the lowest bins nowhere is no less ground.
+    let mut high = Vec::new();
+    for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
+        let left = ground & !out;
+        let bins = (0..GridSpec::NZ).filter(|z| left >> z & 1 == 1);
+        high.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+    }
+    if high.len() < WIDE_GROUND {
+        return out;
+    }
+    let mut seeds = out.clone();
+    for group in groups(high).iter().filter(|g| g.len() >= WIDE_GROUND) {
+        group
+            .iter()
+            .for_each(|[x, y, z]| seeds[x * GridSpec::NY + y] |= 1 << z);
+    }
+    reached(occupied, &seeds)
+}
+
+/// What of `occupied` is connected to `seeds` (a part of it) through voxels that touch by a face, an edge or a corner.
+pub fn reached(occupied: &[u16], seeds: &[u16]) -> Vec<u16> {
     let mut out: Vec<u16> = occupied
         .iter()
-        .map(|bits| fill(bits & GROUND_BINS, *bits))
+        .zip(seeds)
+        .map(|(bits, seeds)| fill(bits & seeds, *bits))
         .collect();
-    // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
-    let mut queue: Vec<usize> = (0..out.len())
-        .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
-        .collect();
+    // Columns whose neighbours may still gain something.
+    let gains = |c: usize| {
+        let reach = out[c] | out[c] << 1 | out[c] >> 1;
+        neighbours(c).any(|near| reach & occupied[near] & !out[near] != 0)
+    };
+    let mut queue: Vec<usize> = (0..out.len()).filter(|c| out[*c] != 0 && gains(*c)).collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;
         for near in neighbours(c) {
@@ -125,12 +170,27 @@ mod tests {
         put(&mut grid, &[[10, 10, 11], [10, 11, 11]]);
         put(&mut grid, &[[199, 199, 6]]);
         let all = occupied(&grid);
-        let stands = supported(&all);
+        let stands = supported(&all, &ground(&grid));
         assert_eq!(stands[13 * 200 + 11], 1 << 8 | 1 << 7);
         assert_eq!(stands[10 * 200 + 10], (1 << 9) - 1);
         assert_eq!(stands[199 * 200 + 199], 0);
         let floating: u32 = all.iter().zip(&stands).map(|(a, s)| (a & !s).count_ones()).sum();
         assert_eq!(floating, 3);
+    }
+
+    #[test]
+    fn raised_ground_carries_and_a_lone_slab_does_not() {
+        let mut grid = VoxelGrid::new();
+        for x in 50..150 {
+            for y in 50..150 {
+                grid.set(x, y, 5, Class::Terrain.id());
+            }
+        }
+        (6..9).for_each(|z| grid.set(100, 100, z, Class::Manmade.id()));
+        (0..9).for_each(|x| grid.set(x, 10, 5, Class::Sidewalk.id()));
+        let stands = supported(&occupied(&grid), &ground(&grid));
+        assert_eq!(stands[100 * 200 + 100], 0b1111 << 5);
+        assert_eq!(stands[4 * 200 + 10], 0);
     }
 
     #[test]

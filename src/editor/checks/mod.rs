@@ -9,9 +9,11 @@ mod geometry;
 mod lanes;
 mod occupancy_without_box;
 mod off_road;
+mod on_the_road;
 mod out_of_range;
 mod overlapping_boxes;
 mod unseen;
+mod unsupported_parts;
 mod unsound;
 pub mod waive;
 
@@ -93,7 +95,7 @@ struct Context<'a> {
 type Check = fn(&Context<'_>, &mut Vec<Finding>);
 
 /// Every check, in the order of reports.
-const CHECKS: [(&str, Check); 10] = [
+const CHECKS: [(&str, Check); 12] = [
     (unsound::NAME, unsound::check),
     (out_of_range::NAME, out_of_range::check),
     (overlapping_boxes::NAME, overlapping_boxes::check),
@@ -101,7 +103,9 @@ const CHECKS: [(&str, Check); 10] = [
     (occupancy_without_box::NAME, occupancy_without_box::check),
     (off_road::NAME, off_road::check),
     (against_lane::NAME, against_lane::check),
+    (on_the_road::NAME, on_the_road::check),
     (floating_voxels::NAME, floating_voxels::check),
+    (unsupported_parts::NAME, unsupported_parts::check),
     (unseen::NO_CAMERA, unseen::by_cameras),
     (unseen::NO_LIDAR, unseen::by_lidar),
 ];

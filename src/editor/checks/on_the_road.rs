@@ -1,0 +1,118 @@
+//! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
+
+use super::components::{ground, groups, main_class, occupied, supported};
+use super::{Context, Finding, Fix, Severity, middle, removal};
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+
+pub const NAME: &str = "on_the_road";
+/// What reaches down to so many bins above the ground stands in the way. In labels, whose voxels reach two bins further
+/// down than things do, that is an underside lower than 1.8 m.
+const LOW_BINS: usize = 4;
+/// Fewer low voxels are noise of labels.
+const LEAST_VOXELS: usize = 3;
+/// Groups that are listed one by one, the largest; the rest is one finding.
+const LISTED: usize = 40;
+/// How far away the ground is looked for under a thing that covers it, columns.
+const REACH: usize = 8;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    let frame = context.frame;
+    let (grid, layout) = (&frame.occupancy, &frame.layout);
+    let lies = ground(grid);
+    // Runs of voxels that begin low on the road, and which of them are low.
+    let mut runs = vec![0u16; GridSpec::COLUMNS];
+    let mut low = vec![0u16; GridSpec::COLUMNS];
+    for c in 0..GridSpec::COLUMNS {
+        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        if !is_well_on_road(layout, x, y) {
+            continue;
+        }
+        let standing = column(grid, c);
+        if standing == 0 {
+            continue;
+        }
+        let foot = foot(&lies, x, y);
+        low[c] = standing & (((1u32 << (LOW_BINS + 1)) - 1) << foot) as u16;
+        runs[c] = low[c];
+        for z in 1..GridSpec::NZ {
+            runs[c] |= standing & 1 << z & (runs[c] & 1 << (z - 1)) << 1;
+        }
+    }
+    if low.iter().all(|bits| *bits == 0) {
+        return;
+    }
+    // With them goes what they alone carry, such as a crown.
+    let all = occupied(grid);
+    let without: Vec<u16> = all.iter().zip(&runs).map(|(all, run)| all & !run).collect();
+    let (before, after) = (supported(&all, &lies), supported(&without, &lies));
+    let mut cells = Vec::new();
+    for c in 0..GridSpec::COLUMNS {
+        let bits = runs[c] | (before[c] & !after[c] & without[c]);
+        let bins = (0..GridSpec::NZ).filter(|z| bits >> z & 1 == 1);
+        cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+    }
+    let is_low = |[x, y, z]: &&[usize; 3]| low[x * GridSpec::NY + y] >> z & 1 == 1;
+    let mut groups = groups(cells);
+    groups.retain(|g| g.iter().filter(is_low).count() >= LEAST_VOXELS);
+    groups.sort_by_key(|g| std::cmp::Reverse(g.len()));
+    let rest = groups.split_off(groups.len().min(LISTED));
+    let mut report = |text: String, where_m: glam::DVec3, cells: Vec<[usize; 3]>| {
+        out.push(Finding {
+            check: NAME,
+            severity: Severity::Warning,
+            where_m,
+            box_id: None,
+            text,
+            fixes: vec![Fix {
+                label: "Clear the road",
+                edits: removal(frame, &cells),
+            }],
+            cells,
+        });
+    };
+    for group in groups {
+        let class = main_class(grid, &group).label();
+        let text = format!("{} voxels of {class} stand on the road", group.len());
+        report(text, middle(&group), group);
+    }
+    if let Some(first) = rest.first() {
+        let (where_m, count) = (middle(first), rest.len());
+        let cells: Vec<_> = rest.into_iter().flatten().collect();
+        let text = format!("{count} smaller things stand on the road, {} voxels", cells.len());
+        report(text, where_m, cells);
+    }
+}
+
+/// Bins of a column that hold a plant or a building.
+fn column(grid: &VoxelGrid, c: usize) -> u16 {
+    let stands = |l: &u8| *l == Class::Manmade.id() || *l == Class::Vegetation.id();
+    let labels = grid.column(c / GridSpec::NY, c % GridSpec::NY).iter();
+    let bits = labels.enumerate().filter(|(_, l)| stands(l));
+    bits.fold(0, |word, (z, _)| word | 1 << z)
+}
+
+/// True for a cell of road or car park, not blocked by works, with nothing else around it: a kerb is drawn as coarsely
+/// as a voxel.
+fn is_well_on_road(layout: &BevLayout, x: usize, y: usize) -> bool {
+    let road = |cell: u32| {
+        let drivable = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+        cell & drivable != 0 && cell & BevLayer::RoadBlock.bit() == 0
+    };
+    let xs = x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1);
+    let ys = y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1);
+    xs.into_iter()
+        .all(|i| ys.clone().all(|j| road(layout.cell(i, j))))
+}
+
+/// Bin of the ground in a column or, where a thing covers it, of the nearest column that shows any; else the lowest bin.
+fn foot(ground: &[u16], x: usize, y: usize) -> u32 {
+    for reach in 0..=REACH {
+        let xs = x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1);
+        let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
+        let bins = xs.flat_map(|i| ys.clone().map(move |j| ground[i * GridSpec::NY + j]));
+        if let Some(lowest) = bins.filter(|g| *g != 0).map(u16::trailing_zeros).min() {
+            return lowest;
+        }
+    }
+    0
+}
