@@ -114,7 +114,11 @@ mod tests {
         let request = Request::of(&frame);
         let none = RedrawMask::default();
         let before = Invented::of_request(&request, &frame, &generated, &region);
-        assert_eq!(before.total(), 13, "a car that was there leaves car voxels, not new ones");
+        assert_eq!(
+            before.total(),
+            13,
+            "a car that was there leaves car voxels, not new ones"
+        );
         assert_eq!(keep_clear(&frame, &region, &none, &request, &mut generated), 13);
         assert_eq!(
             Invented::of_request(&request, &frame, &generated, &region).total(),
@@ -153,7 +157,10 @@ mod tests {
         let region = Region::of_edit(&frame, 2);
         let mut generated = draft::draft(&frame.layout, frame.boxes.values());
         let ([x, y], [hx, hy]) = (at(10.0, 0.0), at(10.0, 1.9));
-        assert!(region.columns[hx * GridSpec::NY + hy] && !Request::of(&frame).left_by_a_box(hx * GridSpec::NY + hy));
+        assert!(
+            region.columns[hx * GridSpec::NY + hy]
+                && !Request::of(&frame).left_by_a_box(hx * GridSpec::NY + hy)
+        );
         for (x, y) in [(x, y), (hx, hy)] {
             (0..5).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         }
@@ -195,6 +202,10 @@ mod tests {
         let left = Invented::of_request(&request, &masked, &generated, &region);
         assert_eq!(left.into_unobserved, 0);
         let [x, y] = at(10.0, 0.0);
-        assert_eq!(generated.get(x, y, 0), Class::DriveableSurface.id(), "under the car");
+        assert_eq!(
+            generated.get(x, y, 0),
+            Class::DriveableSurface.id(),
+            "under the car"
+        );
     }
 }

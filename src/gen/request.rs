@@ -167,7 +167,9 @@ pub(in crate::generation) mod tests {
         after.set(x, y, 6, Class::Vegetation.id());
         after.set(x, y, 0, Class::DriveableSurface.id());
         let region = Region::of_edit(&frame, 2);
-        request.each_invented(&after, &region, |x, y, z, label| found.push([x, y, z, label.into()]));
+        request.each_invented(&after, &region, |x, y, z, label| {
+            found.push([x, y, z, label.into()])
+        });
         assert_eq!(found, [[x, y, 6, Class::Vegetation.id().into()]]);
     }
 }

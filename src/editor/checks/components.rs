@@ -16,27 +16,32 @@ pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
     out
 }
 
-/// One word per column, one bit per bin that holds ground.
-pub fn ground(grid: &VoxelGrid) -> Vec<u16> {
-    let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
-    of_labels(grid, is_ground)
+/// One word per column and class, by class id: one bit per bin that holds it. Empty for a class that does not occur.
+pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u16>> {
+    let mut out = vec![Vec::new(); Class::COUNT];
+    for (x, y, z, label) in grid.iter_set() {
+        if let Some(words) = out.get_mut(usize::from(label)) {
+            words.resize(GridSpec::COLUMNS, 0u16);
+            words[x * GridSpec::NY + y] |= 1 << z;
+        }
+    }
+    out
 }
 
-/// One word per column, one bit per bin whose label is of that kind.
-pub fn of_labels(grid: &VoxelGrid, is: impl Fn(&u8) -> bool) -> Vec<u16> {
-    let word = |c: usize| {
-        let column = grid.column(c / GridSpec::NY, c % GridSpec::NY).iter();
-        let bits = column.enumerate().filter(|(_, l)| is(l));
-        bits.fold(0, |word, (z, _)| word | 1 << z)
-    };
-    (0..GridSpec::COLUMNS).map(word).collect()
+/// One word per column, one bit per bin that holds ground.
+pub fn ground(by_class: &[Vec<u16>]) -> Vec<u16> {
+    let mut out = vec![0; GridSpec::COLUMNS];
+    let grounds = Class::ALL.iter().filter(|c| c.is_ground());
+    for words in grounds.filter_map(|c| by_class.get(usize::from(c.id()))) {
+        out.iter_mut().zip(words).for_each(|(out, word)| *out |= word);
+    }
+    out
 }
 
 /// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
 /// that touch by a face, an edge or a corner.
 pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
-    let low: Vec<u16> = occupied.iter().map(|bits| bits & GROUND_BINS).collect();
-    let out = reached(occupied, &low);
+    let out = reached(occupied, |_| 0);
     // A hill that meets the lowest bins nowhere is no less ground.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
@@ -53,22 +58,21 @@ pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
             .iter()
             .for_each(|[x, y, z]| seeds[x * GridSpec::NY + y] |= 1 << z);
     }
-    reached(occupied, &seeds)
+    reached(occupied, |c| seeds[c])
 }
 
-/// What of `occupied` is connected to `seeds` (a part of it) through voxels that touch by a face, an edge or a corner.
-pub fn reached(occupied: &[u16], seeds: &[u16]) -> Vec<u16> {
-    let mut out: Vec<u16> = occupied
-        .iter()
-        .zip(seeds)
-        .map(|(bits, seeds)| fill(bits & seeds, *bits))
-        .collect();
-    // Columns whose neighbours may still gain something.
-    let gains = |c: usize| {
-        let reach = out[c] | out[c] << 1 | out[c] >> 1;
-        neighbours(c).any(|near| reach & occupied[near] & !out[near] != 0)
+/// What of `occupied` is connected to the ground bins or to the seeds of a column, through voxels that touch by a face, an
+/// edge or a corner.
+pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
+    let start = |(c, bits): (usize, &u16)| match *bits {
+        0 => 0,
+        bits => fill(bits & (GROUND_BINS | seeds(c)), bits),
     };
-    let mut queue: Vec<usize> = (0..out.len()).filter(|c| out[*c] != 0 && gains(*c)).collect();
+    let mut out: Vec<u16> = occupied.iter().enumerate().map(start).collect();
+    // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
+    let mut queue: Vec<usize> = (0..out.len())
+        .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
+        .collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;
         for near in neighbours(c) {
@@ -170,7 +174,7 @@ mod tests {
         put(&mut grid, &[[10, 10, 11], [10, 11, 11]]);
         put(&mut grid, &[[199, 199, 6]]);
         let all = occupied(&grid);
-        let stands = supported(&all, &ground(&grid));
+        let stands = supported(&all, &ground(&by_class(&grid)));
         assert_eq!(stands[13 * 200 + 11], 1 << 8 | 1 << 7);
         assert_eq!(stands[10 * 200 + 10], (1 << 9) - 1);
         assert_eq!(stands[199 * 200 + 199], 0);
@@ -188,7 +192,7 @@ mod tests {
         }
         (6..9).for_each(|z| grid.set(100, 100, z, Class::Manmade.id()));
         (0..9).for_each(|x| grid.set(x, 10, 5, Class::Sidewalk.id()));
-        let stands = supported(&occupied(&grid), &ground(&grid));
+        let stands = supported(&occupied(&grid), &ground(&by_class(&grid)));
         assert_eq!(stands[100 * 200 + 100], 0b1111 << 5);
         assert_eq!(stands[4 * 200 + 10], 0);
     }

@@ -1,6 +1,6 @@
 //! Voxels that hang in the air: nothing connects them to the ground.
 
-use super::components::{ground, groups, main_class, occupied, supported};
+use super::components::{groups, main_class};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
 use crate::scene::{Class, Frame, GridSpec};
@@ -13,10 +13,9 @@ pub const CROWN: usize = 8;
 
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let frame = context.frame;
-    let all = occupied(&frame.occupancy);
-    let stands = supported(&all, &ground(&frame.occupancy));
+    let bits = context.bits();
     let mut cells = Vec::new();
-    for (c, (all, stands)) in all.iter().zip(&stands).enumerate() {
+    for (c, (all, stands)) in bits.occupied.iter().zip(&bits.supported).enumerate() {
         let floating = all & !stands;
         let bins = (0..GridSpec::NZ).filter(|z| floating >> z & 1 == 1);
         cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));

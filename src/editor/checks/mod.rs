@@ -13,8 +13,8 @@ mod on_the_road;
 mod out_of_range;
 mod overlapping_boxes;
 mod unseen;
-mod unsupported_parts;
 mod unsound;
+mod unsupported_parts;
 pub mod waive;
 
 use std::collections::BTreeMap;
@@ -88,8 +88,22 @@ struct Context<'a> {
     /// Boxes whose numbers can be relied on, by id.
     boxes: Vec<SceneBox>,
     seen: Option<&'a Seen>,
+    /// The frame's occupancy as bits, made when the first check asks for it.
+    bits: std::cell::OnceCell<Bits>,
     /// Next id that is neither in the frame nor in its source.
     next_id: std::cell::Cell<u32>,
+}
+
+/// Occupancy as one word per column, one bit per bin.
+struct Bits {
+    /// By class id; empty for a class that does not occur.
+    by_class: Vec<Vec<u16>>,
+    /// Not free.
+    occupied: Vec<u16>,
+    /// Of a ground class.
+    ground: Vec<u16>,
+    /// What of the occupied stands on the ground, by itself or by what it touches.
+    supported: Vec<u16>,
 }
 
 type Check = fn(&Context<'_>, &mut Vec<Finding>);
@@ -132,6 +146,7 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
             .map(|(_, b)| *b)
             .collect(),
         seen,
+        bits: std::cell::OnceCell::new(),
         next_id: highest(&frame.boxes)
             .max(highest(&frame.source.boxes))
             .saturating_add(1)
@@ -183,6 +198,20 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
 const MOST_ROUNDS: usize = 8;
 
 impl Context<'_> {
+    fn bits(&self) -> &Bits {
+        self.bits.get_or_init(|| {
+            let by_class = components::by_class(&self.frame.occupancy);
+            let occupied = components::occupied(&self.frame.occupancy);
+            let ground = components::ground(&by_class);
+            Bits {
+                supported: components::supported(&occupied, &ground),
+                by_class,
+                occupied,
+                ground,
+            }
+        })
+    }
+
     /// An id that no box has, nor had when the frame was last generated; another one each time.
     fn fresh_id(&self) -> BoxId {
         let id = self.next_id.get();

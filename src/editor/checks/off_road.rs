@@ -12,8 +12,6 @@ pub const NAME: &str = "off_road";
 const ON_ROAD: f64 = 0.5;
 /// How far away a lane may be that a vehicle is put on, m.
 const REACH_M: f64 = 12.0;
-/// Works may stand this far beside what is paved, m: a row of barriers follows the edge of the road.
-const BESIDE_M: f64 = 0.8;
 /// Bits of what vehicles stand on.
 const ROAD: u32 =
     1 << BevLayer::DrivableArea as u32 | 1 << BevLayer::CarparkArea as u32 | 1 << BevLayer::RoadBlock as u32;
@@ -32,7 +30,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             }
             Class::ConstructionVehicle | Class::Barrier | Class::TrafficCone => {
                 // What was fitted to voxels stands where the data set saw it.
-                if context.frame.inferred.boxes.contains(&b.id) || !is_far_from_paved(layout, b) {
+                if context.frame.inferred.boxes.contains(&b.id) || !is_off_paved(layout, b) {
                     continue;
                 }
                 (
@@ -71,15 +69,16 @@ fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
     })
 }
 
-/// True if no road, car park, walkway or crossing lies under or right beside a box that is on the map.
-fn is_far_from_paved(layout: &BevLayout, b: &SceneBox) -> bool {
+/// True if no road, car park, walkway or crossing lies under a box that is on the map. One column is enough: a row of
+/// barriers follows the edge of the road.
+fn is_off_paved(layout: &BevLayout, b: &SceneBox) -> bool {
     let paved = ROAD | BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
-    let (mut cells, mut near) = (0usize, false);
-    box_cells(b, BESIDE_M, |x, y| {
+    let (mut cells, mut on) = (0usize, false);
+    box_cells(b, 0.0, |x, y| {
         cells += 1;
-        near |= layout.cell(x, y) & paved != 0;
+        on |= layout.cell(x, y) & paved != 0;
     });
-    cells > 0 && !near
+    cells > 0 && !on
 }
 
 /// The nearest place on a lane, along it, if nothing stands there.

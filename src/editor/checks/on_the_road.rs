@@ -1,8 +1,8 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
-use super::components::{ground, groups, main_class, occupied, supported};
+use super::components::{groups, main_class, supported};
 use super::{Context, Finding, Fix, Severity, middle, removal};
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
 
 pub const NAME: &str = "on_the_road";
 /// What reaches down to so many bins above the ground stands in the way. In labels, whose voxels reach two bins further
@@ -18,20 +18,18 @@ const REACH: usize = 8;
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let frame = context.frame;
     let (grid, layout) = (&frame.occupancy, &frame.layout);
-    let lies = ground(grid);
+    let bits = context.bits();
     // Runs of voxels that begin low on the road, and which of them are low.
     let mut runs = vec![0u16; GridSpec::COLUMNS];
     let mut low = vec![0u16; GridSpec::COLUMNS];
     for c in 0..GridSpec::COLUMNS {
         let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        if !is_well_on_road(layout, x, y) {
+        let of = |class: Class| bits.by_class[usize::from(class.id())].get(c).copied();
+        let standing = of(Class::Manmade).unwrap_or(0) | of(Class::Vegetation).unwrap_or(0);
+        if standing == 0 || !is_well_on_road(layout, x, y) {
             continue;
         }
-        let standing = column(grid, c);
-        if standing == 0 {
-            continue;
-        }
-        let foot = foot(&lies, x, y);
+        let foot = foot(&bits.ground, x, y);
         low[c] = standing & (((1u32 << (LOW_BINS + 1)) - 1) << foot) as u16;
         runs[c] = low[c];
         for z in 1..GridSpec::NZ {
@@ -42,13 +40,17 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         return;
     }
     // With them goes what they alone carry, such as a crown.
-    let all = occupied(grid);
-    let without: Vec<u16> = all.iter().zip(&runs).map(|(all, run)| all & !run).collect();
-    let (before, after) = (supported(&all, &lies), supported(&without, &lies));
+    let without: Vec<u16> = bits
+        .occupied
+        .iter()
+        .zip(&runs)
+        .map(|(all, run)| all & !run)
+        .collect();
+    let after = supported(&without, &bits.ground);
     let mut cells = Vec::new();
     for c in 0..GridSpec::COLUMNS {
-        let bits = runs[c] | (before[c] & !after[c] & without[c]);
-        let bins = (0..GridSpec::NZ).filter(|z| bits >> z & 1 == 1);
+        let gone = runs[c] | (bits.supported[c] & !after[c] & without[c]);
+        let bins = (0..GridSpec::NZ).filter(|z| gone >> z & 1 == 1);
         cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
     }
     let is_low = |[x, y, z]: &&[usize; 3]| low[x * GridSpec::NY + y] >> z & 1 == 1;
@@ -81,14 +83,6 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         let text = format!("{count} smaller things stand on the road, {} voxels", cells.len());
         report(text, where_m, cells);
     }
-}
-
-/// Bins of a column that hold a plant or a building.
-fn column(grid: &VoxelGrid, c: usize) -> u16 {
-    let stands = |l: &u8| *l == Class::Manmade.id() || *l == Class::Vegetation.id();
-    let labels = grid.column(c / GridSpec::NY, c % GridSpec::NY).iter();
-    let bits = labels.enumerate().filter(|(_, l)| stands(l));
-    bits.fold(0, |word, (z, _)| word | 1 << z)
 }
 
 /// True for a cell of road or car park, not blocked by works, with nothing else around it: a kerb is drawn as coarsely

@@ -272,14 +272,18 @@ fn vehicles_belong_on_the_road_in_its_direction() {
         objects[0] = object(1, class, 10.0, -25.0, 30.0);
         assert_eq!(run_checks(&street(&objects), None), []);
     }
-    // Works stand on the road or right beside it.
+    // Works stand on the road, or with a part of them.
     for class in [Class::ConstructionVehicle, Class::Barrier, Class::TrafficCone] {
-        objects[0] = object(1, class, 10.0, -7.5, 0.0);
+        objects[0] = object(1, class, 10.0, -6.6, 0.0);
         assert_eq!(run_checks(&street(&objects), None), []);
         objects[0] = object(1, class, 10.0, -25.0, 0.0);
         let mut scene = street(&objects);
         let finding = only(&scene, "off_road", Some(1));
-        assert!(finding.text.ends_with(" 1 stands off the road"), "{}", finding.text);
+        assert!(
+            finding.text.ends_with(" 1 stands off the road"),
+            "{}",
+            finding.text
+        );
         assert_eq!(finding.fixes[0].label, "Move to the road");
         // What was fitted to voxels of a data set stands where it was seen.
         scene.frame_mut().inferred.boxes.insert(BoxId(1));

@@ -86,7 +86,11 @@ fn on_raised_road_heights_count_from_the_road() {
     );
     let hangs = run_checks(&scene, None);
     assert!(!checks(&hangs).contains(&"on_the_road"), "{hangs:?}");
-    paint(&mut scene, Class::Vegetation, (5..10).map(|z| [100, 96, z]).collect());
+    paint(
+        &mut scene,
+        Class::Vegetation,
+        (5..10).map(|z| [100, 96, z]).collect(),
+    );
     assert_eq!(checks(&run_checks(&scene, None)), ["on_the_road"]);
 }
 
@@ -97,10 +101,7 @@ fn many_things_on_the_road_are_one_line_more() {
     paint(&mut scene, Class::Manmade, posts.collect());
     let findings = run_checks(&scene, None);
     assert_eq!(findings.len(), 41);
-    assert_eq!(
-        findings[40].text,
-        "5 smaller things stand on the road, 20 voxels"
-    );
+    assert_eq!(findings[40].text, "5 smaller things stand on the road, 20 voxels");
     let edits = fix_all(&scene, &findings);
     edits.iter().for_each(|e| apply(&mut scene, e.clone()));
     assert_eq!(run_checks(&scene, None), []);
@@ -128,7 +129,9 @@ fn a_part_that_only_leans_is_found() {
     paint(
         &mut scene,
         Class::Vegetation,
-        (0..27).map(|i| [44 + i % 3, 40 + i / 3 % 3, 10 + i / 9]).collect(),
+        (0..27)
+            .map(|i| [44 + i % 3, 40 + i / 3 % 3, 10 + i / 9])
+            .collect(),
     );
     paint(
         &mut scene,

@@ -1,7 +1,7 @@
 //! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
 //! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
 
-use super::components::{ground, groups, occupied, of_labels, reached, supported};
+use super::components::{groups, reached};
 use super::floating_voxels::{CROWN, is_known_to_float, lowest_m, stem};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
@@ -12,31 +12,23 @@ pub const NAME: &str = "unsupported_parts";
 const LEAST_VOXELS: usize = 8;
 /// Parts that are listed one by one, the largest.
 const LISTED: usize = 40;
-/// Bins in which the ground may lie.
-const GROUND_BINS: u16 = 0b111;
 
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let frame = context.frame;
-    let (grid, all) = (&frame.occupancy, occupied(&frame.occupancy));
-    let stands = supported(&all, &ground(grid));
+    let bits = context.bits();
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     let standing = |c: &&Class| **c != Class::Free && !c.is_ground();
     for class in Class::ALL.iter().filter(standing) {
-        let own = of_labels(grid, |l| *l == class.id());
-        if own.iter().all(|bits| *bits == 0) {
+        let own = &bits.by_class[usize::from(class.id())];
+        if own.is_empty() {
             continue;
         }
         // Held from below: on the ground's bins, or on a voxel of another class.
-        let held: Vec<u16> = own
-            .iter()
-            .zip(&all)
-            .map(|(own, all)| own & (GROUND_BINS | (all & !own) << 1))
-            .collect();
-        let rests = reached(&own, &held);
+        let rests = reached(own, |c| (bits.occupied[c] & !own[c]) << 1);
         let mut cells = Vec::new();
         for c in 0..GridSpec::COLUMNS {
-            let bits = own[c] & !rests[c] & stands[c];
-            let bins = (0..GridSpec::NZ).filter(|z| bits >> z & 1 == 1);
+            let left = own[c] & !rests[c] & bits.supported[c];
+            let bins = (0..GridSpec::NZ).filter(|z| left >> z & 1 == 1);
             cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
         }
         let large = groups(cells).into_iter().filter(|g| g.len() >= LEAST_VOXELS);

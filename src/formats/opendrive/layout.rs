@@ -41,9 +41,9 @@ struct Canvas {
     at_m: DVec2,
     ego_from_file: DVec2, // unit vector; rotating by it turns file axes to ego axes
     layout: BevLayout,
-    named: Vec<bool>,       // cells on which some lane lies, drivable or not
-    in_junction: Vec<bool>, // cells on which a connecting road lies
-    traffic: Vec<bool>,     // cells on which a traffic lane lies
+    named: Vec<bool>,                  // cells on which some lane lies, drivable or not
+    in_junction: Vec<bool>,            // cells on which a connecting road lies
+    traffic: Vec<bool>,                // cells on which a traffic lane lies
     beside: Vec<Option<&'static str>>, // kind of the drivable lane without traffic that lies there
     lines: Vec<Polyline>,
     budget: usize,
@@ -136,7 +136,9 @@ impl Canvas {
     fn beside_traffic(&self) -> BTreeMap<String, usize> {
         let mut out = BTreeMap::new();
         for (c, kind) in self.beside.iter().enumerate() {
-            let drivable = self.layout.has(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY);
+            let drivable = self
+                .layout
+                .has(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY);
             if let Some(kind) = kind.filter(|_| drivable && !self.traffic[c]) {
                 *out.entry(kind.to_owned()).or_default() += 1;
             }
@@ -292,4 +294,44 @@ fn stop_line(road: &Road, section: &LaneSection, s_m: f64, against_line: Option<
     let first = lanes.next()?;
     let last = lanes.last().unwrap_or(first);
     Some([row.between(first, first), row.between(last + 1, last + 1)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shoulder and stop lane beside the traffic are drivable and are said to be; what a verge parts from it is neither.
+    #[test]
+    fn drivable_lanes_without_traffic_are_said() {
+        let lane = |id: i32, kind: &str, width: f64| {
+            format!(
+                r#"<lane id="{id}" type="{kind}"><width sOffset="0" a="{width}" b="0" c="0" d="0"/></lane>"#
+            )
+        };
+        let network = |right: &str| {
+            let text = format!(
+                r#"<OpenDRIVE><header revMajor="1" revMinor="6"/><road name="" length="200" id="1" junction="-1">
+                <planView><geometry s="0" x="0" y="0" hdg="0" length="200"><line/></geometry></planView>
+                <lanes><laneSection s="0"><center><lane id="0" type="none"/></center><right>{right}</right></laneSection>
+                </lanes></road></OpenDRIVE>"#
+            );
+            super::super::read(text.as_bytes()).expect("roads")
+        };
+        let layout = |right: &str| network(right).to_layout(DVec2::new(100.0, -2.0), 0.0);
+        let plain = layout(&lane(-1, "driving", 4.0));
+        assert!(plain.drivable_beside_traffic.is_empty());
+        let wide = [
+            lane(-1, "driving", 4.0),
+            lane(-2, "shoulder", 2.0),
+            lane(-3, "stop", 4.0),
+            lane(-4, "none", 2.0),
+            lane(-5, "shoulder", 2.0),
+        ];
+        let found = layout(&wide.concat());
+        let columns = |m: f64| (m / GridSpec::VOXEL_M * GridSpec::NX as f64) as usize;
+        let expected = [("shoulder", columns(2.0)), ("stop", columns(4.0))].map(|(k, n)| (k.to_owned(), n));
+        assert_eq!(found.drivable_beside_traffic, expected.into());
+        let more = found.layout.count(BevLayer::DrivableArea) - plain.layout.count(BevLayer::DrivableArea);
+        assert_eq!(more, columns(6.0));
+    }
 }

@@ -117,10 +117,16 @@ mod tests {
         (0..GridSpec::NZ).for_each(|z| observed[at * GridSpec::NZ + z] = false);
         frame.inferred.unobserved = Unobserved::from_observed(&observed);
         let mut source = (*frame.source).clone();
-        source.occupancy.set(at / GridSpec::NY, at % GridSpec::NY, 0, Class::FREE);
+        source
+            .occupancy
+            .set(at / GridSpec::NY, at % GridSpec::NY, 0, Class::FREE);
         frame.source = std::sync::Arc::new(source);
         let mut after = draft::draft(&frame.layout, frame.boxes.values());
-        assert_eq!(Invented::count(&frame, &after, &region).into_unobserved, 1, "ground");
+        assert_eq!(
+            Invented::count(&frame, &after, &region).into_unobserved,
+            1,
+            "ground"
+        );
         after.set(at / GridSpec::NY, at % GridSpec::NY, 4, Class::Manmade.id());
         let found = Invented::count(&frame, &after, &region);
         assert_eq!((found.into_unobserved, found.total()), (2, 1));

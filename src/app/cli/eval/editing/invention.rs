@@ -1,6 +1,6 @@
 //! What edits invent, by preset of the quality slider and kind of edit, for every vehicle of a scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use anyhow::bail;
@@ -29,6 +29,8 @@ const ADDED: [Class; 6] = [
 ];
 /// The preset that the bars are about.
 const USUAL: &str = "balanced";
+/// Differences in the mean number of invented voxels that count.
+const CLEARLY: f64 = 1.0;
 /// Worlds whose objects say how many voxels a class has, at least.
 const BAND_WORLDS: usize = 40;
 
@@ -160,11 +162,6 @@ impl OfPreset {
         let kinds: BTreeMap<&str, Value> = self.kinds.iter().map(|(k, t)| (*k, t.report())).collect();
         json!({ "kinds": kinds, "added": self.added.report(bands), "moved": self.moved.report(bands) })
     }
-
-    /// Mean number of voxels that a removal invents, networks alone.
-    fn per_removal(&self) -> Option<f64> {
-        Some(self.kinds.get("remove")?.invents(0).0)
-    }
 }
 
 /// One row per preset, from the fastest to the slowest: how far it is from the slider's reference, and what it invents.
@@ -188,18 +185,57 @@ fn table(presets: &[Stop], found: &[OfPreset]) -> Value {
     rows.collect()
 }
 
-/// Presets that take longer than the one before and invent more per removal: nearer to the reference, and not more accurate.
+/// Kinds of edits in which a preset invents more than a faster one does, networks alone: nearer to the slider's reference,
+/// and not more accurate.
 fn contradictions(presets: &[Stop], found: &[OfPreset]) -> Vec<String> {
-    let per_removal: Vec<(&str, f64)> = presets
-        .iter()
-        .zip(found)
-        .filter_map(|(stop, found)| Some((stop.name.as_str(), found.per_removal()?)))
-        .collect();
-    let pairs = per_removal.windows(2).filter(|p| p[1].1 > p[0].1);
-    pairs
-        .map(|p| {
-            let [(fast, less), (slow, more)] = [p[0], p[1]];
-            format!("{slow} invents {more:.1} voxels per removal, {fast} {less:.1}: it is not more accurate")
-        })
-        .collect()
+    let kinds: BTreeSet<&str> = found.iter().flat_map(|f| f.kinds.keys().copied()).collect();
+    let mut out = Vec::new();
+    for kind in kinds {
+        let mut least: Option<(&str, f64)> = None; // of the faster presets
+        for (stop, found) in presets.iter().zip(found) {
+            let Some(tally) = found.kinds.get(kind) else {
+                continue;
+            };
+            let (name, invents) = (stop.name.as_str(), tally.invents(0).0);
+            match least {
+                Some((fast, less)) if invents > less + CLEARLY => out.push(format!(
+                    "{kind}: {name} invents {invents:.1} voxels per edit, {fast} {less:.1}: it is not more accurate"
+                )),
+                Some((_, less)) if invents >= less => {}
+                _ => least = Some((name, invents)),
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::cli::eval::editing::tried::Tried;
+    use crate::generation::metrics::invented::Invented;
+
+    #[test]
+    fn a_slower_preset_that_invents_more_is_named() {
+        let presets = &Stops::bundled().stops[..3];
+        let of = |voxels: usize| {
+            let mut invented = Invented::default();
+            invented.by_class[usize::from(Class::Vegetation.id())] = voxels;
+            let mut found = OfPreset::default();
+            found.kinds.entry("remove").or_default().add(&Tried {
+                reached: Default::default(),
+                invented: [invented.clone(), invented.clone(), invented],
+                brought: None,
+            });
+            found
+        };
+        let said = |voxels: [usize; 3]| contradictions(presets, &voxels.map(of));
+        assert_eq!(said([9, 5, 5]), Vec::<String>::new());
+        let lines = said([0, 533, 603]);
+        assert_eq!(lines.len(), 2);
+        assert_eq!(
+            lines[1],
+            "remove: fine invents 603.0 voxels per edit, draft 0.0: it is not more accurate"
+        );
+    }
 }

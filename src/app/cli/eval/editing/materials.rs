@@ -76,7 +76,11 @@ mod tests {
         assert_eq!((&whole.boxes, &whole.layout), (&seen.boxes, &seen.layout));
         assert!(seen.occupancy.count_set() < whole.occupancy.count_set());
         let unobserved = seen.inferred.unobserved.as_ref().expect("a mask");
-        assert!((0.005..0.2).contains(&unobserved.total()), "{}", unobserved.total());
+        assert!(
+            (0.005..0.2).contains(&unobserved.total()),
+            "{}",
+            unobserved.total()
+        );
         let missing = Material::Files(vec![PathBuf::from("/nowhere/labels.npz")]);
         assert!(missing.scene(0).is_err() && missing.count() == 1);
     }

@@ -49,7 +49,9 @@ impl Brought {
         let [networks, _, shown] = states;
         // Voxels of the class in both.
         let mut both = VoxelGrid::new();
-        let same = networks.iter_set().filter(|(x, y, z, l)| shown.get(*x, *y, *z) == *l);
+        let same = networks
+            .iter_set()
+            .filter(|(x, y, z, l)| shown.get(*x, *y, *z) == *l);
         same.filter(|(.., l)| *l == b.class.id())
             .for_each(|(x, y, z, l)| both.set(x, y, z, l));
         Self {
