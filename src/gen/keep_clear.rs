@@ -70,9 +70,9 @@ pub fn keep_unobserved(
             continue;
         }
         let before = *frame.source.occupancy.column(x, y);
-        for z in 0..GridSpec::NZ {
+        for (z, before) in before.iter().enumerate() {
             let now = generated.get(x, y, z);
-            let unknown = before[z] == Class::FREE && word >> z & 1 == 1;
+            let unknown = *before == Class::FREE && word >> z & 1 == 1;
             if unknown && now != Class::FREE && !request.holds(x, y, z, now) {
                 generated.set(x, y, z, Class::FREE);
                 count += 1;

@@ -45,9 +45,7 @@ pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
     // A hill that meets the lowest bins nowhere is no less ground.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
-        let left = ground & !out;
-        let bins = (0..GridSpec::NZ).filter(|z| left >> z & 1 == 1);
-        high.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+        high.extend(bins_set(c, ground & !out));
     }
     if high.len() < WIDE_GROUND {
         return out;
@@ -84,6 +82,15 @@ pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
         }
     }
     out
+}
+
+/// The voxels of a column that a word names.
+pub fn bins_set(column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
+    std::iter::from_fn(move || {
+        let z = word.trailing_zeros() as usize;
+        word &= word.wrapping_sub(1);
+        (z < GridSpec::NZ).then_some([column / GridSpec::NY, column % GridSpec::NY, z])
+    })
 }
 
 /// Spreads set bits over the runs of `within` that they lie in.

@@ -1,6 +1,6 @@
 //! Voxels that hang in the air: nothing connects them to the ground.
 
-use super::components::{groups, main_class};
+use super::components::{bins_set, groups, main_class};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
 use crate::scene::{Class, Frame, GridSpec};
@@ -16,9 +16,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let bits = context.bits();
     let mut cells = Vec::new();
     for (c, (all, stands)) in bits.occupied.iter().zip(&bits.supported).enumerate() {
-        let floating = all & !stands;
-        let bins = (0..GridSpec::NZ).filter(|z| floating >> z & 1 == 1);
-        cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+        cells.extend(bins_set(c, all & !stands));
     }
     let mut groups: Vec<_> = groups(cells)
         .into_iter()

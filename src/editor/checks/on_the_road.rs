@@ -1,6 +1,6 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
-use super::components::{groups, main_class, supported};
+use super::components::{bins_set, groups, main_class, supported};
 use super::{Context, Finding, Fix, Severity, middle, removal};
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
 
@@ -49,9 +49,10 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let after = supported(&without, &bits.ground);
     let mut cells = Vec::new();
     for c in 0..GridSpec::COLUMNS {
-        let gone = runs[c] | (bits.supported[c] & !after[c] & without[c]);
-        let bins = (0..GridSpec::NZ).filter(|z| gone >> z & 1 == 1);
-        cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+        cells.extend(bins_set(
+            c,
+            runs[c] | (bits.supported[c] & !after[c] & without[c]),
+        ));
     }
     let is_low = |[x, y, z]: &&[usize; 3]| low[x * GridSpec::NY + y] >> z & 1 == 1;
     let mut groups = groups(cells);

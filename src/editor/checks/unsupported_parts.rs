@@ -1,7 +1,7 @@
 //! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
 //! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
 
-use super::components::{groups, reached};
+use super::components::{bins_set, groups, reached};
 use super::floating_voxels::{CROWN, is_known_to_float, lowest_m, stem};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
@@ -27,9 +27,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         let rests = reached(own, |c| (bits.occupied[c] & !own[c]) << 1);
         let mut cells = Vec::new();
         for c in 0..GridSpec::COLUMNS {
-            let left = own[c] & !rests[c] & bits.supported[c];
-            let bins = (0..GridSpec::NZ).filter(|z| left >> z & 1 == 1);
-            cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+            cells.extend(bins_set(c, own[c] & !rests[c] & bits.supported[c]));
         }
         let large = groups(cells).into_iter().filter(|g| g.len() >= LEAST_VOXELS);
         let known = large.filter(|g| is_known_to_float(frame, g));
