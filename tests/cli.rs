@@ -389,6 +389,38 @@ fn occ3d_frames_are_scenes_and_training_data() {
     assert_eq!(report["files"], 2);
     assert!(report["labels"]["mean"]["iou"].as_f64() > Some(0.5), "{report}");
 
+    // What edits invent, on the same folder; bad folders and presets are one line.
+    let args = [
+        "eval",
+        "editing",
+        "--data",
+        &data,
+        "--frames",
+        "1",
+        "--vehicles",
+        "1",
+    ];
+    let report = json(&sceneloom(
+        &[&args[..], &["--presets", "draft", "--json"]].concat(),
+    ));
+    let kinds = &report["invented"]["frames"]["by_preset"]["draft"]["kinds"];
+    assert_eq!(kinds["remove"]["shown"]["invented"]["n"], 1, "{report}");
+    assert_eq!(report["files"], 1);
+    refused(
+        &[&args[..], &["--presets", "best"]].concat(),
+        &["--presets best", "draft", "accurate"],
+    );
+    refused(&["eval", "editing", "--vehicles", "0"], &["--vehicles is 0"]);
+    refused(&["eval", "editing", "--data", &dir.path("none")], &["none"]);
+    refused(&["eval", "editing", "--data", &shards], &["no .npz files"]);
+    let bad = dir.path("bad");
+    std::fs::create_dir_all(&bad).expect("a folder");
+    std::fs::write(Path::new(&bad).join("labels.npz"), "PK broken").expect("writable");
+    refused(
+        &["eval", "editing", "--data", &bad],
+        &["labels.npz", "not an npz archive"],
+    );
+
     refused(
         &["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards],
         &["none"],

@@ -139,6 +139,8 @@ pub struct Imported {
     pub roads: usize,
     /// Lanes in the file.
     pub lanes: usize,
+    /// Columns that are drivable although no traffic lane lies there, by the kind of lane.
+    pub drivable_beside_traffic: BTreeMap<String, usize>,
     /// What was not understood, counted by kind.
     pub skipped: BTreeMap<String, usize>,
     /// Where the ego stands in the file's frame: x, y in m and heading in rad.
@@ -183,6 +185,7 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
         scene,
         roads: import.road_count,
         lanes: import.lane_count,
+        drivable_beside_traffic: import.drivable_beside_traffic,
         skipped: import.skipped,
         pose: (at, heading),
     })

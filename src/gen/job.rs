@@ -113,6 +113,10 @@ pub struct GenReport {
     pub objects_kept: usize,
     /// Columns whose painted ground the networks did not follow, and that were given it.
     pub ground_kept: usize,
+    /// Voxels that nobody asked for on the road or in a removed box's place, and that were cleared.
+    pub invented_cleared: usize,
+    /// Voxels that were put where no sensor of the source had looked, and that were taken out again.
+    pub unobserved_kept: usize,
     /// Relative RMS error of encode, invert and sample again, where it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_error: Option<f64>,

@@ -57,7 +57,7 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
             corrected += 1;
         } else if !found.contains(&wanted.id())
             && !found.iter().any(is_object)
-            && frame.source.occupancy.column(x, y)[0] != Class::FREE
+            && held_ground(frame.source.occupancy.column(x, y))
         {
             // A hedge or a wall goes to its top, a hole is closed unless it was there before, as in frames of real labels;
             // a crown above a gap may hang over the road.
@@ -69,6 +69,14 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
         }
     }
     corrected
+}
+
+/// True unless a column has a hole in its ground: a sidewalk lies a bin above the road.
+fn held_ground(column: &[u8; GridSpec::NZ]) -> bool {
+    column[0] != Class::FREE
+        || column
+            .iter()
+            .any(|l| Class::from_id(*l).is_some_and(Class::is_ground))
 }
 
 fn put_in(region: &Region, b: &SceneBox, generated: &mut VoxelGrid) -> bool {
@@ -154,6 +162,20 @@ mod tests {
         assert_eq!(generated.get(57, 80, 9), Class::Vegetation.id());
         assert_eq!(generated.get(58, 80, 0), Class::Car.id());
         assert_eq!(keep_ground(&frame, &region, &mut generated), 0);
+        // A sidewalk in the second bin that the networks took away and put nothing in its place; where there was a hole
+        // it stays one.
+        let mut source = (*frame.source).clone();
+        source.occupancy.set(50, 80, 0, Class::FREE);
+        source.occupancy.set(50, 80, 1, Class::Sidewalk.id());
+        source.occupancy.set(51, 80, 0, Class::FREE);
+        frame.source = std::sync::Arc::new(source);
+        generated.set(50, 80, 0, Class::FREE);
+        generated.set(51, 80, 0, Class::FREE);
+        assert_eq!(keep_ground(&frame, &region, &mut generated), 1);
+        assert_eq!(
+            (generated.get(50, 80, 0), generated.get(51, 80, 0)),
+            (road, Class::FREE)
+        );
         let mut outside = frame.source.occupancy.clone();
         assert_eq!(keep_ground(&frame, &Region::empty(), &mut outside), 0);
     }

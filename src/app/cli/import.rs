@@ -81,13 +81,23 @@ impl Import {
             "roads": imported.roads,
             "lanes": imported.lanes,
             "skipped": imported.skipped,
+            "drivable_beside_traffic": imported.drivable_beside_traffic,
             "at_m": [at.x, at.y],
             "heading_deg": heading.to_degrees(),
             "file": self.output,
         });
+        let beside: Vec<String> = imported
+            .drivable_beside_traffic
+            .iter()
+            .map(|(kind, columns)| format!("{columns} columns of {kind} lanes"))
+            .collect();
         output::report(&self.common, &report, || {
+            let note = match beside.is_empty() {
+                true => String::new(),
+                false => format!("; counted as drivable: {}", beside.join(", ")),
+            };
             format!(
-                "{}: {} roads, {} lanes, {} boxes; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}",
+                "{}: {} roads, {} lanes, {} boxes; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}{note}",
                 self.output.display(),
                 imported.roads,
                 imported.lanes,

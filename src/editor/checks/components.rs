@@ -4,6 +4,8 @@ use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
 const GROUND_BINS: u16 = 0b111;
+/// Ground above them carries what stands on it if so many voxels of it belong together: 16 m².
+const WIDE_GROUND: usize = 100;
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
 pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
@@ -14,12 +16,57 @@ pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
     out
 }
 
-/// What of `occupied` is connected to the ground bins through voxels that touch by a face, an edge or a corner.
-pub fn supported(occupied: &[u16]) -> Vec<u16> {
-    let mut out: Vec<u16> = occupied
-        .iter()
-        .map(|bits| fill(bits & GROUND_BINS, *bits))
-        .collect();
+/// One word per column and class, by class id: one bit per bin that holds it. Empty for a class that does not occur.
+pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u16>> {
+    let mut out = vec![Vec::new(); Class::COUNT];
+    for (x, y, z, label) in grid.iter_set() {
+        if let Some(words) = out.get_mut(usize::from(label)) {
+            words.resize(GridSpec::COLUMNS, 0u16);
+            words[x * GridSpec::NY + y] |= 1 << z;
+        }
+    }
+    out
+}
+
+/// One word per column, one bit per bin that holds ground.
+pub fn ground(by_class: &[Vec<u16>]) -> Vec<u16> {
+    let mut out = vec![0; GridSpec::COLUMNS];
+    let grounds = Class::ALL.iter().filter(|c| c.is_ground());
+    for words in grounds.filter_map(|c| by_class.get(usize::from(c.id()))) {
+        out.iter_mut().zip(words).for_each(|(out, word)| *out |= word);
+    }
+    out
+}
+
+/// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
+/// that touch by a face, an edge or a corner.
+pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
+    let out = reached(occupied, |_| 0);
+    // A hill that meets the lowest bins nowhere is no less ground.
+    let mut high = Vec::new();
+    for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
+        high.extend(bins_set(c, ground & !out));
+    }
+    if high.len() < WIDE_GROUND {
+        return out;
+    }
+    let mut seeds = out.clone();
+    for group in groups(high).iter().filter(|g| g.len() >= WIDE_GROUND) {
+        group
+            .iter()
+            .for_each(|[x, y, z]| seeds[x * GridSpec::NY + y] |= 1 << z);
+    }
+    reached(occupied, |c| seeds[c])
+}
+
+/// What of `occupied` is connected to the ground bins or to the seeds of a column, through voxels that touch by a face, an
+/// edge or a corner.
+pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
+    let start = |(c, bits): (usize, &u16)| match *bits {
+        0 => 0,
+        bits => fill(bits & (GROUND_BINS | seeds(c)), bits),
+    };
+    let mut out: Vec<u16> = occupied.iter().enumerate().map(start).collect();
     // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
     let mut queue: Vec<usize> = (0..out.len())
         .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
@@ -35,6 +82,15 @@ pub fn supported(occupied: &[u16]) -> Vec<u16> {
         }
     }
     out
+}
+
+/// The voxels of a column that a word names.
+pub fn bins_set(column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
+    std::iter::from_fn(move || {
+        let z = word.trailing_zeros() as usize;
+        word &= word.wrapping_sub(1);
+        (z < GridSpec::NZ).then_some([column / GridSpec::NY, column % GridSpec::NY, z])
+    })
 }
 
 /// Spreads set bits over the runs of `within` that they lie in.
@@ -125,12 +181,27 @@ mod tests {
         put(&mut grid, &[[10, 10, 11], [10, 11, 11]]);
         put(&mut grid, &[[199, 199, 6]]);
         let all = occupied(&grid);
-        let stands = supported(&all);
+        let stands = supported(&all, &ground(&by_class(&grid)));
         assert_eq!(stands[13 * 200 + 11], 1 << 8 | 1 << 7);
         assert_eq!(stands[10 * 200 + 10], (1 << 9) - 1);
         assert_eq!(stands[199 * 200 + 199], 0);
         let floating: u32 = all.iter().zip(&stands).map(|(a, s)| (a & !s).count_ones()).sum();
         assert_eq!(floating, 3);
+    }
+
+    #[test]
+    fn raised_ground_carries_and_a_lone_slab_does_not() {
+        let mut grid = VoxelGrid::new();
+        for x in 50..150 {
+            for y in 50..150 {
+                grid.set(x, y, 5, Class::Terrain.id());
+            }
+        }
+        (6..9).for_each(|z| grid.set(100, 100, z, Class::Manmade.id()));
+        (0..9).for_each(|x| grid.set(x, 10, 5, Class::Sidewalk.id()));
+        let stands = supported(&occupied(&grid), &ground(&by_class(&grid)));
+        assert_eq!(stands[100 * 200 + 100], 0b1111 << 5);
+        assert_eq!(stands[4 * 200 + 10], 0);
     }
 
     #[test]

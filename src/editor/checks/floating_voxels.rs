@@ -1,6 +1,6 @@
 //! Voxels that hang in the air: nothing connects them to the ground.
 
-use super::components::{groups, main_class, occupied, supported};
+use super::components::{bins_set, groups, main_class};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
 use crate::scene::{Class, Frame, GridSpec};
@@ -9,17 +9,14 @@ pub const NAME: &str = "floating_voxels";
 /// Groups that are listed one by one, the largest; the rest is one finding.
 const LISTED: usize = 40;
 /// Vegetation that floats in groups of at least so many voxels is the crown of a tree.
-const CROWN: usize = 8;
+pub const CROWN: usize = 8;
 
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let frame = context.frame;
-    let all = occupied(&frame.occupancy);
-    let stands = supported(&all);
+    let bits = context.bits();
     let mut cells = Vec::new();
-    for (c, (all, stands)) in all.iter().zip(&stands).enumerate() {
-        let floating = all & !stands;
-        let bins = (0..GridSpec::NZ).filter(|z| floating >> z & 1 == 1);
-        cells.extend(bins.map(|z| [c / GridSpec::NY, c % GridSpec::NY, z]));
+    for (c, (all, stands)) in bits.occupied.iter().zip(&bits.supported).enumerate() {
+        cells.extend(bins_set(c, all & !stands));
     }
     let mut groups: Vec<_> = groups(cells)
         .into_iter()
@@ -80,7 +77,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
 
 /// False for what may be held by something that the frame does not show: beyond the sides or the top of the grid
 /// (objects excepted, they stand on their own), or by voxels below that no sensor observed.
-fn is_known_to_float(frame: &Frame, group: &[[usize; 3]]) -> bool {
+pub fn is_known_to_float(frame: &Frame, group: &[[usize; 3]]) -> bool {
     let is_object =
         |[x, y, z]: [usize; 3]| Class::from_id(frame.occupancy.get(x, y, z)).is_some_and(Class::is_object);
     let at_edge = |[x, y, z]: [usize; 3]| {
@@ -96,13 +93,13 @@ fn is_known_to_float(frame: &Frame, group: &[[usize; 3]]) -> bool {
 }
 
 /// Lower face of the lowest voxel above the ground's surface, m.
-fn lowest_m(group: &[[usize; 3]]) -> f64 {
+pub fn lowest_m(group: &[[usize; 3]]) -> f64 {
     let lowest = group.iter().map(|c| c[2]).min().unwrap_or(0);
     (GridSpec::center(0, 0, lowest).z - GridSpec::VOXEL_M / 2.0).max(0.0)
 }
 
 /// Free voxels from the ground to the underside of a group, under the voxel that is nearest to its middle.
-fn stem(frame: &Frame, group: &[[usize; 3]]) -> Vec<[usize; 3]> {
+pub fn stem(frame: &Frame, group: &[[usize; 3]]) -> Vec<[usize; 3]> {
     let middle = middle(group).truncate();
     let lowest = |[x, y, z]: &&[usize; 3]| !group.contains(&[*x, *y, z.wrapping_sub(1)]);
     let off = |c: &[usize; 3]| {

@@ -9,10 +9,12 @@ mod geometry;
 mod lanes;
 mod occupancy_without_box;
 mod off_road;
+mod on_the_road;
 mod out_of_range;
 mod overlapping_boxes;
 mod unseen;
 mod unsound;
+mod unsupported_parts;
 pub mod waive;
 
 use std::collections::BTreeMap;
@@ -86,14 +88,28 @@ struct Context<'a> {
     /// Boxes whose numbers can be relied on, by id.
     boxes: Vec<SceneBox>,
     seen: Option<&'a Seen>,
+    /// The frame's occupancy as bits, made when the first check asks for it.
+    bits: std::cell::OnceCell<Bits>,
     /// Next id that is neither in the frame nor in its source.
     next_id: std::cell::Cell<u32>,
+}
+
+/// Occupancy as one word per column, one bit per bin.
+struct Bits {
+    /// By class id; empty for a class that does not occur.
+    by_class: Vec<Vec<u16>>,
+    /// Not free.
+    occupied: Vec<u16>,
+    /// Of a ground class.
+    ground: Vec<u16>,
+    /// What of the occupied stands on the ground, by itself or by what it touches.
+    supported: Vec<u16>,
 }
 
 type Check = fn(&Context<'_>, &mut Vec<Finding>);
 
 /// Every check, in the order of reports.
-const CHECKS: [(&str, Check); 10] = [
+const CHECKS: [(&str, Check); 12] = [
     (unsound::NAME, unsound::check),
     (out_of_range::NAME, out_of_range::check),
     (overlapping_boxes::NAME, overlapping_boxes::check),
@@ -101,7 +117,9 @@ const CHECKS: [(&str, Check); 10] = [
     (occupancy_without_box::NAME, occupancy_without_box::check),
     (off_road::NAME, off_road::check),
     (against_lane::NAME, against_lane::check),
+    (on_the_road::NAME, on_the_road::check),
     (floating_voxels::NAME, floating_voxels::check),
+    (unsupported_parts::NAME, unsupported_parts::check),
     (unseen::NO_CAMERA, unseen::by_cameras),
     (unseen::NO_LIDAR, unseen::by_lidar),
 ];
@@ -128,6 +146,7 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
             .map(|(_, b)| *b)
             .collect(),
         seen,
+        bits: std::cell::OnceCell::new(),
         next_id: highest(&frame.boxes)
             .max(highest(&frame.source.boxes))
             .saturating_add(1)
@@ -179,6 +198,20 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
 const MOST_ROUNDS: usize = 8;
 
 impl Context<'_> {
+    fn bits(&self) -> &Bits {
+        self.bits.get_or_init(|| {
+            let by_class = components::by_class(&self.frame.occupancy);
+            let occupied = components::occupied(&self.frame.occupancy);
+            let ground = components::ground(&by_class);
+            Bits {
+                supported: components::supported(&occupied, &ground),
+                by_class,
+                occupied,
+                ground,
+            }
+        })
+    }
+
     /// An id that no box has, nor had when the frame was last generated; another one each time.
     fn fresh_id(&self) -> BoxId {
         let id = self.next_id.get();

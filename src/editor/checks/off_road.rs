@@ -1,37 +1,45 @@
-//! Vehicles that do not stand on a road or a car park.
+//! Vehicles that do not stand on a road or a car park; cones, barriers and machines of works that stand far from any.
 
 use super::geometry::{shared_area_m2, shared_height_m};
 use super::lanes::nearest;
 use super::{Context, Finding, Fix, Severity, name_of};
 use crate::editor::Edit;
 use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, Class, SceneBox};
+use crate::scene::{BevLayer, BevLayout, Class, GridSpec, SceneBox};
 
 pub const NAME: &str = "off_road";
 /// A vehicle is on the road if at least this share of its footprint is.
 const ON_ROAD: f64 = 0.5;
 /// How far away a lane may be that a vehicle is put on, m.
 const REACH_M: f64 = 12.0;
+/// Bits of what vehicles stand on.
+const ROAD: u32 =
+    1 << BevLayer::DrivableArea as u32 | 1 << BevLayer::CarparkArea as u32 | 1 << BevLayer::RoadBlock as u32;
 
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let layout = &context.frame.layout;
-    let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::RoadBlock.bit();
     // Without any road the layout says nothing about where vehicles belong.
-    if layout.cells().iter().all(|c| c & road == 0) {
+    if layout.cells().iter().all(|c| c & ROAD == 0) {
         return;
     }
-    for b in context.boxes.iter().filter(|b| drives(b.class)) {
-        let (mut cells, mut on) = (0usize, 0usize);
-        box_cells(b, 0.0, |x, y| {
-            cells += 1;
-            on += usize::from(layout.cell(x, y) & road != 0);
-        });
-        if cells == 0 || on as f64 >= ON_ROAD * cells as f64 {
-            continue;
-        }
-        let text = match on {
-            0 => format!("{} stands off the road", name_of(b)),
-            _ => format!("{} stands with {} of {cells} columns on the road", name_of(b), on),
+    for b in &context.boxes {
+        let (text, fix) = match b.class {
+            c if c.is_vehicle() && c != Class::ConstructionVehicle => {
+                let Some(text) = vehicle(layout, b) else { continue };
+                (text, onto_lane(context, b))
+            }
+            Class::ConstructionVehicle | Class::Barrier | Class::TrafficCone => {
+                // What was fitted to voxels stands where the data set saw it.
+                if context.frame.inferred.boxes.contains(&b.id) || !is_off_paved(layout, b) {
+                    continue;
+                }
+                (
+                    format!("{} stands off the road", name_of(b)),
+                    onto_road(context, b),
+                )
+            }
+            // People go anywhere; two-wheelers are parked on walkways.
+            _ => continue,
         };
         out.push(Finding {
             check: NAME,
@@ -40,14 +48,37 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             box_id: Some(b.id),
             cells: Vec::new(),
             text,
-            fixes: onto_lane(context, b).into_iter().collect(),
+            fixes: fix.into_iter().collect(),
         });
     }
 }
 
-/// Machines at works stand where they work; two-wheelers are parked on walkways.
-fn drives(class: Class) -> bool {
-    class.is_vehicle() && class != Class::ConstructionVehicle
+/// What is wrong with a vehicle's place, if anything is.
+fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
+    let (mut cells, mut on) = (0usize, 0usize);
+    box_cells(b, 0.0, |x, y| {
+        cells += 1;
+        on += usize::from(layout.cell(x, y) & ROAD != 0);
+    });
+    if cells == 0 || on as f64 >= ON_ROAD * cells as f64 {
+        return None;
+    }
+    Some(match on {
+        0 => format!("{} stands off the road", name_of(b)),
+        _ => format!("{} stands with {on} of {cells} columns on the road", name_of(b)),
+    })
+}
+
+/// True if no road, car park, walkway or crossing lies under a box that is on the map. One column is enough: a row of
+/// barriers follows the edge of the road.
+fn is_off_paved(layout: &BevLayout, b: &SceneBox) -> bool {
+    let paved = ROAD | BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
+    let (mut cells, mut on) = (0usize, false);
+    box_cells(b, 0.0, |x, y| {
+        cells += 1;
+        on |= layout.cell(x, y) & paved != 0;
+    });
+    cells > 0 && !on
 }
 
 /// The nearest place on a lane, along it, if nothing stands there.
@@ -58,14 +89,32 @@ fn onto_lane(context: &Context<'_>, b: &SceneBox) -> Option<Fix> {
         yaw_rad: lane.heading_rad,
         ..*b
     };
-    let mut others = context.boxes.iter().filter(|o| o.id != b.id);
-    if others.any(|o| shared_area_m2(o, &moved) > 0.0 && shared_height_m(o, &moved) > 0.0) {
+    moved_to(context, &moved, "Move onto the lane")
+}
+
+/// The nearest road cell, heading as it is, if nothing stands there.
+fn onto_road(context: &Context<'_>, b: &SceneBox) -> Option<Fix> {
+    let place = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+    let off = |c: &usize| place(*c).distance_squared(b.center_m.truncate());
+    let cells = context.frame.layout.cells().iter().enumerate();
+    let road = cells.filter(|(_, bits)| **bits & ROAD != 0).map(|(c, _)| c);
+    let nearest = road.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let moved = SceneBox {
+        center_m: place(nearest).extend(b.center_m.z),
+        ..*b
+    };
+    moved_to(context, &moved, "Move to the road")
+}
+
+fn moved_to(context: &Context<'_>, moved: &SceneBox, label: &'static str) -> Option<Fix> {
+    let mut others = context.boxes.iter().filter(|o| o.id != moved.id);
+    if others.any(|o| shared_area_m2(o, moved) > 0.0 && shared_height_m(o, moved) > 0.0) {
         return None;
     }
     Some(Fix {
-        label: "Move onto the lane",
+        label,
         edits: vec![Edit::MoveBox {
-            id: b.id,
+            id: moved.id,
             center_m: Some(moved.center_m),
             yaw_deg: Some(moved.yaw_rad.to_degrees()),
             size_m: None,

@@ -268,14 +268,26 @@ fn vehicles_belong_on_the_road_in_its_direction() {
     // No lane near: nothing is offered. Machines and two-wheelers may stand there.
     objects[0].center_m.y = -25.0;
     assert!(run_checks(&street(&objects), None)[0].fixes.is_empty());
-    for class in [
-        Class::ConstructionVehicle,
-        Class::Bicycle,
-        Class::Motorcycle,
-        Class::Barrier,
-    ] {
+    for class in [Class::Bicycle, Class::Motorcycle, Class::Pedestrian] {
         objects[0] = object(1, class, 10.0, -25.0, 30.0);
         assert_eq!(run_checks(&street(&objects), None), []);
+    }
+    // Works stand on the road, or with a part of them.
+    for class in [Class::ConstructionVehicle, Class::Barrier, Class::TrafficCone] {
+        objects[0] = object(1, class, 10.0, -6.6, 0.0);
+        assert_eq!(run_checks(&street(&objects), None), []);
+        objects[0] = object(1, class, 10.0, -25.0, 0.0);
+        let mut scene = street(&objects);
+        let finding = only(&scene, "off_road", Some(1));
+        assert!(
+            finding.text.ends_with(" 1 stands off the road"),
+            "{}",
+            finding.text
+        );
+        assert_eq!(finding.fixes[0].label, "Move to the road");
+        // What was fitted to voxels of a data set stands where it was seen.
+        scene.frame_mut().inferred.boxes.insert(BoxId(1));
+        assert_eq!(run_checks(&scene, None), []);
     }
     // Against the lane, standing and driving.
     objects[0] = object(1, Class::Car, 10.0, -1.7, 175.0);
@@ -509,3 +521,6 @@ fn waived_findings_stay_until_they_are_taken_back() {
         assert!(matches!(edit.apply(&mut scene), Err(EditError::BadWaiver(_))));
     }
 }
+
+#[path = "tests_standing.rs"]
+mod standing;

@@ -52,7 +52,11 @@ pub enum LaneKind {
     Driving,
     /// bidirectional: used both ways, such as a turn lane in the middle.
     Bidirectional,
-    /// stop, shoulder, restricted, roadWorks: paved, no traffic.
+    /// shoulder: paved, no traffic.
+    Shoulder,
+    /// stop: for vehicles that have broken down.
+    Stop,
+    /// restricted, roadWorks: paved, no traffic.
     Paved,
     /// biking.
     Biking,
@@ -77,7 +81,9 @@ impl LaneKind {
                 Self::Driving
             }
             "bidirectional" => Self::Bidirectional,
-            "stop" | "shoulder" | "restricted" | "roadWorks" => Self::Paved,
+            "shoulder" => Self::Shoulder,
+            "stop" => Self::Stop,
+            "restricted" | "roadWorks" => Self::Paved,
             "biking" => Self::Biking,
             "parking" => Self::Parking,
             "sidewalk" | "walking" => Self::Sidewalk,
@@ -93,8 +99,23 @@ impl LaneKind {
         matches!(self, Self::Driving | Self::Bidirectional)
     }
 
+    /// What it is called where it is drivable although no traffic flows on it: `shoulder`. `None` for other kinds.
+    pub fn beside_traffic(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Shoulder => "shoulder",
+            Self::Stop => "stop",
+            Self::Paved => "restricted",
+            Self::Biking => "biking",
+            _ => return None,
+        })
+    }
+
     fn is_paved(self) -> bool {
-        self.carries_traffic() || matches!(self, Self::Paved | Self::Biking | Self::Parking)
+        self.carries_traffic()
+            || matches!(
+                self,
+                Self::Shoulder | Self::Stop | Self::Paved | Self::Biking | Self::Parking
+            )
     }
 }
 
@@ -312,7 +333,9 @@ impl LaneSection {
                     LaneKind::Driving | LaneKind::Bidirectional => Ground::Road,
                     LaneKind::Parking => Ground::Carpark,
                     LaneKind::Sidewalk => Ground::Walkway,
-                    LaneKind::Biking | LaneKind::Paved if connected => Ground::Road,
+                    LaneKind::Biking | LaneKind::Shoulder | LaneKind::Stop | LaneKind::Paved if connected => {
+                        Ground::Road
+                    }
                     LaneKind::Biking => Ground::Walkway,
                     _ => Ground::Other,
                 };
@@ -403,11 +426,11 @@ mod tests {
     #[test]
     fn kerbs_decide_what_is_drivable() {
         use Ground::{Carpark, Other, Road, Walkway};
-        use LaneKind::{Biking, Driving, Edge, Median, None, Paved, Sidewalk};
+        use LaneKind::{Biking, Driving, Edge, Median, None, Shoulder, Sidewalk, Stop};
         let s = section(
             vec![
                 lane(1, Median, 2.0),
-                lane(2, Paved, 0.5),
+                lane(2, Stop, 0.5),
                 lane(3, None, 0.0),
                 lane(4, Driving, 3.0),
                 lane(5, Biking, 1.5),
@@ -418,7 +441,7 @@ mod tests {
             vec![
                 lane(-1, Driving, 3.0),
                 lane(-2, Edge, 0.3),
-                lane(-3, Paved, 2.0),
+                lane(-3, Shoulder, 2.0),
                 lane(-4, Edge, 0.2),
                 lane(-5, Biking, 1.6),
                 lane(-6, Sidewalk, 2.0),

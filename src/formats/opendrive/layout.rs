@@ -1,8 +1,10 @@
 //! Cuts a bird's-eye-view layout out of a road network.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
-use super::lanes::{Ground, LaneSection, Travel};
+use super::lanes::{Ground, LaneKind, LaneSection, Travel};
 use super::lines::{Follower, SectionLines, clipped};
 use super::objects::ObjectKind;
 use super::sampling::{BUDGET, Row, walk};
@@ -27,6 +29,9 @@ pub struct LayoutImport {
     pub crossing_count: usize,
     /// Share of the cells that is drivable, 0 to 1.
     pub drivable_share: f64,
+    /// Columns that are drivable although no traffic lane lies there, by the kind of lane: `shoulder`, `stop`,
+    /// `restricted`, `biking`. The nuScenes map counts them as drivable; a road's own rules do not.
+    pub drivable_beside_traffic: BTreeMap<String, usize>,
     /// What the file holds and the layout does not, counted by kind.
     pub skipped: Skipped,
 }
@@ -36,8 +41,10 @@ struct Canvas {
     at_m: DVec2,
     ego_from_file: DVec2, // unit vector; rotating by it turns file axes to ego axes
     layout: BevLayout,
-    named: Vec<bool>,       // cells on which some lane lies, drivable or not
-    in_junction: Vec<bool>, // cells on which a connecting road lies
+    named: Vec<bool>,                  // cells on which some lane lies, drivable or not
+    in_junction: Vec<bool>,            // cells on which a connecting road lies
+    traffic: Vec<bool>,                // cells on which a traffic lane lies
+    beside: Vec<Option<&'static str>>, // kind of the drivable lane without traffic that lies there
     lines: Vec<Polyline>,
     budget: usize,
 }
@@ -54,6 +61,8 @@ impl RoadNetwork {
             layout: BevLayout::default(),
             named: vec![false; GridSpec::COLUMNS],
             in_junction: vec![false; GridSpec::COLUMNS],
+            traffic: vec![false; GridSpec::COLUMNS],
+            beside: vec![None; GridSpec::COLUMNS],
             lines: Vec::new(),
             budget: BUDGET,
         };
@@ -80,12 +89,14 @@ impl RoadNetwork {
             of_kind(PolylineKind::LaneCenter),
             of_kind(PolylineKind::PedCrossing),
         );
+        let drivable_beside_traffic = canvas.beside_traffic();
         let mut layout = canvas.layout;
         layout.polylines = canvas.lines.into();
         LayoutImport {
             road_count,
             lane_count,
             crossing_count,
+            drivable_beside_traffic,
             drivable_share: layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64,
             skipped,
             layout,
@@ -112,6 +123,29 @@ impl Canvas {
         !cells.is_empty()
     }
 
+    fn note_kind(&mut self, area_in_ego: &[DVec2], kind: LaneKind) {
+        let (traffic, beside) = (&mut self.traffic, &mut self.beside);
+        polygon_cells(area_in_ego, |x, y| {
+            let c = x * GridSpec::NY + y;
+            traffic[c] |= kind.carries_traffic();
+            beside[c] = beside[c].or(kind.beside_traffic());
+        });
+    }
+
+    /// Columns that are drivable and on no traffic lane, by kind.
+    fn beside_traffic(&self) -> BTreeMap<String, usize> {
+        let mut out = BTreeMap::new();
+        for (c, kind) in self.beside.iter().enumerate() {
+            let drivable = self
+                .layout
+                .has(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY);
+            if let Some(kind) = kind.filter(|_| drivable && !self.traffic[c]) {
+                *out.entry(kind.to_owned()).or_default() += 1;
+            }
+        }
+        out
+    }
+
     /// Draws the lanes of a road; true if any ground of it is in the window.
     fn road(&mut self, road: &Road, marks_known: bool) -> bool {
         let mut follower = Follower::default();
@@ -123,7 +157,7 @@ impl Canvas {
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
                 let grounds = grounds.get_or_insert_with(|| section.grounds());
                 self.budget = *budget;
-                seen |= self.strips(from, to, grounds, road.junction.is_some());
+                seen |= self.strips(section, from, to, grounds, road.junction.is_some());
                 let lines = SectionLines {
                     section,
                     grounds,
@@ -148,13 +182,21 @@ impl Canvas {
     }
 
     /// One step of every lane, as quads that share their corners: neighbours leave no cell between them.
-    fn strips(&mut self, from: &Row, to: &Row, grounds: &[Ground], in_junction: bool) -> bool {
+    fn strips(
+        &mut self,
+        section: &LaneSection,
+        from: &Row,
+        to: &Row,
+        grounds: &[Ground],
+        in_junction: bool,
+    ) -> bool {
         let edge = |row: &Row, i: usize| self.to_ego(row.between(i, i));
         let edges: Vec<[DVec2; 2]> = (0..from.t_m.len())
             .map(|i| [edge(from, i), edge(to, i)])
             .collect();
         let mut seen = false;
-        for (ground, sides) in grounds.iter().zip(edges.windows(2)) {
+        let lanes = section.lanes_left_to_right().zip(grounds);
+        for ((lane, ground), sides) in lanes.zip(edges.windows(2)) {
             let layers: &[BevLayer] = match ground {
                 Ground::Road => &[BevLayer::DrivableArea],
                 Ground::Carpark => &[BevLayer::DrivableArea, BevLayer::CarparkArea],
@@ -163,6 +205,9 @@ impl Canvas {
             };
             let quad = [sides[0][0], sides[0][1], sides[1][1], sides[1][0]];
             seen |= self.fill(&quad, layers, in_junction);
+            if *ground == Ground::Road {
+                self.note_kind(&quad, lane.kind);
+            }
         }
         seen
     }
@@ -249,4 +294,44 @@ fn stop_line(road: &Road, section: &LaneSection, s_m: f64, against_line: Option<
     let first = lanes.next()?;
     let last = lanes.last().unwrap_or(first);
     Some([row.between(first, first), row.between(last + 1, last + 1)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shoulder and stop lane beside the traffic are drivable and are said to be; what a verge parts from it is neither.
+    #[test]
+    fn drivable_lanes_without_traffic_are_said() {
+        let lane = |id: i32, kind: &str, width: f64| {
+            format!(
+                r#"<lane id="{id}" type="{kind}"><width sOffset="0" a="{width}" b="0" c="0" d="0"/></lane>"#
+            )
+        };
+        let network = |right: &str| {
+            let text = format!(
+                r#"<OpenDRIVE><header revMajor="1" revMinor="6"/><road name="" length="200" id="1" junction="-1">
+                <planView><geometry s="0" x="0" y="0" hdg="0" length="200"><line/></geometry></planView>
+                <lanes><laneSection s="0"><center><lane id="0" type="none"/></center><right>{right}</right></laneSection>
+                </lanes></road></OpenDRIVE>"#
+            );
+            super::super::read(text.as_bytes()).expect("roads")
+        };
+        let layout = |right: &str| network(right).to_layout(DVec2::new(100.0, -2.0), 0.0);
+        let plain = layout(&lane(-1, "driving", 4.0));
+        assert!(plain.drivable_beside_traffic.is_empty());
+        let wide = [
+            lane(-1, "driving", 4.0),
+            lane(-2, "shoulder", 2.0),
+            lane(-3, "stop", 4.0),
+            lane(-4, "none", 2.0),
+            lane(-5, "shoulder", 2.0),
+        ];
+        let found = layout(&wide.concat());
+        let columns = |m: f64| (m / GridSpec::VOXEL_M * GridSpec::NX as f64) as usize;
+        let expected = [("shoulder", columns(2.0)), ("stop", columns(4.0))].map(|(k, n)| (k.to_owned(), n));
+        assert_eq!(found.drivable_beside_traffic, expected.into());
+        let more = found.layout.count(BevLayer::DrivableArea) - plain.layout.count(BevLayer::DrivableArea);
+        assert_eq!(more, columns(6.0));
+    }
 }

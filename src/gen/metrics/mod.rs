@@ -3,6 +3,7 @@
 pub mod agreement;
 pub mod extractor;
 pub mod frechet;
+pub mod invented;
 pub mod iou;
 pub mod kernel;
 pub mod layout;

@@ -14,11 +14,13 @@ use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
 };
+use crate::generation::keep_clear::{keep_clear, keep_unobserved};
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::model::{DitCondition, OccModels, tokens_of};
-use crate::generation::redraw;
+use crate::generation::redraw::{self, RedrawMask};
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::edit_with_replay;
+use crate::generation::request::Request;
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::Sampler;
 use crate::scene::{GridSpec, VoxelGrid};
@@ -220,7 +222,7 @@ impl OccPipeline {
         let region = report.timed(Stage::Composite, |_| {
             redraw::region_of(job.scene.frame(), &job.params)
         });
-        self.redraw(job, region, report, ctx)
+        self.redraw(job, region, &job.params.redraw, report, ctx)
     }
 
     /// Regenerates a region of the job's frame, whatever was edited in it.
@@ -231,13 +233,18 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
         job.params.check()?;
-        self.redraw(job, region, GenReport::default(), ctx)
+        // Something new is wanted in all of it.
+        let mut anew = RedrawMask::default();
+        let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
+        columns.for_each(|(c, _)| anew.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
+        self.redraw(job, region, &anew, GenReport::default(), ctx)
     }
 
     fn redraw(
         &mut self,
         job: &Job,
         region: Region,
+        redraw: &RedrawMask,
         mut report: GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
@@ -318,6 +325,9 @@ impl OccPipeline {
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
+            let request = Request::of(frame);
+            report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
+            report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
         if anew {

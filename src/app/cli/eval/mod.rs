@@ -2,7 +2,6 @@
 //! output is judged: drafts are not put in for boxes that they left out.
 
 mod editing;
-mod fidelity;
 mod generation;
 mod layout;
 mod layout_check;
@@ -38,9 +37,15 @@ pub struct Eval {
     /// Number of held-out worlds, or of frames of --data.
     #[arg(long, value_name = "N", default_value_t = 24)]
     frames: usize,
-    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE by instead.
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
+    /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing).
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    vehicles: usize,
+    /// Stops of the quality slider to judge, comma-separated; all but the reference if none is named (editing).
+    #[arg(long, value_name = "STOPS", value_delimiter = ',')]
+    presets: Vec<String>,
     /// Random edits, one after another, that must change nothing outside their regions (editing).
     #[arg(long, value_name = "N", default_value_t = 0)]
     random_edits: usize,

@@ -1,18 +1,18 @@
-//! `eval editing`: do edits do what they say, and nothing else?
+//! One edit of every kind per complete world: does it do what it says, and nothing else?
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::{Bar, Eval, scene, with_interval};
+use super::super::{Bar, Eval, scene, with_interval};
+use super::edited;
 use crate::app::cli::progress::Progress;
 use crate::app::cli::trials::{KINDS, Reached, Trial};
-use crate::editor::Document;
-use crate::generation::job::{GenParams, GenReport, Job, JobCtx, Pipeline};
+use crate::generation::job::{GenParams, GenReport, Job, JobCtx};
 use crate::generation::metrics::stats::{mean_ci95, median};
 use crate::generation::pipeline::OccPipeline;
-use crate::scene::{GridSpec, Scene, VoxelGrid};
+use crate::scene::GridSpec;
 
 /// What was measured of one kind of edit.
 #[derive(Default)]
@@ -67,7 +67,7 @@ impl Kind {
 
 impl Eval {
     /// One edit of every kind per world; the inversion of its source is shared, as in the window.
-    pub(super) fn editing(
+    pub(in crate::app::cli::eval) fn success(
         &self,
         pipeline: &mut OccPipeline,
         progress: &Progress,
@@ -168,21 +168,4 @@ impl Eval {
         ));
         Ok((report, bars))
     }
-}
-
-/// Applies one edit and regenerates; occupancy after it, and the cost.
-pub(super) fn edited(
-    pipeline: &mut OccPipeline,
-    scene: &Scene,
-    trial: &Trial,
-    params: GenParams,
-) -> anyhow::Result<(VoxelGrid, GenReport)> {
-    let mut document = Document::new(scene.clone());
-    document.apply("Edit", &trial.edit)?;
-    let job = Job {
-        scene: document.scene().clone(),
-        params,
-    };
-    let result = pipeline.run(&job, &JobCtx::detached())?;
-    Ok((result.occupancy, result.report))
 }

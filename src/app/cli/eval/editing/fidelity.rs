@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::editing::edited;
-use super::{Eval, scene, with_interval};
+use super::super::{Eval, scene, with_interval};
+use super::edited;
 use crate::app::cli::progress::Progress;
 use crate::app::cli::trials::{KINDS, Trial};
 use crate::editor::Document;
@@ -28,7 +28,7 @@ const REFERENCE_STEPS: u32 = 1000;
 impl Eval {
     /// Edits of random kinds and places, each on top of the last; the second figure is the number of voxels
     /// that changed outside their regions.
-    pub(super) fn random_edits(
+    pub(in crate::app::cli::eval) fn random_edits(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -74,7 +74,7 @@ impl Eval {
     }
 
     /// Relative error of inverting a world and sampling it again, by scheme and number of steps.
-    pub(super) fn schemes(
+    pub(in crate::app::cli::eval) fn schemes(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -113,7 +113,7 @@ impl Eval {
     }
 
     /// Two edits in regions apart, in either order: share of the voxels of both regions that differ, per world.
-    pub(super) fn order(
+    pub(in crate::app::cli::eval) fn order(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -142,7 +142,7 @@ impl Eval {
     }
 
     /// Removals with the usual steps against the same with many.
-    pub(super) fn reference(
+    pub(in crate::app::cli::eval) fn reference(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,

@@ -1,0 +1,63 @@
+//! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
+//! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
+
+use super::components::{bins_set, groups, reached};
+use super::floating_voxels::{CROWN, is_known_to_float, lowest_m, stem};
+use super::{Context, Finding, Fix, Severity, middle};
+use crate::editor::Edit;
+use crate::scene::{Class, GridSpec};
+
+pub const NAME: &str = "unsupported_parts";
+/// Smaller parts are noise of labels, voxels.
+const LEAST_VOXELS: usize = 8;
+/// Parts that are listed one by one, the largest.
+const LISTED: usize = 40;
+
+pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+    let frame = context.frame;
+    let bits = context.bits();
+    let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
+    let standing = |c: &&Class| **c != Class::Free && !c.is_ground();
+    for class in Class::ALL.iter().filter(standing) {
+        let own = &bits.by_class[usize::from(class.id())];
+        if own.is_empty() {
+            continue;
+        }
+        // Held from below: on the ground's bins, or on a voxel of another class.
+        let rests = reached(own, |c| (bits.occupied[c] & !own[c]) << 1);
+        let mut cells = Vec::new();
+        for c in 0..GridSpec::COLUMNS {
+            cells.extend(bins_set(c, own[c] & !rests[c] & bits.supported[c]));
+        }
+        let large = groups(cells).into_iter().filter(|g| g.len() >= LEAST_VOXELS);
+        let known = large.filter(|g| is_known_to_float(frame, g));
+        parts.extend(known.map(|g| (*class, g)));
+    }
+    parts.sort_by_key(|(_, g)| std::cmp::Reverse(g.len()));
+    parts.truncate(LISTED);
+    for (class, part) in parts {
+        let paint = |label: &'static str, cells: Vec<[usize; 3]>, class: Class| Fix {
+            label,
+            edits: vec![Edit::PaintVoxels { cells, class }],
+        };
+        let mut fixes = vec![paint("Remove the part", part.clone(), Class::Free)];
+        let stem = stem(frame, &part);
+        if class == Class::Vegetation && part.len() >= CROWN && !stem.is_empty() {
+            fixes.insert(0, paint("Put a stem under it", stem, class));
+        }
+        out.push(Finding {
+            check: NAME,
+            severity: Severity::Warning,
+            where_m: middle(&part),
+            box_id: None,
+            text: format!(
+                "{} voxels of {} rest on nothing, {:.1} m above the ground",
+                part.len(),
+                class.label(),
+                lowest_m(&part)
+            ),
+            cells: part,
+            fixes,
+        });
+    }
+}
