@@ -1,6 +1,7 @@
 //! Figures of merit, each with its definition.
 
 pub mod agreement;
+mod components;
 pub mod extractor;
 pub mod frechet;
 pub mod iou;
@@ -11,6 +12,7 @@ pub mod maps;
 pub mod occupancy;
 #[cfg(test)]
 mod reference;
+pub mod shape;
 pub mod stats;
 
 use thiserror::Error;
