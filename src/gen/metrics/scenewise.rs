@@ -97,7 +97,9 @@ pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
     let [x, y] = scenes(x, y)?;
     let n = x.len();
     let mean = |a: &Windows, b: &Windows| {
-        let sums = a.iter().map(|a| b.iter().map(|b| Kernel::Cubic.of(a, b)).sum::<f64>());
+        let sums = a
+            .iter()
+            .map(|a| b.iter().map(|b| Kernel::Cubic.of(a, b)).sum::<f64>());
         sums.sum::<f64>() / (a.len() * b.len()) as f64
     };
     let table = |a: &[Windows], b: &[Windows]| -> Vec<f64> {
@@ -111,7 +113,11 @@ pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
         for &i in &kept {
             for &j in &kept {
                 between += xy[i * n + j];
-                within += if i == j { 0.0 } else { xx[i * n + j] + yy[i * n + j] };
+                within += if i == j {
+                    0.0
+                } else {
+                    xx[i * n + j] + yy[i * n + j]
+                };
             }
         }
         let m = kept.len() as f64;
@@ -121,7 +127,11 @@ pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
     let left: Vec<f64> = (0..n).filter(|_| n > 2).map(|i| of(Some(i))).collect();
     Ok(Distance {
         mean: of(None),
-        ci95: if left.is_empty() { f64::INFINITY } else { jackknife(&left) },
+        ci95: if left.is_empty() {
+            f64::INFINITY
+        } else {
+            jackknife(&left)
+        },
     })
 }
 
@@ -158,8 +168,14 @@ mod tests {
         let found = kernel(&x, &y).expect("sound");
         assert!(found.mean > 2.0 * found.ci95, "{found:?}");
         let [_, same] = standardised(&set(1, 12, 0.0), &set(2, 12, 0.0)).expect("sound");
-        let (near, far) = (frechet(&x, &same).expect("sound"), frechet(&x, &y).expect("sound"));
-        assert!(far.mean > 2.0 * near.mean && far.mean > far.ci95, "{near:?} {far:?}");
+        let (near, far) = (
+            frechet(&x, &same).expect("sound"),
+            frechet(&x, &y).expect("sound"),
+        );
+        assert!(
+            far.mean > 2.0 * near.mean && far.mean > far.ci95,
+            "{near:?} {far:?}"
+        );
         assert!(near.ci95 > 0.0 && near.ci95.is_finite());
     }
 
@@ -167,10 +183,16 @@ mod tests {
     #[test]
     fn windows_do_not_stand_for_scenes() {
         let few = set(3, 6, 0.0);
-        let many: Vec<Windows> = few.iter().map(|w| w.iter().cycle().take(160).cloned().collect()).collect();
+        let many: Vec<Windows> = few
+            .iter()
+            .map(|w| w.iter().cycle().take(160).cloned().collect())
+            .collect();
         let other = set(4, 6, 0.0);
         let [one, ten] = [&few, &many].map(|x| kernel(x, &other).expect("sound"));
-        assert!((one.mean - ten.mean).abs() < 1e-9 && (one.ci95 - ten.ci95).abs() < 1e-9, "{one:?} {ten:?}");
+        assert!(
+            (one.mean - ten.mean).abs() < 1e-9 && (one.ci95 - ten.ci95).abs() < 1e-9,
+            "{one:?} {ten:?}"
+        );
         assert!(kernel(&few[..1], &other).is_err());
         assert!(frechet(&few, &vec![vec![vec![1.0]; 3]; 6]).is_err());
     }

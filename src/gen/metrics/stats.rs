@@ -68,7 +68,14 @@ mod tests {
         assert_eq!(quantile(&[7.0], 1.0), 7.0);
         assert!(quantile(&[], 0.5).is_nan());
         assert!((interval(&[1.0, 2.0, 3.0]).1 - 1.0 / 3f64.sqrt()).abs() < 1e-12);
-        for (degrees, t) in [(1, 12.706), (2, 4.303), (3, 3.182), (5, 2.571), (11, 2.201), (60, 2.000)] {
+        for (degrees, t) in [
+            (1, 12.706),
+            (2, 4.303),
+            (3, 3.182),
+            (5, 2.571),
+            (11, 2.201),
+            (60, 2.000),
+        ] {
             let found = t_quantile_975(degrees);
             assert!((found / t - 1.0).abs() < 0.01, "{degrees}: {found}");
         }

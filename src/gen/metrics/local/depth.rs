@@ -19,7 +19,9 @@ const SKY_M: f64 = 200.0;
 
 /// Names of the features of a window, in their order.
 pub fn names() -> Vec<String> {
-    let mut out: Vec<String> = ["nearness", "spread of nearness", "sky"].map(str::to_owned).into();
+    let mut out: Vec<String> = ["nearness", "spread of nearness", "sky"]
+        .map(str::to_owned)
+        .into();
     for along in ["across", "down"] {
         out.extend((0..=STEPS.len()).map(|n| format!("depth steps {along}, size {n}")));
         out.extend((0..=BENDS.len()).map(|n| format!("depth bends {along}, size {n}")));
@@ -36,9 +38,18 @@ pub fn windows(depth_m: &[f32]) -> Windows {
     if depth_m.len() != rows * columns {
         return Windows::new();
     }
-    let depth = |d: f32| if d > 0.0 && d.is_finite() { f64::from(d) } else { SKY_M };
+    let depth = |d: f32| {
+        if d > 0.0 && d.is_finite() {
+            f64::from(d)
+        } else {
+            SKY_M
+        }
+    };
     let log: Vec<f64> = depth_m.iter().map(|d| depth(*d).ln()).collect();
-    let near: Vec<f64> = depth_m.iter().map(|d| 1.0 / (1.0 + depth(*d) / MIDDLE_M)).collect();
+    let near: Vec<f64> = depth_m
+        .iter()
+        .map(|d| 1.0 / (1.0 + depth(*d) / MIDDLE_M))
+        .collect();
     let inverse: Vec<f64> = depth_m.iter().map(|d| 1.0 / depth(*d)).collect();
     let data: Vec<f32> = near.iter().map(|v| (*v * 4.0 - 1.0) as f32).collect();
     let map = Map {

@@ -23,7 +23,12 @@ const FILTERS: usize = 32;
 const MASKS: [&str; 6] = ["manmade", "vegetation", "road", "sidewalk", "terrain", "object"];
 const PATTERNS: [&str; 5] = ["corner", "edge", "diagonal", "notch", "inside"];
 const STEPS: [&str; 4] = ["level", "step of 1", "step of 2 or 3", "step above 3"];
-const RUNS: [&str; 4] = ["manmade runs", "vegetation runs", "class changes", "empty columns"];
+const RUNS: [&str; 4] = [
+    "manmade runs",
+    "vegetation runs",
+    "class changes",
+    "empty columns",
+];
 const OCTANTS: usize = 7;
 
 /// What is known of one column.
@@ -190,7 +195,8 @@ pub fn patches(windows: &Windows) -> Windows {
         let mean: Vec<f64> = (0..width)
             .map(|f| inside.iter().map(|w| w[f]).sum::<f64>() / n)
             .collect();
-        let spread = (0..width).map(|f| (inside.iter().map(|w| (w[f] - mean[f]).powi(2)).sum::<f64>() / n).sqrt());
+        let spread =
+            (0..width).map(|f| (inside.iter().map(|w| (w[f] - mean[f]).powi(2)).sum::<f64>() / n).sqrt());
         let spread: Vec<f64> = spread.collect();
         [mean, spread].concat()
     };

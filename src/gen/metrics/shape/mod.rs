@@ -15,19 +15,37 @@ pub type ShapeFigures = BTreeMap<&'static str, f64>;
 
 /// What each figure is, in the order of tables: name, one line.
 pub const FIGURES: [(&str, &str); 14] = [
-    (manmade::EDGE, "sides that face a column without manmade, per manmade column"),
+    (
+        manmade::EDGE,
+        "sides that face a column without manmade, per manmade column",
+    ),
     (manmade::PARTS, "connected manmade parts seen from above"),
     (manmade::PART_COLUMNS, "columns of a part, median"),
-    (manmade::ROOF_STEPS, "neighbouring manmade columns with tops of different height, share"),
-    (outline::STRAIGHT, "outline of manmade parts that runs straight for 3.6 m, share"),
-    (outline::DEVIATION_M, "distance of an outline to the line fitted to 3.6 m of it, RMS, m"),
-    (holes::NAMES[0], "holes in the driveable surface, share of its area"),
+    (
+        manmade::ROOF_STEPS,
+        "neighbouring manmade columns with tops of different height, share",
+    ),
+    (
+        outline::STRAIGHT,
+        "outline of manmade parts that runs straight for 3.6 m, share",
+    ),
+    (
+        outline::DEVIATION_M,
+        "distance of an outline to the line fitted to 3.6 m of it, RMS, m",
+    ),
+    (
+        holes::NAMES[0],
+        "holes in the driveable surface, share of its area",
+    ),
     (holes::NAMES[1], "holes in other flat ground"),
     (holes::NAMES[2], "holes in the sidewalk"),
     (holes::NAMES[3], "holes in the terrain"),
     (support::CROWNS, "groups of vegetation that rest on nothing"),
     (support::CROWN_SHARE, "vegetation voxels in such groups, share"),
-    (support::PARTS, "groups of voxels that nothing connects to the ground"),
+    (
+        support::PARTS,
+        "groups of voxels that nothing connects to the ground",
+    ),
     (support::VOXELS, "voxels of such groups"),
 ];
 

@@ -76,7 +76,8 @@ impl Outlines {
             let x = (corner / (NY + 1)) as isize + dx;
             let y = (corner % (NY + 1)) as isize + dy;
             // To the right first: parts that touch by a corner are one, so that a thin slanting wall is not cut up.
-            let turns = [direction + 3, direction, direction + 1].map(|d| side(x as usize, y as usize, d % 4));
+            let turns =
+                [direction + 3, direction, direction + 1].map(|d| side(x as usize, y as usize, d % 4));
             if let Some(to) = turns.into_iter().find(|s| present[*s]) {
                 behind[from] = Some(to);
                 before[to] = Some(from);

@@ -39,13 +39,21 @@ fn counted_by_hand() {
         assert_eq!(found[format!("holes.{name}").as_str()], 0.0);
     }
     assert!(!found.contains_key("holes.sidewalk"));
-    for name in ["crowns_without_trunk", "vegetation_without_trunk", "unsupported_parts"] {
+    for name in [
+        "crowns_without_trunk",
+        "vegetation_without_trunk",
+        "unsupported_parts",
+    ] {
         assert_eq!(found[name], 0.0, "{name}");
     }
     let empty = shape(&VoxelGrid::new());
     assert_eq!(empty["manmade_parts"], 0.0);
     assert!(!empty.contains_key("roof_steps") && !empty.contains_key("holes.terrain"));
-    assert!(found.keys().all(|name| FIGURES.iter().any(|(known, _)| known == name)));
+    assert!(
+        found
+            .keys()
+            .all(|name| FIGURES.iter().any(|(known, _)| known == name))
+    );
 }
 
 #[test]
@@ -73,24 +81,36 @@ fn a_lifted_crown_and_a_tree_in_the_air() {
     let mut grid = by_hand();
     fill(&mut grid, [100, 101], [50, 51], [3, 7], Class::FREE);
     let lifted = shape(&grid);
-    assert_eq!((lifted["crowns_without_trunk"], lifted["unsupported_parts"]), (1.0, 1.0));
+    assert_eq!(
+        (lifted["crowns_without_trunk"], lifted["unsupported_parts"]),
+        (1.0, 1.0)
+    );
     assert_eq!(lifted["vegetation_without_trunk"], 101.0 / 104.0);
     assert_eq!(lifted["unsupported_voxels"], 101.0);
     // Beside a wall it hangs on that, and still has no trunk.
     fill(&mut grid, [60, 64], [140, 144], [4, 8], Class::Vegetation.id());
     let beside = shape(&grid);
-    assert_eq!((beside["crowns_without_trunk"], beside["unsupported_parts"]), (2.0, 1.0));
+    assert_eq!(
+        (beside["crowns_without_trunk"], beside["unsupported_parts"]),
+        (2.0, 1.0)
+    );
     // A whole tree planted in the air over the road.
     let mut grid = by_hand();
     fill(&mut grid, [100, 101], [100, 101], [3, 8], Class::Vegetation.id());
     fill(&mut grid, [98, 103], [98, 103], [8, 12], Class::Vegetation.id());
     let planted = shape(&grid);
-    assert_eq!((planted["crowns_without_trunk"], planted["unsupported_parts"]), (1.0, 1.0));
+    assert_eq!(
+        (planted["crowns_without_trunk"], planted["unsupported_parts"]),
+        (1.0, 1.0)
+    );
     // Its trunk on the road, it stands; at the side of the grid nobody knows.
     fill(&mut grid, [100, 101], [100, 101], [1, 3], Class::Vegetation.id());
     fill(&mut grid, [0, 3], [30, 33], [8, 12], Class::Vegetation.id());
     let stands = shape(&grid);
-    assert_eq!((stands["crowns_without_trunk"], stands["unsupported_parts"]), (0.0, 0.0));
+    assert_eq!(
+        (stands["crowns_without_trunk"], stands["unsupported_parts"]),
+        (0.0, 0.0)
+    );
 }
 
 /// A block turned by `angle` runs straight; with every outline column thrown out by chance it does not.
@@ -117,7 +137,10 @@ fn walls_in_any_direction_are_straight_until_roughened() {
         let name = "wall_straightness";
         assert!(smooth[name] > 0.8, "{degrees}: {}", smooth[name]);
         assert!(rough[name] < 0.35, "{degrees}: {}", rough[name]);
-        assert!(rough["wall_deviation_m"] > 1.5 * smooth["wall_deviation_m"], "{degrees}");
+        assert!(
+            rough["wall_deviation_m"] > 1.5 * smooth["wall_deviation_m"],
+            "{degrees}"
+        );
         assert!(rough["edge_per_manmade_column"] > 1.5 * smooth["edge_per_manmade_column"]);
     }
 }
@@ -152,7 +175,10 @@ fn faults_in_a_world_move_their_figures_and_no_others() {
     }
     let same = |found: &ShapeFigures, name: &str| found[name] == sound[name];
     let [roofs, shards, holes] = [roofs, shards, holes].map(|g| shape(&g));
-    assert!(roofs["roof_steps"] > 2.0 * sound["roof_steps"], "{roofs:?} {sound:?}");
+    assert!(
+        roofs["roof_steps"] > 2.0 * sound["roof_steps"],
+        "{roofs:?} {sound:?}"
+    );
     assert!(same(&roofs, "edge_per_manmade_column") && same(&roofs, "holes.driveable_surface"));
     assert!(shards["edge_per_manmade_column"] > 1.5 * sound["edge_per_manmade_column"]);
     assert!(shards["wall_straightness"] < 0.7 * sound["wall_straightness"]);

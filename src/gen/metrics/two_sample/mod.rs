@@ -66,7 +66,10 @@ pub fn two_sample(a: &[Windows], b: &[Windows], seed: u64) -> Result<TwoSample, 
             net::shuffle(&mut order, &mut Draw::new(seed ^ split, "halves of scenes"));
             let (one, other) = order.split_at(n / 2);
             let (one, other) = (one.to_vec(), other.to_vec());
-            [(2 * split, one.clone(), other.clone()), (2 * split + 1, other, one)]
+            [
+                (2 * split, one.clone(), other.clone()),
+                (2 * split + 1, other, one),
+            ]
         })
         .collect();
     let judged: Vec<Vec<(usize, [f64; 2])>> = folds

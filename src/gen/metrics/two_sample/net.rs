@@ -30,7 +30,11 @@ impl Net {
             .collect();
         let scale = (0..width).map(|f| {
             let variance = rows.iter().map(|r| (r[f] - mean[f]).powi(2)).sum::<f64>() / n;
-            if variance > 1e-20 { 1.0 / variance.sqrt() } else { 0.0 }
+            if variance > 1e-20 {
+                1.0 / variance.sqrt()
+            } else {
+                0.0
+            }
         });
         let scale = scale.collect();
         let mut draw = Draw::new(seed, "two-sample classifier");
