@@ -131,8 +131,9 @@ impl Eval {
                 ..job.clone()
             };
             let again = run(None, &again)?.occupancy;
-            measured.follow[0].add(result.occupancy.clone(), again);
-            measured.follow[1].add(truth.clone(), world_of_seed(&job.scene, common));
+            let layout = &job.scene.frame().layout;
+            measured.follow[0].add(layout, result.occupancy.clone(), again);
+            measured.follow[1].add(layout, truth.clone(), world_of_seed(&job.scene, common));
         }
         if !self.rows_only {
             let bare = run(Some(Ablation::Layout), &job)?.occupancy;
