@@ -26,17 +26,17 @@ fn scenes(seed: u64, count: usize, shift: f64, every: usize) -> Vec<Windows> {
 
 #[test]
 fn equal_sets_are_guessed_and_the_interval_says_so() {
-    let found: Vec<TwoSample> = (0..20)
+    let found: Vec<TwoSample> = (0..12)
         .map(|seed| {
             two_sample(&scenes(seed, 12, 0.0, 1), &scenes(100 + seed, 12, 0.0, 1), seed).expect("sound")
         })
         .collect();
     let guessing = found.iter().filter(|f| f.window.is_guessing()).count();
     let by_scene = found.iter().filter(|f| f.scene.is_guessing()).count();
-    let mean = found.iter().map(|f| f.window.mean).sum::<f64>() / 20.0;
-    println!("{guessing} {by_scene} of 20, mean {mean:.3}");
-    assert!(guessing >= 17 && by_scene >= 17, "{guessing} {by_scene}");
-    assert!((mean - 0.5).abs() < 0.05, "{mean}");
+    let mean = found.iter().map(|f| f.window.mean).sum::<f64>() / 12.0;
+    println!("{guessing} {by_scene} of 12, mean {mean:.3}");
+    assert!(guessing >= 10 && by_scene >= 10, "{guessing} {by_scene}");
+    assert!((mean - 0.5).abs() < 0.08, "{mean}");
 }
 
 #[test]
