@@ -41,6 +41,15 @@ impl Extractor {
         Ok(Self { encoder, side: 50 })
     }
 
+    /// The 192 features of every cell (4 x 4 columns) of a frame before they are pooled, 50 x 50 cells row by row.
+    pub fn cells(&self, grid: &VoxelGrid) -> Result<Vec<Vec<f64>>, ModelError> {
+        let map = self.encoder.features(grid, Window::whole(self.side))?;
+        let cells = map.data.chunks_exact(map.width);
+        Ok(cells
+            .map(|cell| cell.iter().map(|v| f64::from(*v)).collect())
+            .collect())
+    }
+
     /// The 192 features of a frame.
     pub fn features(&self, grid: &VoxelGrid) -> Result<Vec<f64>, ModelError> {
         let map = self.encoder.features(grid, Window::whole(self.side))?;

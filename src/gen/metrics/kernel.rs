@@ -33,7 +33,8 @@ impl Kernel {
         }
     }
 
-    fn of(self, a: &[f64], b: &[f64]) -> f64 {
+    /// Of two samples.
+    pub(super) fn of(self, a: &[f64], b: &[f64]) -> f64 {
         match self {
             Kernel::Cubic => {
                 let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();

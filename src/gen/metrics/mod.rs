@@ -1,6 +1,7 @@
 //! Figures of merit, each with its definition.
 
 pub mod agreement;
+mod components;
 pub mod extractor;
 pub mod frechet;
 pub mod invented;
@@ -8,13 +9,17 @@ pub mod iou;
 pub mod kernel;
 pub mod layout;
 pub mod lidar;
+pub mod local;
 pub mod logistic;
 pub mod maps;
 pub mod occupancy;
 #[cfg(test)]
 mod reference;
+pub mod scenewise;
+pub mod shape;
 pub mod stats;
 pub mod sweep;
+pub mod two_sample;
 
 use thiserror::Error;
 
@@ -36,6 +41,12 @@ pub enum MetricError {
         found: usize,
         /// That of the first sample.
         expected: usize,
+    },
+    /// Fewer than four scenes, or scenes without windows.
+    #[error("{found} scenes in each set, expected at least 4 with windows")]
+    TooFewScenes {
+        /// Scenes of the smaller set.
+        found: usize,
     },
     /// NaN or infinity.
     #[error("{which} holds a number that is not finite")]

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::components::{components, flat};
 use crate::scene::{Class, GridSpec, Relief, VoxelGrid};
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
@@ -164,7 +165,7 @@ impl OccupancyStatistics {
     }
 
     fn cars(&mut self, labels: &[u8]) {
-        for car in components(labels, Class::Car.id()) {
+        for car in components(labels.iter().map(|l| *l == Class::Car.id()).collect()) {
             if car.len() < WELL_SEEN {
                 continue;
             }
@@ -181,12 +182,6 @@ impl OccupancyStatistics {
             );
         }
     }
-}
-
-/// Labels `[x][y][z]`.
-fn flat(grid: &VoxelGrid) -> Vec<u8> {
-    let columns = (0..GridSpec::COLUMNS).map(|c| grid.column(c / GridSpec::NY, c % GridSpec::NY));
-    columns.flatten().copied().collect()
 }
 
 fn for_occupied(labels: &[u8], mut visit: impl FnMut(usize, [usize; 3])) {
@@ -209,44 +204,6 @@ fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
     } else {
         Class::FREE
     }
-}
-
-/// Connected voxels of one class (26 neighbours), as flat indices.
-fn components(labels: &[u8], class: u8) -> Vec<Vec<usize>> {
-    let mut seen = vec![false; labels.len()];
-    let mut out = Vec::new();
-    for start in 0..labels.len() {
-        if labels[start] != class || seen[start] {
-            continue;
-        }
-        seen[start] = true;
-        let mut part = vec![start];
-        let mut next = 0;
-        while next < part.len() {
-            let at = part[next];
-            next += 1;
-            let place = [at / STRIDE[0], at / STRIDE[1] % N[1], at % N[2]].map(|p| p as isize);
-            for i in 0..27 {
-                let near = [
-                    place[0] + i / 9 - 1,
-                    place[1] + i / 3 % 3 - 1,
-                    place[2] + i % 3 - 1,
-                ];
-                if label_at(labels, near) == class {
-                    let near = near
-                        .iter()
-                        .zip(STRIDE)
-                        .map(|(p, s)| *p as usize * s)
-                        .sum::<usize>();
-                    if !std::mem::replace(&mut seen[near], true) {
-                        part.push(near);
-                    }
-                }
-            }
-        }
-        out.push(part);
-    }
-    out
 }
 
 /// Labels with every column lowered by the bin that its ground lies in.

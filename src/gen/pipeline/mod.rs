@@ -118,7 +118,10 @@ impl OccPipeline {
         params: &GenParams,
     ) -> Result<Network, GenError> {
         let guided = params.guidance != 1.0;
-        let draft_latent = self.draft_latent(&condition.draft)?;
+        let draft_latent = match self.ablation {
+            Some(Ablation::Draft) => vec![0.0; CELLS * CHANNELS],
+            _ => self.draft_latent(&condition.draft)?,
+        };
         let full = DitCondition {
             bev: condition.bev.clone(),
             heading: condition.heading.clone(),

@@ -19,6 +19,8 @@ pub enum Ablation {
     Layout,
     /// No boxes.
     Boxes,
+    /// No draft: its latent is shown as zeros, as training shows one frame in ten (there without the layout too).
+    Draft,
 }
 
 /// A layout as the networks read it.

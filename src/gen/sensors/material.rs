@@ -4,8 +4,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::generation::world::draw::{Draw, hash, noise};
-use crate::scene::solid::{Shape, Solid};
 use crate::generation::world::{Surface, World};
+use crate::scene::solid::{Shape, Solid};
 use crate::scene::{BevLayer, Class, GridSpec};
 
 /// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.

@@ -61,6 +61,9 @@ pub struct Eval {
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
     #[arg(long, value_name = "N", default_value_t = 60)]
     placer_prompts: usize,
+    /// Only the table of worlds, generated scenes and drafts: no ablations of layout and boxes, no redrawn squares (generation).
+    #[arg(long)]
+    rows_only: bool,
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,
@@ -124,8 +127,9 @@ impl Eval {
             .iter()
             .map(|(name, found, least)| json!({ "name": name, "found": found, "least": least }))
             .collect();
-        output::report(&self.common, &report, || {
-            serde_json::to_string_pretty(&report).unwrap_or_default()
+        output::report(&self.common, &report, || match self.suite.as_str() {
+            "generation" => generation::table(&report),
+            _ => serde_json::to_string_pretty(&report).unwrap_or_default(),
         });
         if self.bar && !missed.is_empty() {
             return Err(Stop::Short(missed.join("; ")));
