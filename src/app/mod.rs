@@ -1,5 +1,6 @@
 //! The shell: window, panels, commands, command line; the only room that knows everyone.
 
+mod around;
 pub mod actions;
 pub mod application;
 mod bev_image;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
+use super::around;
 use crate::formats::opendrive::{self, RoadNetwork};
 use crate::formats::{atomic, occ3d, project};
 use crate::generation::world::scenery::{self, Setting, Side, Style};
@@ -14,6 +15,9 @@ use crate::generation::world::terrain::Terrain;
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
 use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
+
+/// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
+const ENOUGH_THINGS: usize = 5;
 
 /// Largest text file that is read, bytes.
 const LARGEST_TEXT: u64 = 256 << 20;
@@ -129,6 +133,8 @@ pub struct Placement {
     pub seed: u64,
     /// No vehicles and people.
     pub empty: bool,
+    /// Nothing beside the road but what the file puts there.
+    pub bare: bool,
 }
 
 /// A scene made from a foreign file, and what was found in it.
@@ -139,6 +145,10 @@ pub struct Imported {
     pub roads: usize,
     /// Lanes in the file.
     pub lanes: usize,
+    /// Bridges: roads of the file that cross above the ground.
+    pub bridges: usize,
+    /// Things that the file puts beside the road, bridges not counted.
+    pub things_of_file: usize,
     /// What was not understood, counted by kind.
     pub skipped: BTreeMap<String, usize>,
     /// Where the ego stands in the file's frame: x, y in m and heading in rad.
@@ -158,7 +168,9 @@ pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
     opendrive::read(&bytes).with_context(|| name.to_string())
 }
 
-/// Imports a road network: its layout, seeded traffic, and the draft as occupancy until it is generated.
+/// Imports a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
+/// scenery out, and the occupancy is the draft until it is generated.
 pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     let network = road_network(path)?;
     let (at, lane_heading) = match placement.at_m {
@@ -174,15 +186,33 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     } else {
         traffic::TrafficSpec::NORMAL
     };
-    let boxes = traffic::place(&import.layout, placement.seed, &spec);
-    let occupancy = draft::draft(&import.layout, boxes.values());
+    let seed = placement.seed;
+    let boxes = traffic::place(&import.layout, seed, &spec);
+    let things_of_file = import.background.len() - import.bridge_count;
     let stem = path.file_stem().map_or("import".into(), |s| s.to_string_lossy());
-    let frame = Frame::new(import.layout, boxes, occupancy);
-    let scene = Scene::single(&stem, frame, Arc::new(SensorRig::default()), placement.seed);
+    let mut scene = if placement.bare {
+        let occupancy = draft::draft(&import.layout, boxes.values());
+        let frame = Frame::new(import.layout, boxes, occupancy);
+        let mut scene = Scene::single(&stem, frame, Arc::new(SensorRig::default()), seed);
+        scene.background = Arc::new(import.background);
+        scene
+    } else {
+        let background = match things_of_file < ENOUGH_THINGS {
+            true => {
+                let drawn = scenery::background(&import.layout, &boxes, seed);
+                around::merged(import.background, &drawn)
+            }
+            false => import.background,
+        };
+        of_world(&World::with_background(import.layout, boxes, background, seed), &stem)
+    };
+    scene.seed = seed;
     Ok(Imported {
         scene,
         roads: import.road_count,
         lanes: import.lane_count,
+        bridges: import.bridge_count,
+        things_of_file,
         skipped: import.skipped,
         pose: (at, heading),
     })

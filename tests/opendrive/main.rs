@@ -5,6 +5,7 @@ mod bad_input;
 mod own_roads;
 mod real_files;
 mod reference;
+mod zz_hash;
 
 use std::path::{Path, PathBuf};
 
