@@ -1,8 +1,8 @@
 //! The shell: window, panels, commands, command line; the only room that knows everyone.
 
-mod around;
 pub mod actions;
 pub mod application;
+mod around;
 mod bev_image;
 pub mod bookmarks;
 mod by_words;

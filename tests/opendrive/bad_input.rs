@@ -161,11 +161,20 @@ fn other_encodings_are_read() {
 #[test]
 fn the_unknown_is_counted() {
     let text = FAIR
-        .replace("</planView>", "</planView><lateralProfile><shape s=\"0\" t=\"1\"/></lateralProfile><railroad a=\"1\"/>")
-        .replace("</objects>", "<object type=\"dragon\" s=\"1\" t=\"2\"/><object s=\"1\" t=\"2\"/><bridge s=\"1\"/></objects>")
+        .replace(
+            "</planView>",
+            "</planView><lateralProfile><shape s=\"0\" t=\"1\"/></lateralProfile><railroad a=\"1\"/>",
+        )
+        .replace(
+            "</objects>",
+            "<object type=\"dragon\" s=\"1\" t=\"2\"/><object s=\"1\" t=\"2\"/><bridge s=\"1\"/></objects>",
+        )
         .replacen("type=\"driving\"", "type=\"hover\"", 1)
         .replace("type=\"solid\"", "type=\"wavy\"")
-        .replace("</OpenDRIVE>", "<station id=\"1\"/><junction id=\"5\" type=\"virtual\"/><userData code=\"x\"/></OpenDRIVE>");
+        .replace(
+            "</OpenDRIVE>",
+            "<station id=\"1\"/><junction id=\"5\" type=\"virtual\"/><userData code=\"x\"/></OpenDRIVE>",
+        );
     let skipped = opendrive::read(text.as_bytes()).expect("fair").skipped;
     let expected = [
         "lateralProfile/shape",

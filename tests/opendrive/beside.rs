@@ -53,7 +53,12 @@ fn buildings_by_size_and_by_outline() {
     assert_eq!(a.height_m, 9.5);
     assert!(close(b.outline_m[0], -20.0, -15.0) && close(b.outline_m[2], -10.0, -25.0));
     assert_eq!(b.height_m, 7.0, "that of its corners");
-    assert_eq!(import.skipped.get("building without a usable size"), Some(&3), "{:?}", import.skipped);
+    assert_eq!(
+        import.skipped.get("building without a usable size"),
+        Some(&3),
+        "{:?}",
+        import.skipped
+    );
     assert_eq!(import.skipped.get("object with an unreadable number"), Some(&1));
     assert_eq!(import.skipped.len(), 2, "{:?}", import.skipped);
 }
@@ -70,9 +75,14 @@ fn trees_poles_and_rows_of_lamps() {
         <object type="obstacle" s="82" t="6"/>"#;
     let import = import(objects, "");
     let all = forms(&import);
-    let Form::Tree(tree) = &all[0] else { panic!("{all:?}") };
+    let Form::Tree(tree) = &all[0] else {
+        panic!("{all:?}")
+    };
     assert!(close(tree.position_m, 5.0, 8.0));
-    assert_eq!((tree.kind, tree.height_m, tree.crown_radius_m), (TreeKind::Conifer, 11.0, 1.5));
+    assert_eq!(
+        (tree.kind, tree.height_m, tree.crown_radius_m),
+        (TreeKind::Conifer, 11.0, 1.5)
+    );
     let posts: Vec<_> = all
         .iter()
         .filter_map(|f| match f {
@@ -82,7 +92,10 @@ fn trees_poles_and_rows_of_lamps() {
         .collect();
     assert_eq!(posts[0], (PostKind::Pole, DVec2::new(0.0, 5.0), 4.0));
     let lamps: Vec<_> = posts.iter().filter(|p| p.0 == PostKind::StreetLight).collect();
-    for (lamp, (x, y)) in lamps.iter().zip([(-30.0, 4.5), (-10.0, 4.7), (10.0, 4.9), (30.0, 5.1)]) {
+    for (lamp, (x, y)) in lamps
+        .iter()
+        .zip([(-30.0, 4.5), (-10.0, 4.7), (10.0, 4.9), (30.0, 5.1)])
+    {
         assert!(close(lamp.1, x, y) && lamp.2 == 7.0, "{lamp:?}");
     }
     assert_eq!(lamps.len(), 4);
@@ -93,7 +106,10 @@ fn trees_poles_and_rows_of_lamps() {
     assert!(arm.expect("a lamp").sin() < -0.99, "the arm hangs over the road");
     let count = |name: &str| all.iter().filter(|f| f.name() == name).count();
     assert_eq!((count("shrubs"), count("building"), count("bin")), (1, 1, 1));
-    assert_eq!(import.skipped.get("tree that does not stand on the ground"), Some(&1));
+    assert_eq!(
+        import.skipped.get("tree that does not stand on the ground"),
+        Some(&1)
+    );
     assert_eq!(import.skipped.get("object trafficIsland"), Some(&1));
     assert_eq!(import.skipped.len(), 2, "{:?}", import.skipped);
 }
@@ -101,7 +117,7 @@ fn trees_poles_and_rows_of_lamps() {
 #[test]
 fn barriers_run_along_the_road() {
     let objects = r#"<object type="barrier" s="0" t="0"><repeat s="10" length="500" distance="0" tStart="-5" tEnd="-5" heightStart="0.9" heightEnd="0.9"/></object>
-        <object type="wall" s="100" t="9" length="20" width="0.4" height="2.2"/>
+        <object type="barrier" s="100" t="9" length="20" width="0.4" height="2.2"/>
         <object type="barrier" subtype="hedge" s="100" t="0"><outline><cornerRoad s="90" t="6"/><cornerRoad s="110" t="6"/><cornerRoad s="110" t="7"/><cornerRoad s="90" t="7"/></outline></object>"#;
     let import = import(objects, "");
     let all = forms(&import);
@@ -109,9 +125,14 @@ fn barriers_run_along_the_road() {
         panic!("{all:?}");
     };
     assert_eq!((rail.kind, rail.height_m), (LineKind::GuardRail, 0.9));
-    assert!(close(rail.points_m[0], -40.0, -5.0) && close(rail.points_m[rail.points_m.len() - 1], 40.0, -5.0));
+    assert!(
+        close(rail.points_m[0], -40.0, -5.0) && close(rail.points_m[rail.points_m.len() - 1], 40.0, -5.0)
+    );
     assert_eq!((wall.kind, wall.height_m), (LineKind::Wall, 2.2));
-    assert!(close(wall.points_m[0], -10.0, 9.0) || close(wall.points_m[0], 10.0, 9.0), "{wall:?}");
+    assert!(
+        close(wall.points_m[0], -10.0, 9.0) || close(wall.points_m[0], 10.0, 9.0),
+        "{wall:?}"
+    );
     assert!((wall.width_m - 0.4).abs() < 1e-9);
     assert_eq!(hedge.kind, LineKind::Hedge);
     assert!((hedge.width_m - 1.0).abs() < 1e-9 && (hedge.points_m[0].y - 6.5).abs() < 1e-9);
@@ -124,13 +145,23 @@ fn signals_face_their_traffic() {
         <signal type="1000001" dynamic="yes" s="120" t="-5" orientation="-"/>
         <signal type="1000001" dynamic="yes" s="120" t="-1.75" zOffset="5" orientation="+"/>
         <signal type="205" dynamic="no" s="x" t="-5"/>"#;
-    let import = import("<object type=\"pole\" s=\"110\" t=\"-5.1\" height=\"2\"/>", signals);
+    let import = import(
+        "<object type=\"pole\" s=\"110\" t=\"-5.1\" height=\"2\"/>",
+        signals,
+    );
     let all = forms(&import);
     let [Form::Post(sign), Form::Post(light)] = &all[..] else {
         panic!("{all:?}");
     };
-    assert_eq!(sign.kind, PostKind::Sign, "a sign takes its pole over, a second sign hangs on it");
-    assert!((sign.height_m - 3.2).abs() < 1e-9 && sign.yaw_rad.cos() < -0.99, "{sign:?}");
+    assert_eq!(
+        sign.kind,
+        PostKind::Sign,
+        "a sign takes its pole over, a second sign hangs on it"
+    );
+    assert!(
+        (sign.height_m - 3.2).abs() < 1e-9 && sign.yaw_rad.cos() < -0.99,
+        "{sign:?}"
+    );
     assert_eq!(light.kind, PostKind::TrafficLight);
     assert!(light.yaw_rad.cos() > 0.99);
     assert_eq!(import.skipped.get("signal that hangs over the road"), Some(&1));
@@ -139,11 +170,20 @@ fn signals_face_their_traffic() {
 
 #[test]
 fn too_many_things_are_cut_and_said() {
-    let objects = r#"<object type="tree" s="100" t="9"><repeat s="100" length="1" distance="0.0001"/></object>"#;
+    let objects =
+        r#"<object type="tree" s="100" t="9"><repeat s="100" length="1" distance="0.0001"/></object>"#;
     let import = import(objects, "");
     assert_eq!(import.background.len(), 4000);
-    assert!(import.skipped.contains_key("thing beyond 4000"), "{:?}", import.skipped);
+    assert!(
+        import.skipped.contains_key("thing beyond 4000"),
+        "{:?}",
+        import.skipped
+    );
     for name in OWN {
-        assert_eq!(window_at(&own(name), 0, 10.0).background.problem(), None, "{name}");
+        assert_eq!(
+            window_at(&own(name), 0, 10.0).background.problem(),
+            None,
+            "{name}"
+        );
     }
 }

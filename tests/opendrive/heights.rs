@@ -30,15 +30,14 @@ fn network(roads: &[String]) -> RoadNetwork {
 }
 
 fn elevation(records: &[[f64; 5]]) -> String {
-    let record = |[s, a, b, c, d]: &[f64; 5]| format!(r#"<elevation s="{s}" a="{a}" b="{b}" c="{c}" d="{d}"/>"#);
+    let record =
+        |[s, a, b, c, d]: &[f64; 5]| format!(r#"<elevation s="{s}" a="{a}" b="{b}" c="{c}" d="{d}"/>"#);
     let records: String = records.iter().map(record).collect();
     format!("<elevationProfile>{records}</elevationProfile>")
 }
 
 fn superelevation(rad: f64) -> String {
-    format!(
-        r#"<lateralProfile><superelevation s="0" a="{rad}" b="0" c="0" d="0"/></lateralProfile>"#
-    )
+    format!(r#"<lateralProfile><superelevation s="0" a="{rad}" b="0" c="0" d="0"/></lateralProfile>"#)
 }
 
 fn height(import: &LayoutImport, x: f64, y: f64) -> f64 {
@@ -71,14 +70,19 @@ fn superelevation_tilts_and_narrows() {
     assert!((left + 2.0 * 0.3f64.tan()).abs() < 0.01, "{left}");
     assert!((right - 2.0 * 0.3f64.tan()).abs() < 0.01, "{right}");
     // Lanes of 3.5 m on the slope are 3.34 m wide in the plan: their middle shows it.
-    let center = import.layout.polylines.iter().find(|l| l.kind == PolylineKind::LaneCenter);
+    let center = import
+        .layout
+        .polylines
+        .iter()
+        .find(|l| l.kind == PolylineKind::LaneCenter);
     let y = center.expect("a lane").points_m[0].y.abs();
     assert!((y - 1.75 * 0.3f64.cos()).abs() < 1e-6, "{y}");
 }
 
 #[test]
 fn crossfall_lets_both_sides_drop() {
-    let profile = r#"<lateralProfile><crossfall side="both" s="0" a="0.05" b="0" c="0" d="0"/></lateralProfile>"#;
+    let profile =
+        r#"<lateralProfile><crossfall side="both" s="0" a="0.05" b="0" c="0" d="0"/></lateralProfile>"#;
     let network = network(&[road("1", [0.0; 3], 200.0, profile, "")]);
     let import = window_at(&network, 0, 100.0);
     for side in [-1.0, 1.0] {
@@ -116,7 +120,13 @@ fn crossing(height: f64) -> RoadNetwork {
     let above = elevation(&[[0.0, height, 0.0, 0.0, 0.0]]);
     network(&[
         road("low", [-100.0, 0.0, 0.0], 200.0, "", ""),
-        road("high", [0.0, -100.0, std::f64::consts::FRAC_PI_2], 200.0, &above, ""),
+        road(
+            "high",
+            [0.0, -100.0, std::f64::consts::FRAC_PI_2],
+            200.0,
+            &above,
+            "",
+        ),
     ])
 }
 
@@ -134,7 +144,10 @@ fn the_upper_road_is_a_bridge_over_the_ego() {
     assert!((bridge.width_m - 7.0).abs() < 1e-9);
     // 7 m of road below and 3 m of abutment on each side, in steps.
     let (a, b) = (bridge.points_m[0], bridge.points_m[bridge.points_m.len() - 1]);
-    assert!((a.distance(b) - 13.0).abs() < 1.0 && (a.x - 20.0).abs() < 0.1, "{a} {b}");
+    assert!(
+        (a.distance(b) - 13.0).abs() < 1.0 && (a.x - 20.0).abs() < 0.1,
+        "{a} {b}"
+    );
     // Below it the road goes on, on the ground, with its lanes; above, no line crosses it.
     assert_eq!(layers_at(&import, 20.0, 0.0), [BevLayer::DrivableArea]);
     assert!(height(&import, 20.0, 0.0).abs() < 0.01);
@@ -156,8 +169,16 @@ fn the_ego_on_the_upper_road_stays_on_the_ground() {
     assert!(height(&import, 20.0, 0.0).abs() < 0.01, "the ego's road");
     assert!(height(&import, 20.0, 30.0) < -5.9, "the other road beside it");
     assert_eq!(layers_at(&import, 20.0, 0.0), [BevLayer::DrivableArea]);
-    let lanes = import.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
-    assert_eq!(lanes.count(), 6, "two of the ego's road, the other's two cut in two");
+    let lanes = import
+        .layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter);
+    assert_eq!(
+        lanes.count(),
+        6,
+        "two of the ego's road, the other's two cut in two"
+    );
 }
 
 #[test]
@@ -165,7 +186,11 @@ fn roads_at_one_height_cross_on_the_ground() {
     for height_m in [0.0, 2.0] {
         let import = crossing(height_m).to_layout(DVec2::new(-20.0, -1.75), 0.0);
         assert_eq!(import.bridge_count, 0, "{height_m}");
-        let lanes = import.layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+        let lanes = import
+            .layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter);
         assert_eq!(lanes.count(), 4);
     }
 }
@@ -188,7 +213,10 @@ fn bad_profiles_are_said_and_bounded() {
         ["jump in the elevation"]
     );
     assert_eq!(
-        said(&elevation(&[[60.0, 1.2, 0.0, 0.0, 0.0], [0.0, 0.0, 0.02, 0.0, 0.0]])),
+        said(&elevation(&[
+            [60.0, 1.2, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.02, 0.0, 0.0]
+        ])),
         ["elevation records out of order (sorted)"]
     );
     assert_eq!(
@@ -206,7 +234,10 @@ fn bad_profiles_are_said_and_bounded() {
     assert!(said(&superelevation(1e12)).is_empty());
     for bad in ["NaN", "inf", "high", ""] {
         let profile = elevation(&[zero]).replace("b=\"0\"", &format!("b=\"{bad}\""));
-        let text = format!("<OpenDRIVE>{}</OpenDRIVE>", road("1", [0.0; 3], 200.0, &profile, ""));
+        let text = format!(
+            "<OpenDRIVE>{}</OpenDRIVE>",
+            road("1", [0.0; 3], 200.0, &profile, "")
+        );
         let line = opendrive::read(text.as_bytes()).expect_err(bad).to_string();
         assert!(line.contains("elevation 1") && line.contains("finite"), "{line}");
     }

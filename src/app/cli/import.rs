@@ -97,7 +97,11 @@ impl Import {
             "file": self.output,
         });
         output::report(&self.common, &report, || {
-            let skipped: Vec<String> = imported.skipped.iter().map(|(kind, n)| format!("{kind} {n}")).collect();
+            let skipped: Vec<String> = imported
+                .skipped
+                .iter()
+                .map(|(kind, n)| format!("{kind} {n}"))
+                .collect();
             format!(
                 "{}: {} roads, {} lanes, {} bridges, {} boxes, {} things beside the road ({} of the file), ground {:.1} to \
                  {:.1} m; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}",

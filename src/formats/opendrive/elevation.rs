@@ -157,7 +157,10 @@ mod tests {
     #[test]
     fn heights_are_those_computed_by_hand() {
         let surface = SurfaceProfile {
-            elevation: cubics(&[(0.0, [10.0, 0.02, 0.0, 0.0]), (50.0, [11.0, 0.02, -0.001, 0.00001])]),
+            elevation: cubics(&[
+                (0.0, [10.0, 0.02, 0.0, 0.0]),
+                (50.0, [11.0, 0.02, -0.001, 0.00001]),
+            ]),
             superelevation: cubics(&[(20.0, [0.05, 0.0, 0.0, 0.0])]),
             crossfall_right: cubics(&[(0.0, [0.02, 0.0, 0.0, 0.0])]),
             ..SurfaceProfile::default()
@@ -177,7 +180,10 @@ mod tests {
 
     #[test]
     fn wild_profiles_stay_finite() {
-        let wild = cubics(&[(-5.0, [f64::MAX, -f64::MAX, f64::MAX, f64::MAX]), (0.0, [1e300; 4])]);
+        let wild = cubics(&[
+            (-5.0, [f64::MAX, -f64::MAX, f64::MAX, f64::MAX]),
+            (0.0, [1e300; 4]),
+        ]);
         let surface = SurfaceProfile {
             elevation: wild.clone(),
             superelevation: wild.clone(),

@@ -243,10 +243,14 @@ impl Canvas {
                     Some(line) => {
                         let points: Vec<DVec2> = line.iter().map(|p| self.to_ego(*p)).collect();
                         self.lines
-                            .extend(clipped(&points, Window::HALF_M).into_iter().map(|points_m| Polyline {
-                                kind: PolylineKind::StopLine,
-                                points_m,
-                            }));
+                            .extend(
+                                clipped(&points, Window::HALF_M)
+                                    .into_iter()
+                                    .map(|points_m| Polyline {
+                                        kind: PolylineKind::StopLine,
+                                        points_m,
+                                    }),
+                            );
                     }
                     None => count(skipped, "stop line without a lane"),
                 }

@@ -92,8 +92,7 @@ impl Levels {
 
     /// The height that the roads on the ground agree on.
     fn agreed_m(&self, column: &[Cover]) -> Option<f64> {
-        let on_ground =
-            |c: &&Cover| self.off(c.road, 0.5 * (c.from_s_m + c.to_s_m)).is_none();
+        let on_ground = |c: &&Cover| self.off(c.road, 0.5 * (c.from_s_m + c.to_s_m)).is_none();
         let heights: Vec<f64> = column.iter().filter(on_ground).map(Cover::height_m).collect();
         if heights.is_empty() {
             return None;
@@ -112,7 +111,10 @@ fn is_flat(road: &Road) -> bool {
 /// Edges of the ground that a road brings with it: from its leftmost to its rightmost lane that is paved or walked on.
 pub(super) fn body_edges(grounds: &[Ground]) -> Option<[usize; 2]> {
     let made = |g: &Ground| *g != Ground::Other;
-    Some([grounds.iter().position(made)?, grounds.iter().rposition(made)? + 1])
+    Some([
+        grounds.iter().position(made)?,
+        grounds.iter().rposition(made)? + 1,
+    ])
 }
 
 /// The roads in every column.
@@ -132,7 +134,12 @@ fn covers(network: &RoadNetwork, window: &Window) -> Vec<Vec<Cover>> {
                     polygon_cells(&patch.corners_m(), |x, y| {
                         *budget = budget.saturating_sub(1);
                         let height_m = patch.height_m(GridSpec::center(x, y, 0).truncate());
-                        add(&mut covers[x * GridSpec::NY + y], index, [from.s_m, to.s_m], height_m);
+                        add(
+                            &mut covers[x * GridSpec::NY + y],
+                            index,
+                            [from.s_m, to.s_m],
+                            height_m,
+                        );
                     });
                 }
                 None
@@ -234,8 +241,8 @@ fn merge(stretches: &mut Vec<Stretch>) {
         kind(a).cmp(&kind(b)).then(a.from_s_m.total_cmp(&b.from_s_m))
     });
     stretches.dedup_by(|next, before| {
-        let joins = (next.road, next.off) == (before.road, before.off)
-            && next.from_s_m - before.to_s_m < JOIN_M;
+        let joins =
+            (next.road, next.off) == (before.road, before.off) && next.from_s_m - before.to_s_m < JOIN_M;
         if joins {
             before.to_s_m = before.to_s_m.max(next.to_s_m);
         }
@@ -259,7 +266,11 @@ impl EgoRoad {
         let alike = |c: &Cover| {
             let s_m = 0.5 * (c.from_s_m + c.to_s_m);
             let heading_rad = network.roads[c.road].reference.at(s_m).heading_rad;
-            let along = window.ego_from_file.rotate(DVec2::from_angle(heading_rad)).x.abs();
+            let along = window
+                .ego_from_file
+                .rotate(DVec2::from_angle(heading_rad))
+                .x
+                .abs();
             (along * 4.0).round()
         };
         here.sort_by(|a, b| {
@@ -283,8 +294,12 @@ impl EgoRoad {
 
 /// The roads that one continues into, without a junction between.
 fn continued(network: &RoadNetwork, first: usize) -> Vec<bool> {
-    let by_id: HashMap<&str, usize> =
-        network.roads.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect();
+    let by_id: HashMap<&str, usize> = network
+        .roads
+        .iter()
+        .enumerate()
+        .map(|(i, r)| (r.id.as_str(), i))
+        .collect();
     let mut is_own = vec![false; network.roads.len()];
     let mut open = vec![first];
     while let Some(i) = open.pop() {

@@ -22,7 +22,11 @@ pub(super) fn surface(road: Node<'_, '_>, end_s_m: f64, skipped: &mut Skipped) -
         out.elevation = records(profile, "elevation", |_| true, skipped)?;
         doubts(&out.elevation, "elevation", JUMP_M, end_s_m, skipped);
         let ends = ends(&out.elevation, end_s_m);
-        if ends.iter().flatten().any(|m| m.is_nan() || m.abs() > MOST_ELEVATION_M) {
+        if ends
+            .iter()
+            .flatten()
+            .any(|m| m.is_nan() || m.abs() > MOST_ELEVATION_M)
+        {
             count(skipped, format!("elevation beyond {MOST_ELEVATION_M:.0} m (cut)"));
         }
     }
@@ -86,8 +90,8 @@ fn ends(cubics: &Cubics, end_s_m: f64) -> Vec<[f64; 2]> {
 fn doubts(cubics: &Cubics, name: &str, jump: f64, end_s_m: f64, skipped: &mut Skipped) {
     let ends = ends(cubics, end_s_m);
     for pair in ends.windows(2) {
-        // Written so that NaN counts too.
-        if !((pair[1][0] - pair[0][1]).abs() <= jump) {
+        let step = (pair[1][0] - pair[0][1]).abs();
+        if step > jump || step.is_nan() {
             count(skipped, format!("jump in the {name}"));
         }
     }

@@ -95,7 +95,13 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
     let mut corners = Vec::new();
     // Sizes upward matter only for what stands.
     let stands = matches!(kind, ObjectKind::Standing(_));
-    let upward = |node, field| if stands { number_or_none(node, field) } else { Ok(None) };
+    let upward = |node, field| {
+        if stands {
+            number_or_none(node, field)
+        } else {
+            Ok(None)
+        }
+    };
     let mut height_m = upward(node, "height")?;
     for outline in outlines {
         if outline.attribute("outer").is_some_and(|v| v.trim() == "false") {
@@ -207,7 +213,11 @@ fn stop_line(node: Node<'_, '_>) -> Result<RoadObject> {
 /// A sign or a light: it faces the traffic that its orientation names.
 fn signal(node: Node<'_, '_>) -> Result<RoadObject> {
     let changes = node.attribute("dynamic").is_some_and(|v| v.trim() == "yes");
-    let kind = if changes { PostKind::TrafficLight } else { PostKind::Sign };
+    let kind = if changes {
+        PostKind::TrafficLight
+    } else {
+        PostKind::Sign
+    };
     let faces_rad = match node.attribute("orientation") {
         Some("-") => 0.0,
         _ => std::f64::consts::PI,

@@ -16,9 +16,10 @@ pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
     let (low, high) = known_m
         .iter()
         .flatten()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), m| (low.min(*m), high.max(*m)));
-    // Written so that NaN, which never gets here, would be flat too.
-    if !(high - low > TINY_M) {
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), m| {
+            (low.min(*m), high.max(*m))
+        });
+    if known_m.iter().all(Option::is_none) || high - low <= TINY_M {
         return (Relief::FLAT, if low.is_finite() { low } else { 0.0 });
     }
     let heights = membrane(GridSpec::NX, GridSpec::NY, known_m);
@@ -100,7 +101,12 @@ mod tests {
         let at = |y: f64| relief.height_m(DVec2::new(5.0, y));
         assert!(at(0.0).abs() < 1e-5 && (at(24.0) - 3.0).abs() < 1e-5);
         assert!((at(12.0) - 1.5).abs() < 0.1, "half way up: {}", at(12.0));
-        assert!(at(-35.0).abs() < 0.02 && (at(38.0) - 3.0).abs() < 0.02, "{} {}", at(-35.0), at(38.0));
+        assert!(
+            at(-35.0).abs() < 0.02 && (at(38.0) - 3.0).abs() < 0.02,
+            "{} {}",
+            at(-35.0),
+            at(38.0)
+        );
         // No step steeper than the bank itself by much.
         let steepest = (0..190).map(|i| {
             let y = -38.0 + f64::from(i) * 0.4;
@@ -121,7 +127,9 @@ mod tests {
 
     #[test]
     fn heights_beyond_the_limit_are_cut() {
-        let (relief, _) = over(&known(|p| (p.y.abs() < 4.0).then_some(if p.x > 10.0 { 1e4 } else { 0.0 })));
+        let (relief, _) = over(&known(|p| {
+            (p.y.abs() < 4.0).then_some(if p.x > 10.0 { 1e4 } else { 0.0 })
+        }));
         assert_eq!(relief.height_m(DVec2::new(30.0, 0.0)), f64::from(Relief::LIMIT_M));
     }
 }

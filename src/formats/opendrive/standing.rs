@@ -87,18 +87,30 @@ mod tests {
     fn names_of_the_standard_and_of_real_files() {
         let of = |kind, subtype, name| Standing::from_names(kind, subtype, name);
         assert_eq!(of("building", "", "x"), Some(Standing::Building));
-        assert_eq!(of("building", "busstop", ""), Some(Standing::Post(PostKind::BusStop)));
+        assert_eq!(
+            of("building", "busstop", ""),
+            Some(Standing::Post(PostKind::BusStop))
+        );
         assert_eq!(of("tree", "needle", ""), Some(Standing::Tree(TreeKind::Conifer)));
         assert_eq!(of("vegetation", "bush", ""), Some(Standing::Shrubs));
-        assert_eq!(of("vegetation", "hedge", ""), Some(Standing::Line(LineKind::Hedge)));
+        assert_eq!(
+            of("vegetation", "hedge", ""),
+            Some(Standing::Line(LineKind::Hedge))
+        );
         assert_eq!(of("barrier", "", ""), Some(Standing::Line(LineKind::GuardRail)));
         assert_eq!(of("barrier", "wall", ""), Some(Standing::Line(LineKind::Wall)));
         assert_eq!(of("soundbarrier", "", ""), Some(Standing::Line(LineKind::Wall)));
         assert_eq!(of("railing", "", ""), Some(Standing::Line(LineKind::Fence)));
         assert_eq!(of("railpole", "", ""), Some(Standing::Post(PostKind::Bollard)));
         assert_eq!(of("guidepost", "", ""), Some(Standing::Post(PostKind::Bollard)));
-        assert_eq!(of("pole", "streetlamp", ""), Some(Standing::Post(PostKind::StreetLight)));
-        assert_eq!(of("streetlamp", "", ""), Some(Standing::Post(PostKind::StreetLight)));
+        assert_eq!(
+            of("pole", "streetlamp", ""),
+            Some(Standing::Post(PostKind::StreetLight))
+        );
+        assert_eq!(
+            of("streetlamp", "", ""),
+            Some(Standing::Post(PostKind::StreetLight))
+        );
         assert_eq!(of("pole", "", ""), Some(Standing::Post(PostKind::Pole)));
         assert_eq!(of("", "", "oaktree"), Some(Standing::Tree(TreeKind::Broadleaf)));
         for kind in ["parkingspace", "trafficisland", "crosswalk", "patch", "car", ""] {

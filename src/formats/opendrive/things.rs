@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
+use super::Road;
 use super::layout::Window;
 use super::lines::clipped;
 use super::objects::{Copy, ObjectKind, Repeat, RoadObject, shoelace_m2};
 use super::standing::Standing;
 use super::xml::{Skipped, count};
-use super::Road;
 use crate::scene::background::{Building, Facade, Line, LineKind, Post, PostKind, Roof, Shrubs, Tree};
 use crate::scene::{BevLayer, BevLayout, Form, GridSpec};
 
@@ -72,12 +72,19 @@ impl Things<'_> {
                 if !Window::holds(&form) {
                     continue;
                 }
-                if matches!(standing, Standing::Signal(_)) && copy.lift_m > OVERHEAD_M && self.over_road(at_m) {
+                if matches!(standing, Standing::Signal(_)) && copy.lift_m > OVERHEAD_M && self.over_road(at_m)
+                {
                     count(skipped, "signal that hangs over the road");
                 } else if copy.lift_m > HANGS_M && !matches!(standing, Standing::Signal(_)) {
-                    count(skipped, format!("{} that does not stand on the ground", standing.name()));
+                    count(
+                        skipped,
+                        format!("{} that does not stand on the ground", standing.name()),
+                    );
                 } else if !is_on_ground(copy.s_m) {
-                    count(skipped, format!("{} on a bridge or a road left out", standing.name()));
+                    count(
+                        skipped,
+                        format!("{} on a bridge or a road left out", standing.name()),
+                    );
                 } else {
                     self.add(form, skipped);
                 }
@@ -115,7 +122,10 @@ impl Things<'_> {
         }
         let first = row.along(object, 0.0);
         if first.lift_m > HANGS_M {
-            return count(skipped, format!("{} that does not stand on the ground", standing.name()));
+            return count(
+                skipped,
+                format!("{} that does not stand on the ground", standing.name()),
+            );
         }
         let mut runs: Vec<Vec<DVec2>> = vec![Vec::new()];
         for i in 0..=steps as usize {
@@ -171,8 +181,12 @@ fn shares_place(form: &Form, post: &Post) -> bool {
     }
 }
 
-/// A line of these sizes; what is not given is as usual for its kind.
+/// A line of these sizes; what is not given is as usual for its kind. A barrier too high or wide for a rail is a wall.
 fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Line {
+    let kind = match kind {
+        LineKind::GuardRail if height_m > 1.3 || width_m > 0.8 => LineKind::Wall,
+        kind => kind,
+    };
     let usual = Line::typical(kind, points_m);
     Line {
         height_m: if height_m > 0.0 { height_m } else { usual.height_m },
@@ -205,7 +219,9 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
             }
             area
         });
-        in_ego.filter(|a| a.len() >= 3 && shoelace_m2(a).abs() > 0.25).collect()
+        in_ego
+            .filter(|a| a.len() >= 3 && shoelace_m2(a).abs() > 0.25)
+            .collect()
     };
     let buildings = |height_m: f64| -> Vec<Form> {
         let building = |outline_m| {
@@ -282,7 +298,11 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
                 kind,
                 position_m,
                 yaw_rad: heading_rad + object.heading_rad,
-                height_m: if top_m > 0.8 { top_m } else { kind.typical_height_m() },
+                height_m: if top_m > 0.8 {
+                    top_m
+                } else {
+                    kind.typical_height_m()
+                },
             })]
         }
     }

@@ -155,10 +155,8 @@ mod tests {
     /// On a slope the ray must end on the ground, and where a fine march says.
     #[test]
     fn rays_meet_uneven_ground_where_it_is() {
-        let layout = BevLayout {
-            relief: Relief::from_fn(|p| 0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3),
-            ..BevLayout::default()
-        };
+        let mut layout = BevLayout::default();
+        layout.relief = Relief::from_fn(|p| 0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3);
         let world = super::super::World::with_background(layout, Default::default(), Default::default(), 5);
         let mut draw = Draw::new(2, "rays over hills");
         let mut met = 0;
