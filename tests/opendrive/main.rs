@@ -7,7 +7,6 @@ mod heights;
 mod own_roads;
 mod real_files;
 mod reference;
-mod zz_hash;
 
 use std::path::{Path, PathBuf};
 

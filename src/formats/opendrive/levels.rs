@@ -128,9 +128,10 @@ fn covers(network: &RoadNetwork, window: &Window) -> Vec<Vec<Cover>> {
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
                 let [first, last] = (*body.get_or_insert_with(|| body_edges(&section.grounds())))?;
                 let held_m = 0.5 * (from.s_m + to.s_m);
-                let heights = [from, to].map(|row| edge_heights_m(&road.surface, section, row, held_m));
-                for lane in first..last {
-                    let patch = Patch::new(window, [from, to], lane, [heights[0][lane], heights[1][lane]]);
+                let [near, far] = [from, to].map(|row| edge_heights_m(&road.surface, section, row, held_m));
+                let lanes = near.iter().zip(&far).enumerate();
+                for (lane, (near, far)) in lanes.take(last).skip(first) {
+                    let patch = Patch::new(window, [from, to], lane, [*near, *far]);
                     polygon_cells(&patch.corners_m(), |x, y| {
                         *budget = budget.saturating_sub(1);
                         let height_m = patch.height_m(GridSpec::center(x, y, 0).truncate());
