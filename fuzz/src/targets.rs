@@ -34,7 +34,7 @@ use sceneloom::generation::world::{template, traffic};
 use sceneloom::scene::graph::SceneGraph;
 use sceneloom::scene::grid::NOT_PAINTED;
 use sceneloom::scene::road_map::RoadMap;
-use sceneloom::scene::{BevLayer, BevLayout, BoxId, Class, Frame, Scene, SensorRig, infer};
+use sceneloom::scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SensorRig, infer};
 
 /// A parser under test.
 pub type Target = fn(&[u8]);
@@ -135,6 +135,9 @@ pub fn opendrive_file(bytes: &[u8]) {
             let import = network.to_layout(at, heading);
             let points = import.layout.polylines.iter().flat_map(|l| &l.points_m);
             assert!(points.into_iter().all(|p| p.is_finite()));
+            assert_eq!(import.background.problem(), None);
+            let heights = import.layout.relief.heights_m().unwrap_or_default();
+            assert!(heights.iter().all(|h| h.abs() <= Relief::LIMIT_M));
             network.pose_on_lane_near(DVec2::new(3.0, 4.0));
         }
     }

@@ -2,6 +2,7 @@
 
 pub mod actions;
 pub mod application;
+mod around;
 mod bev_image;
 pub mod bookmarks;
 mod by_words;

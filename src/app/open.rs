@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
+use super::around;
 use crate::formats::opendrive::{self, RoadNetwork};
 use crate::formats::{atomic, occ3d, project};
 use crate::generation::world::scenery::{self, Setting, Side, Style};
@@ -14,6 +15,9 @@ use crate::generation::world::terrain::Terrain;
 use crate::generation::world::voxelize::{Vertical, complete};
 use crate::generation::world::{World, template, traffic};
 use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
+
+/// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
+const ENOUGH_THINGS: usize = 5;
 
 /// Largest text file that is read, bytes.
 const LARGEST_TEXT: u64 = 256 << 20;
@@ -129,6 +133,8 @@ pub struct Placement {
     pub seed: u64,
     /// No vehicles and people.
     pub empty: bool,
+    /// Nothing beside the road but what the file puts there.
+    pub bare: bool,
 }
 
 /// A scene made from a foreign file, and what was found in it.
@@ -141,6 +147,10 @@ pub struct Imported {
     pub lanes: usize,
     /// Columns that are drivable although no traffic lane lies there, by the kind of lane.
     pub drivable_beside_traffic: BTreeMap<String, usize>,
+    /// Bridges: roads of the file that cross above the ground.
+    pub bridges: usize,
+    /// Things that the file puts beside the road, bridges not counted.
+    pub things_of_file: usize,
     /// What was not understood, counted by kind.
     pub skipped: BTreeMap<String, usize>,
     /// Where the ego stands in the file's frame: x, y in m and heading in rad.
@@ -160,7 +170,9 @@ pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
     opendrive::read(&bytes).with_context(|| name.to_string())
 }
 
-/// Imports a road network: its layout, seeded traffic, and the draft as occupancy until it is generated.
+/// Imports a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
+/// scenery out, and the occupancy is the draft until it is generated.
 pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     let network = road_network(path)?;
     let (at, lane_heading) = match placement.at_m {
@@ -176,16 +188,37 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     } else {
         traffic::TrafficSpec::NORMAL
     };
-    let boxes = traffic::place(&import.layout, placement.seed, &spec);
-    let occupancy = draft::draft(&import.layout, boxes.values());
+    let seed = placement.seed;
+    let boxes = traffic::place(&import.layout, seed, &spec);
+    let things_of_file = import.background.len() - import.bridge_count;
     let stem = path.file_stem().map_or("import".into(), |s| s.to_string_lossy());
-    let frame = Frame::new(import.layout, boxes, occupancy);
-    let scene = Scene::single(&stem, frame, Arc::new(SensorRig::default()), placement.seed);
+    let mut scene = if placement.bare {
+        let occupancy = draft::draft(&import.layout, boxes.values());
+        let frame = Frame::new(import.layout, boxes, occupancy);
+        let mut scene = Scene::single(&stem, frame, Arc::new(SensorRig::default()), seed);
+        scene.background = Arc::new(import.background);
+        scene
+    } else {
+        let background = match things_of_file < ENOUGH_THINGS {
+            true => {
+                let drawn = scenery::background(&import.layout, &boxes, seed);
+                around::merged(import.background, &drawn)
+            }
+            false => import.background,
+        };
+        of_world(
+            &World::with_background(import.layout, boxes, background, seed),
+            &stem,
+        )
+    };
+    scene.seed = seed;
     Ok(Imported {
         scene,
         roads: import.road_count,
         lanes: import.lane_count,
         drivable_beside_traffic: import.drivable_beside_traffic,
+        bridges: import.bridge_count,
+        things_of_file,
         skipped: import.skipped,
         pose: (at, heading),
     })
@@ -244,4 +277,81 @@ pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Ve
     }
     found.sort();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{BevLayer, Class, Form, GridSpec};
+
+    /// A straight road of one lane on each side with these objects, written for this test.
+    fn road(dir: &Path, objects: &str) -> PathBuf {
+        let path = dir.join("a.xodr");
+        let lane = r#"<width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>"#;
+        let text = format!(
+            r#"<OpenDRIVE><road length="300" id="1" junction="-1"><planView>
+            <geometry s="0" x="0" y="0" hdg="0" length="300"><line/></geometry></planView>
+            <elevationProfile><elevation s="0" a="30" b="0.03" c="0" d="0"/></elevationProfile>
+            <lanes><laneSection s="0"><left><lane id="1" type="driving">{lane}</left><center><lane id="0" type="none"/></center>
+            <right><lane id="-1" type="driving">{lane}</right></laneSection></lanes><objects>{objects}</objects></road></OpenDRIVE>"#
+        );
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    fn at(bare: bool) -> Placement {
+        Placement {
+            at_m: Some(DVec2::new(150.0, -1.75)),
+            bare,
+            ..Placement::default()
+        }
+    }
+
+    #[test]
+    fn an_import_is_a_whole_world_unless_it_is_bare() {
+        let dir = tempfile::tempdir().unwrap();
+        let house = r#"<object type="building" id="1" s="165" t="-18" length="14" width="9" height="9"/>"#;
+        let path = road(dir.path(), house);
+        let whole = import(&path, &at(false)).unwrap();
+        assert_eq!((whole.things_of_file, whole.bridges), (1, 0));
+        assert!(
+            whole.scene.background.len() > 8,
+            "{} things",
+            whole.scene.background.len()
+        );
+        assert_eq!(whole.scene.background.problem(), None);
+        let counts = whole.scene.frame().occupancy.class_counts();
+        assert!(counts[Class::Manmade.id() as usize] > 200 && counts[Class::Vegetation.id() as usize] > 200);
+        let again = import(&path, &at(false)).unwrap();
+        assert_eq!(whole.scene.frame(), again.scene.frame());
+        // What was drawn keeps clear of the house.
+        let house = whole.scene.background.iter().next().unwrap();
+        assert!(matches!(house.form, Form::Building(_)));
+        let (min, max) = house.form.bounds_m();
+        let in_house = |p: &DVec2| p.cmpgt(min).all() && p.cmplt(max).all();
+        let others = whole.scene.background.iter().skip(1);
+        assert!(others.flat_map(|t| t.form.points_m()).all(|p| !in_house(&p)));
+
+        let bare = import(&path, &at(true)).unwrap();
+        assert_eq!(bare.scene.background.len(), 1);
+        assert_eq!(bare.scene.frame().layout, whole.scene.frame().layout);
+        assert_eq!(bare.scene.frame().boxes, whole.scene.frame().boxes);
+        // The road climbs by 3 %, 1 m over 34 m: two bins up in the draft.
+        let frame = bare.scene.frame();
+        assert!((frame.layout.relief.height_m(DVec2::new(30.0, 0.0)) - 0.9).abs() < 0.01);
+        let [x, y] = GridSpec::column_at(30.0, 0.0).unwrap();
+        assert!(frame.layout.has(BevLayer::DrivableArea, x, y));
+        assert_eq!(frame.occupancy.get(x, y, 0), Class::FREE);
+        assert_eq!(frame.occupancy.get(x, y, 2), Class::DriveableSurface.id());
+    }
+
+    #[test]
+    fn a_furnished_file_gets_no_scenery() {
+        let dir = tempfile::tempdir().unwrap();
+        let trees = r#"<object type="tree" id="1" s="130" t="8" height="6"><repeat s="130" length="40" distance="10"/></object>"#;
+        let imported = import(&road(dir.path(), trees), &at(false)).unwrap();
+        assert_eq!(imported.things_of_file, 5);
+        assert_eq!(imported.scene.background.len(), 5);
+        assert!(imported.scene.background.iter().all(|t| t.form.name() == "tree"));
+    }
 }

@@ -69,6 +69,17 @@ mod tests {
         assert!((10..30).contains(&layouts), "{layouts} of 60");
         assert!(found.iter().flatten().all(|l| !l.polylines.is_empty()));
         assert_eq!(found[..10], (0..10).map(|s| roads.layout(s)).collect::<Vec<_>>());
+        let climbing = ROAD.replace("<lanes>", "<elevationProfile><elevation s=\"0\" a=\"9\" b=\"0.05\" c=\"0\" d=\"0\"/></elevationProfile><lanes>");
+        std::fs::write(dir.path().join("a.xodr"), climbing).unwrap();
+        let roads = Roads::open(dir.path()).unwrap();
+        for layout in (0..20).filter_map(|seed| roads.layout(seed)) {
+            let at = |x: f64| layout.relief.height_m(glam::DVec2::new(x, 0.0));
+            let grade = (at(8.0) - at(-8.0)) / 16.0;
+            assert!(
+                (grade.abs() - 0.05).abs() < 0.002,
+                "the relief comes along: {grade}"
+            );
+        }
         assert!((0..60).all(|seed| Roads::default().layout(seed).is_none()));
     }
 }

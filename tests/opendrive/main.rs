@@ -2,6 +2,8 @@
 //! files against their measured counts, broken files against panics and silence.
 
 mod bad_input;
+mod beside;
+mod heights;
 mod own_roads;
 mod real_files;
 mod reference;

@@ -1,6 +1,9 @@
 //! Every real file at hand: counts as measured in the data folder's own table, and ground under the suggested place.
 
+use glam::DVec2;
 use sceneloom::formats::opendrive::geometry::Shape;
+use sceneloom::formats::opendrive::objects::{ObjectKind, RoadObject};
+use sceneloom::formats::opendrive::standing::Standing;
 use sceneloom::formats::opendrive::{self, RoadNetwork};
 use sceneloom::scene::BevLayer;
 
@@ -53,11 +56,16 @@ fn counts(network: &RoadNetwork) -> [usize; 11] {
             .map(|(_, n)| n)
             .sum()
     };
-    let placed = |stop: bool| -> usize {
+    // In these files all stop lines are signals.
+    let is_signal = |o: &&RoadObject| {
+        matches!(
+            o.kind,
+            ObjectKind::StopLine { .. } | ObjectKind::Standing(Standing::Signal(_))
+        )
+    };
+    let placed = |signal: bool| -> usize {
         let objects = network.roads.iter().flat_map(|r| &r.objects);
-        objects
-            .filter(|o| matches!(o.kind, opendrive::objects::ObjectKind::StopLine { .. }) == stop)
-            .count()
+        objects.filter(|o| is_signal(o) == signal).count()
     };
     [
         network.roads.len(),
@@ -67,7 +75,7 @@ fn counts(network: &RoadNetwork) -> [usize; 11] {
         of_kind(|s| matches!(s, Shape::Arc { .. })),
         of_kind(|s| matches!(s, Shape::Spiral { .. })),
         of_kind(|s| matches!(s, Shape::ParamPoly3 { .. })),
-        skipped("signal") + placed(true), // in these files all stop lines are signals
+        skipped("signal") + placed(true),
         skipped("object ") + placed(false),
         sections().count(),
         sections().map(|s| s.lane_count()).sum(),
@@ -101,6 +109,8 @@ fn every_real_file_imports() {
         assert!(import.lane_count >= 2, "{name}");
         let pose = network.pose_on_lane_near(at).expect("lanes");
         assert!(pose.distance_m < 0.3, "{name}: {}", pose.distance_m);
+        assert_eq!(import.background.problem(), None, "{name}");
+        assert!(import.layout.relief.height_m(DVec2::ZERO).abs() < 1e-3, "{name}");
         // The same window twice is the same to the bit.
         assert_eq!(import, network.to_layout(at, heading), "{name}");
     }

@@ -28,6 +28,9 @@ pub struct Import {
     /// Without vehicles and people.
     #[arg(long)]
     empty: bool,
+    /// Road and traffic only: no scenery but what the file holds.
+    #[arg(long)]
+    bare: bool,
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
@@ -59,6 +62,7 @@ impl Import {
             heading_rad: self.heading.map(f64::to_radians),
             seed: self.seed,
             empty: self.empty,
+            bare: self.bare,
         };
         let imported = open::import(&self.file, &placement)?;
         let frame = imported.scene.frame();
@@ -74,12 +78,19 @@ impl Import {
             })()?;
         }
         project::save(&self.output, &imported.scene).context("write the scene")?;
+        let heights_m = frame.layout.relief.heights_m().unwrap_or_default();
+        let lowest_m = heights_m.iter().copied().fold(0.0, f32::min);
+        let highest_m = heights_m.iter().copied().fold(0.0, f32::max);
         let (at, heading) = imported.pose;
         let report = json!({
             "format": "opendrive",
             "boxes": frame.boxes.len(),
             "roads": imported.roads,
             "lanes": imported.lanes,
+            "bridges": imported.bridges,
+            "things": imported.scene.background.len(),
+            "things_of_file": imported.things_of_file,
+            "relief_m": [lowest_m, highest_m],
             "skipped": imported.skipped,
             "drivable_beside_traffic": imported.drivable_beside_traffic,
             "at_m": [at.x, at.y],
@@ -96,19 +107,29 @@ impl Import {
                 true => String::new(),
                 false => format!("; counted as drivable: {}", beside.join(", ")),
             };
+            let skipped: Vec<String> = imported
+                .skipped
+                .iter()
+                .map(|(kind, n)| format!("{kind} {n}"))
+                .collect();
             format!(
-                "{}: {} roads, {} lanes, {} boxes; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}{note}",
+                "{}: {} roads, {} lanes, {} bridges, {} boxes, {} things beside the road ({} of the file), ground {:.1} to \
+                 {:.1} m; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}{note}",
                 self.output.display(),
                 imported.roads,
                 imported.lanes,
+                imported.bridges,
                 frame.boxes.len(),
+                imported.scene.background.len() - imported.bridges,
+                imported.things_of_file,
+                lowest_m,
+                highest_m,
                 at.x,
                 at.y,
                 heading.to_degrees(),
-                if imported.skipped.is_empty() {
-                    "nothing".into()
-                } else {
-                    format!("{:?}", imported.skipped)
+                match skipped.is_empty() {
+                    true => "nothing".into(),
+                    false => skipped.join(", "),
                 }
             )
         });

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::elevation::LaneHeight;
 use super::geometry::cubic;
 
 /// Widest lane that is believed, m; wider values are cut to it.
@@ -174,6 +175,8 @@ pub struct Lane {
     pub travel: Travel,
     /// Its outer edge.
     pub extent: Extent,
+    /// Its height above the surface of the road; empty if it lies on it.
+    pub heights: Vec<LaneHeight>,
     /// Marks on its outer edge; empty if the file gives none.
     pub marks: Vec<Mark>,
 }
@@ -378,6 +381,7 @@ mod tests {
                 s_m: 0.0,
                 k: [width, 0.0, 0.0, 0.0],
             }])),
+            heights: Vec::new(),
             marks: vec![Mark {
                 s_m: 0.0,
                 style: if id % 2 == 0 {

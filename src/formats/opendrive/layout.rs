@@ -4,17 +4,41 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use super::decks;
 use super::lanes::{Ground, LaneKind, LaneSection, Travel};
+use super::levels::Levels;
 use super::lines::{Follower, SectionLines, clipped};
 use super::objects::ObjectKind;
+use super::relief;
 use super::sampling::{BUDGET, Row, walk};
+use super::things::Things;
 use super::xml::{Skipped, count};
 use super::{Road, RoadNetwork, tidy};
 use crate::scene::raster::{draw_polyline, polygon_cells};
-use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
+use crate::scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind};
 
-/// Half the edge of the window, m.
-const HALF_M: f64 = GridSpec::MAX_M[0];
+/// The square of the grid around the ego, and where it lies in the file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Window {
+    pub at_m: DVec2,
+    /// Unit vector; rotating by it turns file axes to ego axes.
+    pub ego_from_file: DVec2,
+}
+
+impl Window {
+    /// Half the edge, m.
+    pub const HALF_M: f64 = GridSpec::MAX_M[0];
+    /// From the middle to a corner, m.
+    pub const RADIUS_M: f64 = Self::HALF_M * std::f64::consts::SQRT_2;
+
+    pub fn to_ego(self, p: DVec2) -> DVec2 {
+        self.ego_from_file.rotate(p - self.at_m)
+    }
+
+    pub fn heading_to_ego(self, heading_rad: f64) -> f64 {
+        heading_rad + self.ego_from_file.to_angle()
+    }
+}
 
 /// A layout and what went into it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,14 +56,18 @@ pub struct LayoutImport {
     /// Columns that are drivable although no traffic lane lies there, by the kind of lane: `shoulder`, `stop`,
     /// `restricted`, `biking`. The nuScenes map counts them as drivable; a road's own rules do not.
     pub drivable_beside_traffic: BTreeMap<String, usize>,
-    /// What the file holds and the layout does not, counted by kind.
+    /// What the file puts beside the road, and roads that cross above the ground, in the ego frame.
+    pub background: Background,
+    /// How many of these things are bridges.
+    pub bridge_count: usize,
+    /// What the file holds and the import does not, counted by kind.
     pub skipped: Skipped,
 }
 
 /// The grid while it is drawn.
 struct Canvas {
-    at_m: DVec2,
-    ego_from_file: DVec2, // unit vector; rotating by it turns file axes to ego axes
+    window: Window,
+    levels: Option<Levels>, // none if every road is flat
     layout: BevLayout,
     named: Vec<bool>,                  // cells on which some lane lies, drivable or not
     in_junction: Vec<bool>,            // cells on which a connecting road lies
@@ -52,12 +80,22 @@ struct Canvas {
 impl RoadNetwork {
     /// The 80 x 80 m around `at_m` (file frame), seen by an ego vehicle that looks along `heading_rad`.
     ///
+    /// The relief is that of the roads, relative to the ego's ground; see [`Levels`] for roads above one another.
     /// Layers in the sense of the nuScenes map: drivable area is everything paved that is connected
     /// to a traffic lane; stop lines, crossings and dividers are also kept as polylines.
     pub fn to_layout(&self, at_m: DVec2, heading_rad: f64) -> LayoutImport {
-        let mut canvas = Canvas {
+        let window = Window {
             at_m,
             ego_from_file: DVec2::from_angle(-heading_rad),
+        };
+        let is_somewhere = at_m.is_finite() && heading_rad.is_finite();
+        let levels = match is_somewhere {
+            true => Levels::survey(self, &window),
+            false => None,
+        };
+        let mut canvas = Canvas {
+            window,
+            levels,
             layout: BevLayout::default(),
             named: vec![false; GridSpec::COLUMNS],
             in_junction: vec![false; GridSpec::COLUMNS],
@@ -68,21 +106,37 @@ impl RoadNetwork {
         };
         let mut skipped = self.skipped.clone();
         let mut road_count = 0;
-        if at_m.is_finite() && heading_rad.is_finite() {
-            for road in &self.roads {
-                road_count += usize::from(canvas.road(road, self.marks_known));
-                canvas.objects(road, &mut skipped);
+        if is_somewhere {
+            for (index, road) in self.roads.iter().enumerate() {
+                road_count += usize::from(canvas.road(index, road, self.marks_known));
+                canvas.objects(index, road, &mut skipped);
             }
         } else {
             count(&mut skipped, "window at no finite place");
-        }
-        if canvas.budget == 0 {
-            count(&mut skipped, "roads beyond the drawing budget");
         }
         canvas.pave_gaps();
         canvas.roads_cover_walkways();
         for line in &canvas.lines {
             draw_polyline(&mut canvas.layout, line);
+        }
+        let mut forms = Vec::new();
+        if is_somewhere {
+            forms = canvas.things(self, &mut skipped);
+        }
+        let mut bridge_count = 0;
+        if let Some(levels) = &canvas.levels {
+            let (relief, file_from_ego_m) = relief::over(&levels.known_m);
+            let bridges = decks::bridges(self, &window, levels, &relief, file_from_ego_m, &mut skipped);
+            bridge_count = bridges.len();
+            forms.extend(bridges);
+            canvas.layout.relief = relief;
+        }
+        let mut background = Background::default();
+        forms.into_iter().for_each(|form| {
+            background.add(form);
+        });
+        if canvas.budget == 0 {
+            count(&mut skipped, "roads beyond the drawing budget");
         }
         let of_kind = |kind| canvas.lines.iter().filter(|l| l.kind == kind).count();
         let (lane_count, crossing_count) = (
@@ -98,6 +152,8 @@ impl RoadNetwork {
             crossing_count,
             drivable_beside_traffic,
             drivable_share: layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64,
+            background,
+            bridge_count,
             skipped,
             layout,
         }
@@ -106,7 +162,11 @@ impl RoadNetwork {
 
 impl Canvas {
     fn to_ego(&self, p: DVec2) -> DVec2 {
-        self.ego_from_file.rotate(p - self.at_m)
+        self.window.to_ego(p)
+    }
+
+    fn is_on_ground(&self, road: usize, s_m: f64) -> bool {
+        self.levels.as_ref().is_none_or(|l| l.off(road, s_m).is_none())
     }
 
     fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
@@ -147,14 +207,17 @@ impl Canvas {
     }
 
     /// Draws the lanes of a road; true if any ground of it is in the window.
-    fn road(&mut self, road: &Road, marks_known: bool) -> bool {
+    fn road(&mut self, index: usize, road: &Road, marks_known: bool) -> bool {
         let mut follower = Follower::default();
         let mut seen = false;
         for section in &road.sections {
             let mut grounds = None;
             let mut budget = self.budget;
-            let (at_m, radius_m) = (self.at_m, HALF_M * std::f64::consts::SQRT_2);
+            let (at_m, radius_m) = (self.window.at_m, Window::RADIUS_M);
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
+                if !self.is_on_ground(index, 0.5 * (from.s_m + to.s_m)) {
+                    return None;
+                }
                 let grounds = grounds.get_or_insert_with(|| section.grounds());
                 self.budget = *budget;
                 seen |= self.strips(section, from, to, grounds, road.junction.is_some());
@@ -173,7 +236,7 @@ impl Canvas {
         for (kind, points) in follower.finish() {
             let points: Vec<DVec2> = points.iter().map(|p| self.to_ego(*p)).collect();
             self.lines.extend(
-                clipped(&points, HALF_M)
+                clipped(&points, Window::HALF_M)
                     .into_iter()
                     .map(|points_m| Polyline { kind, points_m }),
             );
@@ -212,8 +275,11 @@ impl Canvas {
         seen
     }
 
-    fn objects(&mut self, road: &Road, skipped: &mut Skipped) {
+    fn objects(&mut self, index: usize, road: &Road, skipped: &mut Skipped) {
         for object in &road.objects {
+            if matches!(object.kind, ObjectKind::Standing(_)) || !self.is_on_ground(index, object.s_m) {
+                continue;
+            }
             if let ObjectKind::StopLine { against_line } = object.kind {
                 let line = road
                     .section_at(object.s_m)
@@ -222,10 +288,14 @@ impl Canvas {
                     Some(line) => {
                         let points: Vec<DVec2> = line.iter().map(|p| self.to_ego(*p)).collect();
                         self.lines
-                            .extend(clipped(&points, HALF_M).into_iter().map(|points_m| Polyline {
-                                kind: PolylineKind::StopLine,
-                                points_m,
-                            }));
+                            .extend(
+                                clipped(&points, Window::HALF_M)
+                                    .into_iter()
+                                    .map(|points_m| Polyline {
+                                        kind: PolylineKind::StopLine,
+                                        points_m,
+                                    }),
+                            );
                     }
                     None => count(skipped, "stop line without a lane"),
                 }
@@ -237,7 +307,7 @@ impl Canvas {
                 let area: Vec<DVec2> = area.iter().map(|p| self.to_ego(*p)).collect();
                 let min = area.iter().copied().fold(DVec2::INFINITY, DVec2::min);
                 let max = area.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-                if max.min_element() > -HALF_M && min.max_element() < HALF_M {
+                if max.min_element() > -Window::HALF_M && min.max_element() < Window::HALF_M {
                     areas.push(area);
                 }
             });
@@ -253,6 +323,23 @@ impl Canvas {
                 }
             }
         }
+    }
+
+    /// What stands beside the roads; on the finished layout.
+    fn things(&mut self, network: &RoadNetwork, skipped: &mut Skipped) -> Vec<Form> {
+        let mut things = Things {
+            window: self.window,
+            layout: &self.layout,
+            forms: Vec::new(),
+            budget: self.budget,
+        };
+        for (index, road) in network.roads.iter().enumerate() {
+            for object in &road.objects {
+                things.object(road, object, &|s_m| self.is_on_ground(index, s_m), skipped);
+            }
+        }
+        self.budget = things.budget;
+        things.forms
     }
 
     /// Joints between roads and cracks in junctions become drivable.

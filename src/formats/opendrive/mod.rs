@@ -1,15 +1,22 @@
 //! OpenDRIVE roads (ASAM OpenDRIVE 1.4 to 1.8, `.xodr`): read a road network, cut a layout out of it.
 
+mod decks;
+pub mod elevation;
 pub mod geometry;
 pub mod lanes;
 mod layout;
+mod levels;
 mod lines;
 pub mod objects;
 mod parse;
+mod parse_elevation;
 mod parse_lanes;
 mod parse_objects;
 mod pose;
+mod relief;
 mod sampling;
+pub mod standing;
+mod things;
 mod tidy;
 mod xml;
 
@@ -18,11 +25,12 @@ pub use parse::read;
 pub use pose::LanePose;
 pub use xml::{OpenDriveError, Skipped};
 
+use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
 use lanes::{Cubics, LaneSection};
 use objects::RoadObject;
 
-/// The roads of one file, flat: heights are not modelled.
+/// The roads of one file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RoadNetwork {
     /// Name in the header; often empty.
@@ -51,11 +59,13 @@ pub struct Road {
     pub successor: Option<RoadEnd>,
     /// Plan view.
     pub reference: ReferenceLine,
+    /// Height and tilt.
+    pub surface: SurfaceProfile,
     /// Shift of the centre lane from the reference line, left positive.
     pub lane_offset: Cubics,
     /// In order, without gaps.
     pub sections: Vec<LaneSection>,
-    /// Crossings, parking spaces, stop lines.
+    /// Crossings, parking spaces, stop lines, and what stands beside the road.
     pub objects: Vec<RoadObject>,
 }
 

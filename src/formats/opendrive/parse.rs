@@ -8,7 +8,7 @@ use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
     named, number, parse_document, shown,
 };
-use super::{Junction, Road, RoadEnd, RoadNetwork, parse_lanes, parse_objects};
+use super::{Junction, Road, RoadEnd, RoadNetwork, parse_elevation, parse_lanes, parse_objects};
 
 /// Reads the bytes of an `.xodr` file. Nothing of the file is dropped without being counted in
 /// [`RoadNetwork::skipped`]; a number that is not finite, a record without length, a road without
@@ -64,14 +64,7 @@ fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
             false
         }
     };
-    if let Some(profile) = child(node, "elevationProfile") {
-        count_others(profile, &["elevation"], skipped);
-        count_curved(profile, "elevation", skipped)?;
-    }
-    if let Some(profile) = child(node, "lateralProfile") {
-        count_others(profile, &["superelevation"], skipped);
-        count_curved(profile, "superelevation", skipped)?;
-    }
+    let surface = parse_elevation::surface(node, reference.end_s_m(), skipped)?;
     let lanes = parse_lanes::lanes(node, &reference, left_hand, skipped)?;
     let marks = parse_objects::objects(node, skipped)?;
     let known = [
@@ -101,22 +94,12 @@ fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
         left_hand,
         predecessor: end("predecessor"),
         successor: end("successor"),
+        surface,
         lane_offset: lanes.offset,
         sections: lanes.sections,
         objects: marks,
         reference,
     })
-}
-
-/// Heights are not modelled: counts the records that are not flat zero.
-fn count_curved(profile: Node<'_, '_>, kind: &'static str, skipped: &mut Skipped) -> Result<()> {
-    for record in named(profile, kind) {
-        number(record, "s")?;
-        if four(record, ["a", "b", "c", "d"])?.iter().any(|k| *k != 0.0) {
-            count(skipped, kind);
-        }
-    }
-    Ok(())
 }
 
 fn plan_view(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<ReferenceLine> {

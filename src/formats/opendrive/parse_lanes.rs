@@ -7,6 +7,7 @@ use roxmltree::Node;
 use super::geometry::ReferenceLine;
 use super::lanes::{Cubics, Extent, Lane, LaneKind, LaneSection, Mark, MarkStyle, Side, Travel};
 use super::parse::cubics;
+use super::parse_elevation;
 use super::xml::{
     Result, Skipped, ascending, bad, child, count, count_others, named, number, number_or, shown,
 };
@@ -148,12 +149,13 @@ fn lane(node: Node<'_, '_>, is_left: bool, left_hand: bool, skipped: &mut Skippe
     } else {
         Extent::Width(widths)
     };
-    count_others(node, &["width", "border", "roadMark", "link"], skipped);
+    count_others(node, &["width", "border", "height", "roadMark", "link"], skipped);
     Ok(Lane {
         id,
         kind,
         travel,
         extent,
+        heights: parse_elevation::lane_heights(node)?,
         marks: road_marks(node, skipped)?,
     })
 }

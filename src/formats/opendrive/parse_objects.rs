@@ -1,11 +1,14 @@
-//! From XML to what lies on the road: crossings, parking spaces, stop lines. Everything else is counted.
+//! From XML to what lies on the road: crossings, parking spaces, stop lines, and to what stands beside
+//! it. Everything else is counted.
 
 use roxmltree::Node;
 
 use super::objects::{Corners, ObjectKind, Repeat, RoadObject};
+use super::standing::Standing;
 use super::xml::{
     Result, Skipped, child, count, count_others, elements, named, number, number_or, number_or_none, shown,
 };
+use crate::scene::background::PostKind;
 
 /// Sign number of the stop line in the German catalogue, which OpenDRIVE files of any country use.
 const STOP_LINE_SIGN: &str = "294";
@@ -15,7 +18,10 @@ pub(super) fn objects(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<R
     if let Some(list) = child(road, "objects") {
         count_others(list, &["object"], skipped);
         for node in named(list, "object") {
-            out.extend(object(node, skipped)?);
+            match object(node, skipped) {
+                Err(_) if standing(node).is_some() => count(skipped, "object with an unreadable number"),
+                read => out.extend(read?),
+            }
         }
     }
     if let Some(list) = child(road, "signals") {
@@ -24,7 +30,10 @@ pub(super) fn objects(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<R
             if node.attribute("type") == Some(STOP_LINE_SIGN) {
                 out.push(stop_line(node)?);
             } else {
-                count(skipped, "signal");
+                match signal(node) {
+                    Ok(signal) => out.push(signal),
+                    Err(_) => count(skipped, "signal with an unreadable number"),
+                }
             }
         }
     }
@@ -40,14 +49,26 @@ fn plain(text: Option<&str>) -> String {
         .collect()
 }
 
+fn names(node: Node<'_, '_>) -> [String; 3] {
+    ["type", "subtype", "name"].map(|f| plain(node.attribute(f)))
+}
+
+/// What an object is that stands beside the road.
+fn standing(node: Node<'_, '_>) -> Option<Standing> {
+    let [kind, subtype, name] = names(node);
+    Standing::from_names(&kind, &subtype, &name)
+}
+
 fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject>> {
-    let [kind, subtype, name] = ["type", "subtype", "name"].map(|f| plain(node.attribute(f)));
+    let [kind, subtype, name] = names(node);
     let kind = if kind == "crosswalk" || (kind.is_empty() && name.contains("crosswalk")) {
         ObjectKind::Crossing
     } else if kind == "parkingspace" {
         ObjectKind::Parking
     } else if [&kind, &subtype, &name].iter().any(|t| t.contains("stopline")) {
         return stop_line(node).map(Some);
+    } else if let Some(standing) = standing(node) {
+        ObjectKind::Standing(standing)
     } else {
         let label = node
             .attribute("type")
@@ -72,12 +93,27 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
         .chain(named(node, "outline"))
         .collect();
     let mut corners = Vec::new();
+    // Sizes upward matter only for what stands.
+    let stands = matches!(kind, ObjectKind::Standing(_));
+    let upward = |node, field| {
+        if stands {
+            number_or_none(node, field)
+        } else {
+            Ok(None)
+        }
+    };
+    let mut height_m = upward(node, "height")?;
     for outline in outlines {
         if outline.attribute("outer").is_some_and(|v| v.trim() == "false") {
             count(skipped, "hole in an object's outline");
             continue;
         }
         corners.extend(outline_corners(outline, skipped)?);
+        for corner in elements(outline) {
+            // As high as its highest corner.
+            let corner_m = upward(corner, "height")?.filter(|m| *m > 0.0);
+            height_m = height_m.into_iter().chain(corner_m).reduce(f64::max);
+        }
     }
     let mut line_width_m = None;
     for marking in child(node, "markings")
@@ -88,7 +124,7 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
     }
     let mut repeats = Vec::new();
     for node in named(node, "repeat") {
-        repeats.push(repeat(node)?);
+        repeats.push(repeat(node, stands)?);
     }
     Ok(Some(RoadObject {
         kind,
@@ -96,6 +132,9 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
         t_m: number_or(node, "t", 0.0)?,
         heading_rad: number_or(node, "hdg", 0.0)?,
         size_m: [number_or(node, "length", 0.0)?, number_or(node, "width", 0.0)?],
+        height_m: height_m.unwrap_or(0.0),
+        radius_m: upward(node, "radius")?.unwrap_or(0.0),
+        lift_m: upward(node, "zOffset")?.unwrap_or(0.0),
         line_width_m,
         outlines: corners,
         repeats,
@@ -128,7 +167,7 @@ fn outline_corners(outline: Node<'_, '_>, skipped: &mut Skipped) -> Result<Optio
     })
 }
 
-fn repeat(node: Node<'_, '_>) -> Result<Repeat> {
+fn repeat(node: Node<'_, '_>, stands: bool) -> Result<Repeat> {
     let pair = |from, to| -> Result<Option<[f64; 2]>> {
         Ok(match (number_or_none(node, from)?, number_or_none(node, to)?) {
             (None, None) => None,
@@ -136,6 +175,7 @@ fn repeat(node: Node<'_, '_>) -> Result<Repeat> {
             (Some(a), Some(b)) => Some([a, b]),
         })
     };
+    let upward = |from, to| if stands { pair(from, to) } else { Ok(None) };
     Ok(Repeat {
         s_m: number(node, "s")?,
         run_m: number(node, "length")?.max(0.0),
@@ -143,6 +183,8 @@ fn repeat(node: Node<'_, '_>) -> Result<Repeat> {
         t_m: pair("tStart", "tEnd")?,
         length_m: pair("lengthStart", "lengthEnd")?,
         width_m: pair("widthStart", "widthEnd")?,
+        height_m: upward("heightStart", "heightEnd")?,
+        lift_m: upward("zOffsetStart", "zOffsetEnd")?,
     })
 }
 
@@ -159,6 +201,36 @@ fn stop_line(node: Node<'_, '_>) -> Result<RoadObject> {
         t_m: number_or(node, "t", 0.0)?,
         heading_rad: 0.0,
         size_m: [0.0; 2],
+        height_m: 0.0,
+        radius_m: 0.0,
+        lift_m: 0.0,
+        line_width_m: None,
+        outlines: Vec::new(),
+        repeats: Vec::new(),
+    })
+}
+
+/// A sign or a light: it faces the traffic that its orientation names.
+fn signal(node: Node<'_, '_>) -> Result<RoadObject> {
+    let changes = node.attribute("dynamic").is_some_and(|v| v.trim() == "yes");
+    let kind = if changes {
+        PostKind::TrafficLight
+    } else {
+        PostKind::Sign
+    };
+    let faces_rad = match node.attribute("orientation") {
+        Some("-") => 0.0,
+        _ => std::f64::consts::PI,
+    };
+    Ok(RoadObject {
+        kind: ObjectKind::Standing(Standing::Signal(kind)),
+        s_m: number_or(node, "s", 0.0)?,
+        t_m: number_or(node, "t", 0.0)?,
+        heading_rad: faces_rad + number_or(node, "hOffset", 0.0)?,
+        size_m: [0.0, number_or(node, "width", 0.0)?],
+        height_m: number_or(node, "height", 0.0)?,
+        radius_m: 0.0,
+        lift_m: number_or(node, "zOffset", 0.0)?,
         line_width_m: None,
         outlines: Vec::new(),
         repeats: Vec::new(),

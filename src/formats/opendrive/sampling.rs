@@ -20,7 +20,7 @@ pub(super) const BUDGET: usize = 1_000_000;
 pub(super) struct Row {
     pub s_m: f64,
     pub base: CurvePoint,
-    /// Lateral positions, from the leftmost edge to the rightmost.
+    /// Lateral positions in the plan, from the leftmost edge to the rightmost.
     pub t_m: Vec<f64>,
 }
 
@@ -36,6 +36,11 @@ impl Row {
         let mut t_m = Vec::with_capacity(section.lane_count() + 1);
         section.borders_m(lane_offset(road, s_m, held_m), s_m, held_m, &mut t_m);
         let record = road.reference.record_at(held_m);
+        if !road.surface.superelevation.0.is_empty() {
+            // Lane widths are measured on the tilted surface, rows in the plan.
+            let in_plan = road.surface.tilt_rad(s_m, held_m).cos();
+            t_m.iter_mut().for_each(|t| *t *= in_plan);
+        }
         Self {
             s_m,
             base: record.at(s_m - record.s_m),

@@ -103,7 +103,9 @@ impl Placer<'_> {
             label: BoxLabel::default(),
         };
         let inside = b.footprint().iter().all(|c| c.abs().max_element() < 39.5);
-        if !inside {
+        // Where the ground leaves the grid, what stands on it would not be seen.
+        let (low, high) = (b.center_m.z - size_m.z / 2.0, b.center_m.z + size_m.z / 2.0);
+        if !inside || low < GridSpec::MIN_M[2] || high > GridSpec::MAX_M[2] {
             return false;
         }
         let mut free = true;
@@ -354,5 +356,24 @@ mod tests {
             "{cars} cars in 30 frames, real: 3 to 37 a frame"
         );
         assert!(place(&template::any_layout(1), 1, &TrafficSpec::EMPTY).is_empty());
+    }
+
+    #[test]
+    fn traffic_stands_on_the_ground_and_inside_the_grid() {
+        let mut seen = 0;
+        for seed in 0..6 {
+            let mut layout = template::any_layout(seed);
+            layout.relief = crate::scene::Relief::from_fn(|p| 0.12 * p.x);
+            for b in place(&layout, seed, &TrafficSpec::NORMAL).values() {
+                let low = b.center_m.z - b.size_m.z / 2.0;
+                assert!((low - 0.12 * b.center_m.x).abs() < 1e-3, "{b:?}");
+                assert!(
+                    low >= GridSpec::MIN_M[2] && low + b.size_m.z <= GridSpec::MAX_M[2],
+                    "{b:?}"
+                );
+                seen += usize::from(b.center_m.x.abs() > 5.0);
+            }
+        }
+        assert!(seen > 10, "{seen} boxes on the slope");
     }
 }

@@ -1,0 +1,120 @@
+//! What the objects of a file that stand beside the road are, by the names that files give them.
+
+use crate::scene::background::{LineKind, PostKind, TreeKind};
+
+/// Something that stands beside the road.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// A building.
+    Building,
+    /// A tree.
+    Tree(TreeKind),
+    /// An area of shrubs; a hedge where it runs along a line.
+    Shrubs,
+    /// Something along a line.
+    Line(LineKind),
+    /// Something small.
+    Post(PostKind),
+    /// Any other thing of some size.
+    Obstacle,
+    /// A traffic sign or light of `<signals>`.
+    Signal(PostKind),
+}
+
+impl Standing {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Building => "building",
+            Self::Tree(_) => "tree",
+            Self::Shrubs => "vegetation",
+            Self::Line(kind) => kind.name(),
+            Self::Post(kind) | Self::Signal(kind) => kind.name(),
+            Self::Obstacle => "obstacle",
+        }
+    }
+
+    /// From `type`, `subtype` and `name`, each in lower-case letters only; `None` for what is not known or does not
+    /// stand beside roads. The name counts only where there is no type.
+    pub fn from_names(kind: &str, subtype: &str, name: &str) -> Option<Self> {
+        let kind = match kind {
+            "" | "none" => name,
+            kind => kind,
+        };
+        let says = |word: &str| kind.contains(word) || subtype.contains(word);
+        let is = |words: &[&str]| words.iter().any(|w| says(w));
+        Some(match kind {
+            "parkingspace" | "trafficisland" | "crosswalk" | "patch" | "roadmark" | "gantry" => return None,
+            _ if says("busstop") => Self::Post(PostKind::BusStop),
+            "building" | "house" => Self::Building,
+            _ if says("hedge") => Self::Line(LineKind::Hedge),
+            "tree" => Self::Tree(match subtype {
+                "needle" | "conifer" | "fir" | "pine" => TreeKind::Conifer,
+                "poplar" | "cypress" => TreeKind::Columnar,
+                _ => TreeKind::Broadleaf,
+            }),
+            "vegetation" | "bush" | "shrub" | "forest" => Self::Shrubs,
+            // Poles of a railing are poles.
+            _ if kind.ends_with("pole") || kind.ends_with("post") => Self::Post(match subtype {
+                "trafficsign" => PostKind::Sign,
+                "trafficlight" => PostKind::TrafficLight,
+                "streetlamp" => PostKind::StreetLight,
+                "bollard" | "permanentdelineator" => PostKind::Bollard,
+                _ if is(&["guidepost", "railpole", "railingpole", "railingpost"]) => PostKind::Bollard,
+                _ => PostKind::Pole,
+            }),
+            _ if is(&["streetlamp", "streetlight", "lamppost"]) => Self::Post(PostKind::StreetLight),
+            _ if is(&["bollard", "delineator"]) => Self::Post(PostKind::Bollard),
+            _ if is(&["bench"]) => Self::Post(PostKind::Bench),
+            _ if is(&["retainingwall"]) => Self::Line(LineKind::RetainingWall),
+            _ if is(&["wall", "jersey", "noise", "soundbarrier"]) => Self::Line(LineKind::Wall),
+            _ if is(&["guardrail"]) => Self::Line(LineKind::GuardRail),
+            _ if is(&["fence", "railing"]) => Self::Line(LineKind::Fence),
+            "barrier" => Self::Line(LineKind::GuardRail),
+            "obstacle" => Self::Obstacle,
+            _ if kind == name && name.contains("tree") => Self::Tree(TreeKind::Broadleaf),
+            _ if kind == name && name.contains("building") => Self::Building,
+            _ => return None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_the_standard_and_of_real_files() {
+        let of = |kind, subtype, name| Standing::from_names(kind, subtype, name);
+        assert_eq!(of("building", "", "x"), Some(Standing::Building));
+        assert_eq!(
+            of("building", "busstop", ""),
+            Some(Standing::Post(PostKind::BusStop))
+        );
+        assert_eq!(of("tree", "needle", ""), Some(Standing::Tree(TreeKind::Conifer)));
+        assert_eq!(of("vegetation", "bush", ""), Some(Standing::Shrubs));
+        assert_eq!(
+            of("vegetation", "hedge", ""),
+            Some(Standing::Line(LineKind::Hedge))
+        );
+        assert_eq!(of("barrier", "", ""), Some(Standing::Line(LineKind::GuardRail)));
+        assert_eq!(of("barrier", "wall", ""), Some(Standing::Line(LineKind::Wall)));
+        assert_eq!(of("soundbarrier", "", ""), Some(Standing::Line(LineKind::Wall)));
+        assert_eq!(of("railing", "", ""), Some(Standing::Line(LineKind::Fence)));
+        assert_eq!(of("railpole", "", ""), Some(Standing::Post(PostKind::Bollard)));
+        assert_eq!(of("guidepost", "", ""), Some(Standing::Post(PostKind::Bollard)));
+        assert_eq!(
+            of("pole", "streetlamp", ""),
+            Some(Standing::Post(PostKind::StreetLight))
+        );
+        assert_eq!(
+            of("streetlamp", "", ""),
+            Some(Standing::Post(PostKind::StreetLight))
+        );
+        assert_eq!(of("pole", "", ""), Some(Standing::Post(PostKind::Pole)));
+        assert_eq!(of("", "", "oaktree"), Some(Standing::Tree(TreeKind::Broadleaf)));
+        for kind in ["parkingspace", "trafficisland", "crosswalk", "patch", "car", ""] {
+            assert_eq!(of(kind, "", ""), None, "{kind}");
+        }
+    }
+}
