@@ -389,7 +389,7 @@ fn occ3d_frames_are_scenes_and_training_data() {
     assert_eq!(report["files"], 2);
     assert!(report["labels"]["mean"]["iou"].as_f64() > Some(0.5), "{report}");
 
-    // What edits invent, on the same folder; bad folders and presets are one line.
+    // What edits invent, on the same folder.
     let args = [
         "eval",
         "editing",
@@ -406,20 +406,6 @@ fn occ3d_frames_are_scenes_and_training_data() {
     let kinds = &report["invented"]["frames"]["by_preset"]["draft"]["kinds"];
     assert_eq!(kinds["remove"]["shown"]["invented"]["n"], 1, "{report}");
     assert_eq!(report["files"], 1);
-    refused(
-        &[&args[..], &["--presets", "best"]].concat(),
-        &["--presets best", "draft", "accurate"],
-    );
-    refused(&["eval", "editing", "--vehicles", "0"], &["--vehicles is 0"]);
-    refused(&["eval", "editing", "--data", &dir.path("none")], &["none"]);
-    refused(&["eval", "editing", "--data", &shards], &["no .npz files"]);
-    let bad = dir.path("bad");
-    std::fs::create_dir_all(&bad).expect("a folder");
-    std::fs::write(Path::new(&bad).join("labels.npz"), "PK broken").expect("writable");
-    refused(
-        &["eval", "editing", "--data", &bad],
-        &["labels.npz", "not an npz archive"],
-    );
 
     refused(
         &["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards],
@@ -448,4 +434,22 @@ fn occ3d_frames_are_scenes_and_training_data() {
         &["labels.npz", "not an npz archive"],
     );
     assert!(!Path::new(&dir.path("x.loom")).exists());
+}
+
+#[test]
+fn folders_and_presets_that_no_edit_can_be_judged_on_are_named() {
+    let dir = Folder::new();
+    let empty = dir.path("empty");
+    let bad = dir.path("bad");
+    for folder in [&empty, &bad] {
+        std::fs::create_dir_all(folder).expect("a folder");
+    }
+    std::fs::write(Path::new(&bad).join("labels.npz"), "PK broken").expect("writable");
+    let of = |more: &[&str], needles: &[&str]| refused(&[&["eval", "editing"], more].concat(), needles);
+    of(&["--presets", "best"], &["--presets best", "draft", "accurate"]);
+    of(&["--vehicles", "0"], &["--vehicles is 0"]);
+    of(&["--frames", "0"], &["--frames is 0"]);
+    of(&["--data", &dir.path("none")], &["none"]);
+    of(&["--data", &empty], &["no .npz files"]);
+    of(&["--data", &bad], &["labels.npz", "not an npz archive"]);
 }
