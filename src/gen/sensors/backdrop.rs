@@ -140,7 +140,9 @@ impl Backdrop {
             return None;
         }
         let out_m = leaves_grid(origin, dir);
-        if !(out_m < max_range_m) || (dir.z >= 0.0 && origin.z + dir.z * out_m > self.top_m) {
+        // NaN is not within.
+        let within = out_m < max_range_m;
+        if !within || (dir.z >= 0.0 && origin.z + dir.z * out_m > self.top_m) {
             return None;
         }
         let mut best = self.ground(origin, dir, out_m, max_range_m);

@@ -11,7 +11,7 @@ use crate::scene::{BevLayer, Class, GridSpec};
 /// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.
 pub const DIFFUSE_MOST: f64 = 100.0;
 /// Where ordinary echoes begin to sink under the threshold, m.
-const REACH_M: f64 = 63.0;
+const REACH_M: f64 = 66.0;
 /// Share of worlds whose roads are wet.
 const WET: f64 = 0.2;
 
@@ -170,7 +170,7 @@ impl<'a> Materials<'a> {
             Class::Sidewalk => of(14.5 * (0.6 * patch).exp(), 0.42, 0.002),
             Class::OtherFlat => of(13.0 * (0.6 * patch).exp(), 0.38, 0.003),
             Class::Terrain => of(18.0 * (0.55 * patch).exp(), 0.45, 0.008),
-            Class::Vegetation => of(15.0 + 16.0 * (met.range_m / 30.0).min(1.0), 0.45, 0.05),
+            Class::Vegetation => of(15.0 + 16.0 * (met.range_m / 30.0).min(1.0), 0.36, 0.05),
             Class::Manmade if is_sign(met.solid) => retro(112.0),
             // Reflectors on posts and lamps' plates.
             Class::Manmade if is_post(met.solid) && detail < 0.03 => retro(100.0),
@@ -191,7 +191,7 @@ impl<'a> Materials<'a> {
                     let plate = noise(seed ^ 0x91a7e, along / 0.6, p.z / 0.6) > 0.82;
                     match plate && pane {
                         true => of(48.0, 0.4, 0.005),
-                        false => of(16.5 * (0.76 * tone).exp(), 0.45, 0.01),
+                        false => of(15.5 * (0.74 * tone).exp(), 0.42, 0.01),
                     }
                 }
             }
