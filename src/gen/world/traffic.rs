@@ -238,7 +238,8 @@ impl Placer<'_> {
         if !self.draw.chance(0.45 * amount) {
             return;
         }
-        let cells: Vec<usize> = self.cells_with(BevLayer::DrivableArea.bit());
+        let road = BevLayer::DrivableArea.bit();
+        let cells: Vec<usize> = self.cells_with(road);
         if cells.is_empty() {
             return;
         }
@@ -264,13 +265,13 @@ impl Placer<'_> {
                 start + d * (i as f64 * step) + d.perp() * jitter,
                 yaw + turn,
                 0.0,
-                |_| true,
+                |cell| cell & road != 0,
             );
         }
         if self.draw.chance(0.35) {
             let side = if self.draw.chance(0.5) { 3.5 } else { -3.5 };
             let at = start + d * self.draw.range(4.0, 12.0) + d.perp() * side;
-            self.try_add(Class::ConstructionVehicle, at, yaw, 0.0, |_| true);
+            self.try_add(Class::ConstructionVehicle, at, yaw, 0.0, |cell| cell & road != 0);
         }
     }
 
