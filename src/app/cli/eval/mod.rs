@@ -10,6 +10,7 @@ mod lidar;
 mod splat;
 mod vae;
 mod world;
+mod world_complete;
 mod world_lidar;
 
 use std::path::PathBuf;
