@@ -24,6 +24,9 @@ const AGREE_M: f64 = 0.1;
 /// Two visits of one road to a cell are one if they differ by less than this, m.
 const SAME_M: f64 = 2.0;
 
+/// Roads above one another in one column, at most: only a file made to be slow has more.
+const MOST_LAYERS: usize = 64;
+
 /// How a stretch of road that is not on the ground lies to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Off {
@@ -155,6 +158,7 @@ fn add(column: &mut Vec<Cover>, road: usize, [from_s_m, to_s_m]: [f64; 2], heigh
         let apart_m = (from_s_m - c.to_s_m).max(c.from_s_m - to_s_m);
         c.road == road && apart_m < SAME_M && (c.height_m() - height_m).abs() < SAME_M
     };
+    let layers = column.len();
     match column.iter_mut().find(same) {
         Some(cover) => {
             cover.from_s_m = cover.from_s_m.min(from_s_m);
@@ -162,6 +166,7 @@ fn add(column: &mut Vec<Cover>, road: usize, [from_s_m, to_s_m]: [f64; 2], heigh
             cover.sum_m += height_m;
             cover.count += 1.0;
         }
+        None if layers >= MOST_LAYERS => {}
         None => column.push(Cover {
             road,
             from_s_m,
