@@ -29,8 +29,10 @@ impl Relief {
                 GridSpec::COLUMNS
             ));
         }
-        // Written so that NaN fails too.
-        if let Some(i) = heights_m.iter().position(|h| !(h.abs() <= Self::LIMIT_M)) {
+        if let Some(i) = heights_m
+            .iter()
+            .position(|h| h.is_nan() || h.abs() > Self::LIMIT_M)
+        {
             return Err(format!(
                 "relief: height {} in column ({}, {}), expected a number within {} m",
                 heights_m[i],

@@ -7,7 +7,7 @@ use super::{BIN_M, BINS, Hit, scenery};
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Relief};
 
 /// Height of a kerb above the road, m.
-const KERB_M: f64 = 0.225;
+const KERB_M: f64 = 0.24;
 /// Nothing on the ground rises above the relief by more than this, m.
 const MOST_ABOVE_RELIEF_M: f64 = 0.35;
 /// A ray over uneven ground is tested at steps of this length on the ground, m.

@@ -235,7 +235,7 @@ impl Placer<'_> {
     }
 
     fn works(&mut self, amount: f64) {
-        if !self.draw.chance(0.45 * amount) {
+        if !self.draw.chance(0.6 * amount) {
             return;
         }
         let road = BevLayer::DrivableArea.bit();
@@ -247,13 +247,13 @@ impl Placer<'_> {
         let start = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
         let yaw = self.heading_near(start).unwrap_or(0.0);
         let d = DVec2::from_angle(yaw);
-        let class = if self.draw.chance(0.5) {
+        let class = if self.draw.chance(0.6) {
             Class::Barrier
         } else {
             Class::TrafficCone
         };
         let step = if class == Class::Barrier { 2.9 } else { 2.2 };
-        for i in 0..6 + self.draw.below(16) {
+        for i in 0..8 + self.draw.below(18) {
             let turn = if class == Class::Barrier {
                 std::f64::consts::FRAC_PI_2
             } else {

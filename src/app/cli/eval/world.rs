@@ -89,7 +89,11 @@ impl Eval {
         });
         let bars = vec![
             ("figures inside their accepted range", share, 1.0),
-            ("at most 1 % of the worlds with an error", f64::from(u8::from(sound)), 1.0),
+            (
+                "at most 1 % of the worlds with an error",
+                f64::from(u8::from(sound)),
+                1.0,
+            ),
         ];
         Ok((report, bars))
     }
