@@ -199,7 +199,11 @@ mod tests {
         let (world, pattern) = (World::random(7), &SensorRig::default().lidars[0]);
         let rays = sweep(&world, pattern, 3);
         assert_eq!(rays.len(), 32 * 1084);
-        assert_eq!(rays, sweep(&world, pattern, 3));
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let again = pool.expect("a pool").install(|| sweep(&world, pattern, 3));
+            assert_eq!(rays, again, "{threads} threads");
+        }
         let (pose, backdrop) = (pattern.ego_from_sensor(), Backdrop::of_world(&world));
         let mut surfaces = 0;
         for (i, ray) in rays.iter().enumerate().step_by(7) {
