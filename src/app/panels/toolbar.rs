@@ -11,6 +11,8 @@ use crate::app::dock::Workspace;
 use crate::app::icons::{self, Icon};
 use crate::app::state::{Pane, Tool, UiState};
 use crate::app::theme;
+use crate::app::tools::ToolCommand;
+use crate::app::tools::things::{ThingCommand, ThingTool};
 use crate::viewport::ViewPreset;
 
 /// What the bar shows of the document and the worker.
@@ -66,6 +68,11 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
                 Tool::Voxel => Icon::Voxel,
                 Tool::Measure => Icon::Measure,
                 Tool::Region => Icon::Region,
+                Tool::Thing(ThingTool::Building) => Icon::Building,
+                Tool::Thing(ThingTool::Tree) => Icon::Tree,
+                Tool::Thing(ThingTool::Line) => Icon::Fence,
+                Tool::Thing(ThingTool::Shrubs) => Icon::Shrubs,
+                Tool::Thing(ThingTool::Post) => Icon::Lamp,
             };
             if icons::button(ui, icon, name, key, state.tool == tool, true).clicked() {
                 commands.push(Command::Tool(tool));
@@ -165,12 +172,43 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             Command::Redo,
         );
         ui.separator();
-        let some = state.selected.is_some();
+        let some = state.any_chosen();
+        let what = match (state.selected.is_some(), state.tools.things.chosen.len()) {
+            (true, 0) | (false, 0) => "box",
+            (false, 1) => "thing",
+            (false, _) => "things",
+            (true, _) => "selection",
+        };
         on(
-            item(ui, "Duplicate box", "Ctrl+D", some),
+            item(ui, &format!("Duplicate {what}"), "Ctrl+D", some),
             Command::DuplicateSelected,
         );
-        on(item(ui, "Delete box", "Del", some), Command::DeleteSelected);
+        on(
+            item(ui, &format!("Delete {what}"), "Del", some),
+            Command::DeleteSelected,
+        );
+        let thing = |command| Command::Tools(ToolCommand::Thing(command));
+        let things = !state.tools.things.chosen.is_empty();
+        on(
+            item(ui, "Raise things", "]", things),
+            thing(ThingCommand::Raise(1)),
+        );
+        on(
+            item(ui, "Lower things", "[", things),
+            thing(ThingCommand::Raise(-1)),
+        );
+        on(
+            item(ui, "Things to the kerb", "D", things),
+            Command::Tools(ToolCommand::ToLane),
+        );
+        ui.menu_button("Add beside the road", |ui| {
+            for (tool, name, key) in Tool::ALL {
+                if matches!(tool, Tool::Thing(_)) {
+                    let key = key.split(';').next().unwrap_or_default();
+                    on(item(ui, name, key, true), Command::Tool(tool));
+                }
+            }
+        });
         ui.separator();
         on(
             item(ui, "Unlock painted voxels", "", input.has_paint),
@@ -180,7 +218,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
     ui.menu_button("View", |ui| {
         on(item(ui, "Frame all", "Home", true), Command::FrameAll);
         on(
-            item(ui, "Frame selection", "F", state.selected.is_some()),
+            item(ui, "Frame selection", "F", state.any_chosen()),
             Command::FrameSelection,
         );
         ui.separator();
