@@ -54,6 +54,9 @@ fn area_m2(form: &Form) -> f64 {
 
 /// The thing whose footprint holds a point, the smallest of several; else the nearest within `reach_m`.
 pub fn thing_at(background: &Background, p_m: DVec2, reach_m: f64) -> Option<ThingId> {
+    if !p_m.is_finite() {
+        return None;
+    }
     let near = background.iter().filter_map(|t| {
         let (min, max) = t.form.bounds_m();
         let around = DVec2::splat(reach_m + POST_M);

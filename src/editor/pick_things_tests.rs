@@ -57,7 +57,7 @@ fn the_smallest_footprint_under_the_pointer_is_taken() {
 
 #[test]
 fn voxels_lead_to_their_thing_in_a_frame_that_has_driven_on() {
-    let (all, [house, tree, ..]) = background();
+    let (all, [house, tree, _, post]) = background();
     let mut frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
     // The world is 10 m behind and turned by 90 degrees: (x, y) of the ego frame is (10 - y, x) of the world.
     frame.world_from_ego = Pose::planar(10.0, 0.0, std::f64::consts::FRAC_PI_2);
@@ -81,7 +81,12 @@ fn voxels_lead_to_their_thing_in_a_frame_that_has_driven_on() {
         Some(house),
         "the wall below"
     );
-    assert_eq!(voxel(5.0, 5.2, 5, Class::Manmade), None, "world (4.8, 5)");
+    assert_eq!(
+        voxel(5.0, 5.2, 5, Class::Manmade),
+        Some(post),
+        "world (4.8, 5): not the hedge, which is no masonry"
+    );
+    assert_eq!(voxel(5.0, 8.2, 5, Class::Manmade), None);
     assert_eq!(voxel(12.0, -14.0, 9, Class::Car), None);
 }
 

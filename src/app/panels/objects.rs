@@ -40,7 +40,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
                 }
                 None => {}
             }
-            things::inspector(ui, &things, commands);
+            things::inspector(ui, &things, &document.settled_scene().background, commands);
         });
     let rows = thing_list::rows(&scene.background, state);
     let boxes = match frame.boxes.len() {

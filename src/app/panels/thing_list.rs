@@ -115,9 +115,17 @@ fn fold(ui: &mut Ui, unfolded: bool, name: &str) -> egui::Response {
         true => theme::text_strong(),
         false => theme::text_weak(),
     };
-    let along = if unfolded { egui::Vec2::DOWN } else { egui::Vec2::RIGHT } * 4.0;
+    let along = if unfolded {
+        egui::Vec2::DOWN
+    } else {
+        egui::Vec2::RIGHT
+    } * 4.0;
     let (middle, side) = (rect.center(), along.rot90());
-    let points = vec![middle + along, middle - along * 0.6 + side, middle - along * 0.6 - side];
+    let points = vec![
+        middle + along,
+        middle - along * 0.6 + side,
+        middle - along * 0.6 - side,
+    ];
     ui.painter()
         .add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
     icons::focus_ring(ui, &response, rect);

@@ -11,15 +11,22 @@ use crate::app::tools::things::panel::{FACADES, ROOFS, TREES, list};
 use crate::app::tools::things::{ThingCommand, words};
 use crate::editor::Edit;
 use crate::scene::background::{LineKind, PostKind, STOREY_M};
-use crate::scene::{Form, Thing};
+use crate::scene::{Background, Form, Thing};
 
 fn send(command: ThingCommand, commands: &mut Vec<Command>) {
     commands.push(Command::Tools(ToolCommand::Thing(command)));
 }
 
+/// The chosen things: as they are shown, a drag in progress included, and as they were before it.
+#[derive(Clone, Copy)]
+struct Chosen<'a> {
+    shown: &'a [&'a Thing],
+    settled: &'a [&'a Thing],
+}
+
 /// Edits that change every thing alike; things that stay as they are make none.
-fn changes(things: &[&Thing], change: impl Fn(&mut Form)) -> Vec<Edit> {
-    let changed = things.iter().filter_map(|t| {
+fn changes(settled: &[&Thing], change: impl Fn(&mut Form)) -> Vec<Edit> {
+    let changed = settled.iter().filter_map(|t| {
         let mut form = t.form.clone();
         change(&mut form);
         (form != t.form).then_some(Edit::ChangeThing { id: t.id, form })
@@ -30,8 +37,11 @@ fn changes(things: &[&Thing], change: impl Fn(&mut Form)) -> Vec<Edit> {
 /// Dragging previews, letting go commits, typing applies.
 fn field(response: &Response, label: String, edits: Vec<Edit>, commands: &mut Vec<Command>) {
     if response.dragged() {
-        if response.changed() && !edits.is_empty() {
-            commands.push(Command::Preview(edits));
+        if response.changed() {
+            commands.push(match edits.is_empty() {
+                true => Command::CancelDrag,
+                false => Command::Preview(edits),
+            });
         }
     } else if response.drag_stopped() {
         send(ThingCommand::Commit(label), commands);
@@ -41,23 +51,29 @@ fn field(response: &Response, label: String, edits: Vec<Edit>, commands: &mut Ve
 }
 
 /// Draws the inspector of the chosen things; at least one.
-pub fn inspector(ui: &mut Ui, things: &[&Thing], commands: &mut Vec<Command>) {
-    let Some(first) = things.first() else { return };
+pub fn inspector(ui: &mut Ui, things: &[&Thing], settled: &Background, commands: &mut Vec<Command>) {
+    let before: Vec<&Thing> = things.iter().filter_map(|t| settled.get(t.id)).collect();
+    let (Some(first), Some(first_before)) = (things.first(), before.first()) else {
+        return;
+    };
+    let chosen = Chosen {
+        shown: things,
+        settled: &before,
+    };
     let forms: Vec<&Form> = things.iter().map(|t| &t.form).collect();
     let what = words::count(&forms);
     header(ui, things, &what, commands);
     kinds(ui, things, &what, commands);
-    let before = first.form.height_m();
-    let mut height = before;
+    let mut height = first.form.height_m();
     let response = number(ui, "Height", "Height", &mut height, 0.1..=300.0, " m", 1);
-    // While it is dragged the scene shows the new height already.
-    let verb = if height < before { "Lower" } else { "Raise" };
-    let edits = changes(things, |form| set_height(form, height));
+    let lower = height < first_before.form.height_m();
+    let verb = if lower { "Lower" } else { "Raise" };
+    let edits = changes(&before, |form| set_height(form, height));
     field(&response, format!("{verb} {what}"), edits, commands);
     if forms.iter().all(|f| matches!(f, Form::Building(_))) {
         building(ui, things, &what, commands);
     }
-    numbers(ui, things, &what, commands);
+    numbers(ui, chosen, &what, commands);
 }
 
 fn header(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
@@ -132,7 +148,10 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
                     b.roof = roof;
                 }
             });
-            send(ThingCommand::Apply(format!("Change roof of {what}"), edits), commands);
+            send(
+                ThingCommand::Apply(format!("Change roof of {what}"), edits),
+                commands,
+            );
         }
     });
     if first.outline_m.len() != 4 && first.roof != Default::default() {
@@ -158,7 +177,12 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
 
 /// Lists of kinds, of things that are all trees, all lines or all posts.
 fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
-    let mut apply = |edits| send(ThingCommand::Apply(format!("Change kind of {what}"), edits), commands);
+    let mut apply = |edits| {
+        send(
+            ThingCommand::Apply(format!("Change kind of {what}"), edits),
+            commands,
+        )
+    };
     let lines = LineKind::ALL.map(|kind| (kind, theme::sentence(kind.name())));
     let posts = PostKind::ALL.map(|kind| (kind, theme::sentence(kind.name())));
     let all = |of: fn(&Form) -> bool| things.iter().all(|t| of(&t.form));
@@ -289,7 +313,8 @@ const NUMBERS: [NumberField; 5] = [
 ];
 
 /// Numbers that all of the things have.
-fn numbers(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
+fn numbers(ui: &mut Ui, chosen: Chosen<'_>, what: &str, commands: &mut Vec<Command>) {
+    let things = chosen.shown;
     for of in &NUMBERS {
         let Some(mut value) = (of.get)(&things[0].form) else {
             continue;
@@ -308,8 +333,13 @@ fn numbers(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comman
             decimals,
         );
         let response = response.on_hover_text(theme::sentence(of.name));
-        let edits = changes(things, |form| (of.set)(form, value));
-        field(&response, format!("Change {} of {what}", of.title.to_lowercase()), edits, commands);
+        let edits = changes(chosen.settled, |form| (of.set)(form, value));
+        field(
+            &response,
+            format!("Change {} of {what}", of.title.to_lowercase()),
+            edits,
+            commands,
+        );
     }
 }
 
@@ -354,7 +384,9 @@ mod tests {
         );
         let edits = changes(&[&tree, &hedge], |form| set_height(form, 5.0));
         assert_eq!(edits.len(), 1);
-        assert!(matches!(&edits[0], Edit::ChangeThing { id, form } if *id == hedge.id && form.height_m() == 5.0));
+        assert!(
+            matches!(&edits[0], Edit::ChangeThing { id, form } if *id == hedge.id && form.height_m() == 5.0)
+        );
         // Every field sets what it gets.
         for of in &NUMBERS {
             for t in [&tree, &hedge] {

@@ -247,13 +247,21 @@ mod tests {
         assert_eq!(forms[0].points_m().len(), 4);
         assert_eq!(forms[0].problem(), None);
         // The closing wall may cross: that is said, and the corners stay.
-        for [x, y] in [[0.0, 0.0], [10.0, 0.0], [4.0, 4.0], [4.0, -4.0]] {
-            hand.click(x, y);
+        for [x, y] in [
+            [0.0, 0.0],
+            [10.0, 0.0],
+            [10.0, 10.0],
+            [3.0, 10.0],
+            [3.0, 0.5],
+            [6.0, 5.0],
+        ] {
+            assert_eq!(hand.click(x, y), Outcome::Nothing);
         }
-        let points = hand.draft.points_m().len();
-        assert!(matches!(hand.draft.finish(&hand.options), Outcome::Refused(_)));
-        assert_eq!(hand.draft.points_m().len(), points);
+        assert!(
+            matches!(hand.draft.finish(&hand.options), Outcome::Refused(text) if text.contains("crosses itself"))
+        );
+        assert_eq!(hand.draft.points_m().len(), 6);
         hand.draft.drop_point();
-        assert!(points < 4 || matches!(hand.draft.finish(&hand.options), Outcome::Add(_)));
+        assert!(matches!(hand.draft.finish(&hand.options), Outcome::Add(_)));
     }
 }
