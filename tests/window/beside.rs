@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use sceneloom::app::Command;
 use sceneloom::app::state::Tool;
 use sceneloom::app::tools::ToolCommand;
 use sceneloom::app::tools::things::{ThingCommand, ThingTool};
 use sceneloom::editor::Edit;
-use sceneloom::scene::background::{Line, LineKind, Tree, TreeKind};
+use sceneloom::scene::background::{Building, Line, LineKind, Tree, TreeKind};
 use sceneloom::scene::{Background, Class, Form, GridSpec, ThingId};
 
 use super::bench::Bench;
@@ -196,10 +196,10 @@ fn locked_and_hidden_things_stay_as_they_are() {
     bench.tree_row();
     bench.click("All trees");
     bench.click("Lock background things");
-    assert_eq!(bench.things_chosen(), [], "what is locked is not chosen");
+    assert!(bench.things_chosen().is_empty(), "what is locked is not chosen");
     let before = bench.background();
     bench.click_ground(-20.0, 22.0, Modifiers::NONE);
-    assert_eq!(bench.things_chosen(), []);
+    assert!(bench.things_chosen().is_empty());
     bench.key(Modifiers::SHIFT, Key::T);
     bench.click_ground(10.0, 22.0, Modifiers::NONE);
     let ctx = bench.harness.ctx.clone();
@@ -214,7 +214,7 @@ fn locked_and_hidden_things_stay_as_they_are() {
     bench.key(Modifiers::NONE, Key::V);
     bench.click("Show background things");
     bench.click_ground(-20.0, 22.0, Modifiers::NONE);
-    assert_eq!(bench.things_chosen(), []);
+    assert!(bench.things_chosen().is_empty());
 }
 
 #[test]
@@ -278,4 +278,57 @@ fn strokes_posts_corners_and_fields() {
     let raise = ToolCommand::Thing(ThingCommand::Raise(1));
     bench.app().execute(Command::Tools(raise), &ctx);
     assert_eq!(bench.history().len(), 8, "the wall is chosen still");
+}
+
+#[test]
+fn things_are_chosen_raised_and_drawn_in_the_3d_view() {
+    let mut bench = Bench::with(true);
+    bench.tree_row();
+    let house = Building::rectangle(DVec2::new(10.0, 22.0), DVec2::new(6.0, 4.0), DVec2::X, 6.0);
+    let ctx = bench.harness.ctx.clone();
+    let add = Edit::AddThings {
+        forms: vec![Form::Building(house)],
+    };
+    bench.app().execute(Command::Apply("Add", vec![add]), &ctx);
+    bench.steps(6);
+    let pane = bench.pane("3D view");
+    let camera = bench.app().view3d.camera;
+    let on_screen = |p_m: DVec3| {
+        let size = [pane.width().round() as u32, pane.height().round() as u32];
+        let pixel = camera.project(p_m, size).expect("in front");
+        pane.min + egui::vec2(pixel.x as f32, pixel.y as f32)
+    };
+    let roof = on_screen(DVec3::new(7.0, 20.0, 6.0));
+    assert!(pane.contains(roof), "{roof} in {pane}");
+    bench.drag(&[roof], Modifiers::NONE);
+    assert_eq!(bench.things_chosen(), [4]);
+    // The knob over its middle raises it.
+    let knob = on_screen(DVec3::new(10.0, 22.0, 6.6));
+    let higher = on_screen(DVec3::new(10.0, 22.0, 9.6));
+    bench.drag(&[knob, higher], Modifiers::NONE);
+    let height = |b: &Bench| b.background().get(ThingId(4)).expect("the house").form.height_m();
+    assert!((height(&bench) - 9.0).abs() < 0.4, "{}", height(&bench));
+    assert_eq!(bench.history().last().map(String::as_str), Some("Raise building"));
+    // A drag of it moves it on the ground.
+    let way = [
+        on_screen(DVec3::new(7.0, 20.0, 9.0)),
+        on_screen(DVec3::new(4.0, 20.0, 9.0)),
+    ];
+    bench.drag(&way, Modifiers::NONE);
+    let middle = bench
+        .background()
+        .get(ThingId(4))
+        .expect("the house")
+        .form
+        .middle_m();
+    assert!(middle.distance(DVec2::new(7.0, 22.0)) < 0.6, "{middle}");
+    bench.key(Modifiers::SHIFT, Key::T);
+    bench.drag(&[on_screen(DVec3::new(20.0, -20.0, 0.0))], Modifiers::NONE);
+    let tree = bench
+        .background()
+        .get(ThingId(5))
+        .expect("a tree")
+        .form
+        .middle_m();
+    assert!(tree.distance(DVec2::new(20.0, -20.0)) < 1.5, "{tree}");
 }

@@ -270,7 +270,7 @@ impl UiState {
         }
     }
 
-    /// Chooses boxes; the last of them becomes the first of the selection.
+    /// Chooses boxes; the last of them becomes the first of the selection. Alone they are without things, too.
     pub fn choose(&mut self, ids: &[BoxId], how: Choose) {
         let mut now: BTreeSet<BoxId> = match how {
             Choose::Only => {
