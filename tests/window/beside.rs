@@ -309,11 +309,8 @@ fn things_are_chosen_raised_and_drawn_in_the_3d_view() {
     let height = |b: &Bench| b.background().get(ThingId(4)).expect("the house").form.height_m();
     assert!((height(&bench) - 9.0).abs() < 0.4, "{}", height(&bench));
     assert_eq!(bench.history().last().map(String::as_str), Some("Raise building"));
-    // A drag of it moves it on the ground.
-    let way = [
-        on_screen(DVec3::new(7.0, 20.0, 9.0)),
-        on_screen(DVec3::new(4.0, 20.0, 9.0)),
-    ];
+    // A drag of it moves it on the ground; its voxels end with the grid, at 5.4 m.
+    let way = [7.0, 4.0].map(|x| on_screen(DVec3::new(x, 20.0, 5.4)));
     bench.drag(&way, Modifiers::NONE);
     let middle = bench
         .background()

@@ -113,7 +113,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
 }
 
 /// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
-const ROOM_FOR_ALL: f32 = 1390.0;
+const ROOM_FOR_ALL: f32 = 1360.0;
 
 fn icon_of(tool: Tool) -> Icon {
     match tool {
