@@ -7,6 +7,7 @@ use crate::viewport::ViewPreset;
 use super::command::Command;
 use super::dock::Workspace;
 use super::state::{Tool, UiState, VoxelVerb};
+use super::tools::things::{ThingCommand, ThingTool};
 use super::tools::{PaintShape, ToolCommand, VoxelMode};
 use crate::editor::transform::Kind;
 
@@ -17,8 +18,10 @@ pub enum When {
     Always,
     /// With the pointer over the 3D view.
     Over3d,
-    /// While a box is chosen and the tool in hand is one for boxes.
+    /// While a box or a thing is chosen and the tool in hand is one for them.
     Chosen,
+    /// While a thing beside the road is chosen and no brush is in hand.
+    Things,
 }
 
 impl When {
@@ -102,6 +105,11 @@ impl ActionDef {
         self
     }
 
+    const fn things(mut self) -> Self {
+        self.when = When::Things;
+        self
+    }
+
     const fn repeats(mut self) -> Self {
         self.repeats = true;
         self
@@ -143,6 +151,10 @@ macro_rules! bookmarks {
 }
 
 bookmarks!(1, 2, 3, 4, 5, 6, 7, 8, 9);
+
+const fn raise(steps: i32) -> Command {
+    Command::Tools(ToolCommand::Thing(ThingCommand::Raise(steps)))
+}
 
 /// Every action.
 pub const ACTIONS: &[ActionDef] = &[
@@ -207,6 +219,29 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Tools, "region_tool", "Region that is drawn anew", "N", |_| {
         Some(Command::Tool(Tool::Region))
     }),
+    action(Tools, "building_tool", "Building", "Shift+B", |_| {
+        Some(Command::Tool(Tool::Thing(ThingTool::Building)))
+    }),
+    action(Tools, "tree_tool", "Trees", "Shift+T", |_| {
+        Some(Command::Tool(Tool::Thing(ThingTool::Tree)))
+    }),
+    action(
+        Tools,
+        "line_tool",
+        "Hedge, wall, fence, guard rail",
+        "Shift+L",
+        |_| Some(Command::Tool(Tool::Thing(ThingTool::Line))),
+    ),
+    action(Tools, "shrub_tool", "Shrubs", "Shift+S", |_| {
+        Some(Command::Tool(Tool::Thing(ThingTool::Shrubs)))
+    }),
+    action(
+        Tools,
+        "post_tool",
+        "Pole, sign, light, bus stop, bench, bin",
+        "Shift+P",
+        |_| Some(Command::Tool(Tool::Thing(ThingTool::Post))),
+    ),
     action(Tools, "shape_rectangle", "Brush: rectangle", "U", |_| {
         Some(Command::Tools(ToolCommand::Shape(PaintShape::Rectangle)))
     }),
@@ -335,14 +370,36 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Selection, "mirror_copies", "Mirrored copies", "", |_| {
         Some(Command::Tools(ToolCommand::Mirror(true)))
     }),
-    action(Selection, "to_lane", "To the lane and the ground", "D", |_| {
-        Some(Command::Tools(ToolCommand::ToLane))
-    })
+    action(
+        Selection,
+        "to_lane",
+        "Boxes to the lane and the ground, things to the kerb",
+        "D",
+        |_| Some(Command::Tools(ToolCommand::ToLane)),
+    )
     .chosen(),
     action(Selection, "to_ground", "To the ground", "Shift+D", |_| {
         Some(Command::Tools(ToolCommand::DropToGround))
     })
     .chosen(),
+    action(
+        Selection,
+        "raise",
+        "Raise things: a storey, or 0.5 m",
+        "] }",
+        |_| Some(raise(1)),
+    )
+    .things()
+    .repeats(),
+    action(
+        Selection,
+        "lower",
+        "Lower things: a storey, or 0.5 m",
+        "[ {",
+        |_| Some(raise(-1)),
+    )
+    .things()
+    .repeats(),
     action(Selection, "gizmo_move", "Dragging moves", "W", |_| {
         Some(Command::Tools(ToolCommand::Gizmo(Kind::Move)))
     })
@@ -433,6 +490,16 @@ pub const ACTIONS: &[ActionDef] = &[
     keep(7),
     keep(8),
     keep(9),
+    action(Views, "show_things", "Show or hide background things", "", |_| {
+        Some(Command::Tools(ToolCommand::Thing(ThingCommand::ToggleShown)))
+    }),
+    action(
+        Views,
+        "lock_things",
+        "Lock or unlock background things",
+        "",
+        |_| Some(Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked))),
+    ),
     action(Views, "grid", "Grid", "G", |_| Some(Command::ToggleGrid)),
     action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", |_| {
         Some(Command::Workspace(Workspace::Edit))

@@ -10,8 +10,8 @@ use egui::{
 };
 use glam::DVec2;
 
-use crate::editor::pick;
-use crate::scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev};
+use crate::editor::{pick, pick_things};
+use crate::scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerLook};
 use super::canvas_draw::{
@@ -24,6 +24,7 @@ use super::live::Bounds;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
+use super::tools::things::draw;
 
 /// From the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -291,6 +292,14 @@ impl Canvas {
         if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
             draw_points(ui, map, sweep, state);
         }
+        let hovered = response
+            .hover_pos()
+            .filter(|_| state.tool == Tool::Select && matches!(self.gesture, Gesture::None))
+            .map(|p| map.to_ego(p))
+            .filter(|p| pick::box_at(scene.frame(), *p).is_none())
+            .and_then(|p| draw::under(scene, state, p, 8.0 / map.scale));
+        let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
+        draw::outlines(&inside, map, scene, state, hovered);
         draw_ego(ui, map, &scene.rig);
         if state.show_boxes {
             draw_boxes(ui, map, response, input.scene, state);
@@ -409,6 +418,13 @@ fn texture<K: PartialEq>(
         .map_or(egui::TextureId::default(), |shown| shown.handle.id())
 }
 
+/// The thing whose footprint holds a point of the ego frame, m.
+fn thing_under(scene: &Scene, p_m: DVec2) -> Option<&Thing> {
+    let p_m = pick_things::ground_in_world(&scene.frame().world_from_ego, p_m);
+    let id = pick_things::thing_at(&scene.background, p_m, 0.0)?;
+    scene.background.get(id)
+}
+
 /// What is under a point of the view, for the status bar.
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![super::state::position_text(p_m)];
@@ -435,6 +451,9 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     });
     if let Some(id) = pick::box_at(frame, p_m) {
         parts.push(format!("{} #{}", frame.boxes[&id].called(), id.0));
+    } else if let Some(thing) = thing_under(scene, p_m) {
+        let (name, height_m) = (thing.form.name(), thing.form.height_m());
+        parts.push(format!("{name} #{}, {height_m:.1} m high", thing.id.0));
     }
     parts.join("  ·  ")
 }

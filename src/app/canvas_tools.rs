@@ -14,8 +14,8 @@ use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;
 use super::pointer::{self, Step};
 use super::state::{Tool, UiState};
-use super::tools::PaintShape;
 use super::tools::bev::{self, BevGesture};
+use super::tools::{PaintShape, things};
 
 /// What the pointer is doing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -97,7 +97,7 @@ impl Canvas {
                 Step::Release(PointerButton::Primary, at) if self.gesture != Gesture::None => {
                     self.drag(map, scene, state, map.to_ego(at), held, commands);
                     match std::mem::take(&mut self.gesture) {
-                        Gesture::Tool(gesture) => bev::end(gesture, map, scene.frame(), state, commands),
+                        Gesture::Tool(gesture) => bev::end(gesture, map, scene, state, commands),
                         gesture => end(gesture, state, commands),
                     }
                 }
@@ -118,7 +118,8 @@ impl Canvas {
             Tool::Brush if state.tools.is_locked(state.layer) => CursorIcon::NotAllowed,
             Tool::Brush if state.tools.shape == PaintShape::Stroke => CursorIcon::None,
             Tool::Brush => CursorIcon::Crosshair,
-            Tool::AddBox | Tool::Measure | Tool::Region => CursorIcon::Crosshair,
+            Tool::Thing(_) if !state.tools.things.is_open() => CursorIcon::NotAllowed,
+            Tool::AddBox | Tool::Measure | Tool::Region | Tool::Thing(_) => CursorIcon::Crosshair,
             Tool::Voxel => CursorIcon::NotAllowed,
             Tool::Select => {
                 let selected = state.selected.and_then(|id| scene.frame().boxes.get(&id));
@@ -127,7 +128,11 @@ impl Canvas {
                     Some(Handle::Corner(_)) => CursorIcon::Crosshair,
                     Some(Handle::Body) => CursorIcon::Move,
                     None if pick::box_at(scene.frame(), at_m).is_some() => CursorIcon::PointingHand,
-                    None => CursorIcon::Default,
+                    None => match things::draw::under(scene, state, at_m, HANDLE_REACH / map.scale) {
+                        Some(id) if state.tools.things.chosen.contains(&id) => CursorIcon::Move,
+                        Some(_) => CursorIcon::PointingHand,
+                        None => CursorIcon::Default,
+                    },
                 }
             }
         };
@@ -157,7 +162,7 @@ impl Canvas {
                 at_m,
                 yaw_rad: lane_heading(scene.frame(), at_m).unwrap_or(0.0),
             },
-            Tool::Voxel | Tool::Measure | Tool::Region => Gesture::Ignored,
+            Tool::Voxel | Tool::Measure | Tool::Region | Tool::Thing(_) => Gesture::Ignored,
             // What is left to the canvas is the corner of the one chosen box.
             Tool::Select => {
                 let chosen = state.selected.and_then(|id| scene.frame().boxes.get(&id));
@@ -187,7 +192,7 @@ impl Canvas {
         match &mut self.gesture {
             Gesture::None | Gesture::Ignored => {}
             Gesture::Tool(gesture) => {
-                bev::drag(gesture, map, scene.frame(), state, at_m, modifiers, commands);
+                bev::drag(gesture, map, scene, state, at_m, modifiers, commands);
             }
             Gesture::Stroke {
                 points_m,

@@ -18,6 +18,7 @@ use super::open;
 use super::panels::objects::neighbour;
 use super::panels::toasts::Level;
 use super::state::{Pane, Tool};
+use super::tools::things::Draft;
 use super::tools::{Choose, ToolCommand};
 
 impl SceneloomApp {
@@ -39,7 +40,13 @@ impl SceneloomApp {
                 self.document.commit_drag(label);
                 self.note_correction();
             }
-            Command::CancelDrag => self.document.cancel_drag(),
+            Command::CancelDrag => {
+                self.document.cancel_drag();
+                let draft = &mut self.state.tools.things.draft;
+                if draft.points_m().is_empty() {
+                    *draft = Draft::None;
+                }
+            }
             Command::Undo => {
                 self.document.undo();
             }
@@ -67,7 +74,10 @@ impl SceneloomApp {
             Command::DuplicateSelected => self.tool_command(ToolCommand::Duplicate, ctx),
             Command::Nudge(step_m) => self.tool_command(ToolCommand::Nudge(step_m), ctx),
             Command::Turn(degrees) => self.tool_command(ToolCommand::Turn(degrees), ctx),
-            Command::Tool(tool) => self.state.tool = tool,
+            Command::Tool(tool) => {
+                self.state.tool = tool;
+                self.state.tools.things.draft = Draft::None;
+            }
             Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::Generate { full } => self.generate(full),
@@ -206,12 +216,11 @@ impl SceneloomApp {
         }
         // Without a guess there is nothing to correct, and no switch to see it by.
         self.state.correcting &= self.document.scene().frame().inferred.any();
-        // A box that an edit or undo took away is not selected any more.
-        self.state.tidy_selection(&self.document.scene().frame().boxes);
+        // What an edit or undo took away is not selected any more.
+        self.state.tidy_selection(self.document.scene());
         let after = self.document.settled_scene().rev;
         if travels && after != before {
-            self.state
-                .recall_selection(after, &self.document.scene().frame().boxes);
+            self.state.recall_selection(after, self.document.scene());
         }
     }
 
@@ -231,6 +240,9 @@ impl SceneloomApp {
     pub(super) fn apply(&mut self, label: impl Into<Label>, edits: &[Edit]) {
         if let Some(layer) = self.state.locked_layer(edits) {
             return self.fail(format!("Layer {:?} is locked", layer.label()));
+        }
+        if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
+            return self.fail("Background things are locked".to_owned());
         }
         let edits = self.state.as_meant(edits.to_vec());
         if let Err(error) = self.document.apply_all(label, &edits) {
@@ -264,7 +276,7 @@ impl SceneloomApp {
                 label: b.label,
             }],
         );
-        self.state.selected = Some(b.id);
+        self.state.choose(&[b.id], Choose::Only);
     }
 
     fn escape(&mut self) {
@@ -276,8 +288,8 @@ impl SceneloomApp {
             self.state.tools.voxels.clear();
         } else if self.state.tool != Tool::Select {
             self.state.tool = Tool::Select;
-        } else if self.state.selected.is_some() {
-            self.state.selected = None;
+        } else if self.state.any_chosen() {
+            self.state.choose(&[], Choose::Only);
         } else {
             self.state.correcting = false;
         }
@@ -318,7 +330,9 @@ impl SceneloomApp {
     }
 
     fn frame_selection(&mut self) {
-        let Some(b) = self.selected_box() else { return };
+        let Some(b) = self.selected_box() else {
+            return self.frame_things();
+        };
         if self.state.hovered_pane != Some(Pane::View3d) {
             self.canvas.frame_box(&b);
         }

@@ -1,6 +1,7 @@
 //! What the pointer does with the tool in hand, for the status bar.
 
 use super::state::{Pane, Tool, UiState, VoxelVerb};
+use super::tools::things::ThingTool;
 use super::tools::{PaintShape, VoxelMode};
 use crate::editor::transform::Kind;
 
@@ -18,6 +19,7 @@ pub fn hint(state: &UiState) -> String {
         Tool::Voxel => vec!["The voxel tool works in the 3D view"],
         Tool::Measure if over_3d => vec!["Measures in the bird's-eye view"],
         Tool::Measure => vec!["Click sets a point", "Esc clears"],
+        Tool::Thing(tool) => thing(state, tool, over_3d),
         Tool::Region if over_3d => vec!["The region is marked in the bird's-eye view"],
         Tool::Region => vec![
             if state.tools.region_brush {
@@ -41,6 +43,11 @@ fn select(state: &UiState, over_3d: bool) -> Vec<&'static str> {
         true => vec!["Drag draws around boxes", "Shift adds"],
         false => vec!["Click chooses", "Shift adds", "drag over ground marks"],
     };
+    if state.selected.is_none() && !state.tools.things.chosen.is_empty() {
+        parts.push("Drag moves");
+        parts.push(if over_3d { "the knob raises" } else { "[ ] raise" });
+        parts.push("D to the kerb");
+    }
     if state.selected.is_some() {
         parts.push(match state.tools.gizmo {
             Kind::Move => "Drag moves, X Y Z keep an axis, digits type",
@@ -51,6 +58,28 @@ fn select(state: &UiState, over_3d: bool) -> Vec<&'static str> {
             parts.push("Ctrl snaps to the grid");
         }
     }
+    parts
+}
+
+fn thing(state: &UiState, tool: ThingTool, over_3d: bool) -> Vec<&'static str> {
+    let things = &state.tools.things;
+    if !things.is_open() {
+        return vec!["Background things are locked or hidden: see the list of layers"];
+    }
+    let drawn = !things.draft.points_m().is_empty();
+    let mut parts = match tool {
+        ThingTool::Building if drawn => vec!["Click sets a corner", "Enter closes", "Backspace takes back"],
+        ThingTool::Building => vec!["Drag draws a rectangle", "click begins an outline"],
+        ThingTool::Tree => vec!["Click stamps a tree", "drag scatters"],
+        ThingTool::Line => vec!["Click sets a point", "Enter ends", "Backspace takes back"],
+        ThingTool::Shrubs => vec!["Drag paints an area of shrubs", "[ ] size"],
+        ThingTool::Post => vec!["Click puts it down facing the road", "drag turns it"],
+    };
+    parts.extend(match (tool, over_3d) {
+        (ThingTool::Building, false) => Some("Alt ignores the road"),
+        (ThingTool::Line | ThingTool::Post, false) => Some("Alt ignores the kerb"),
+        _ => None,
+    });
     parts
 }
 

@@ -7,6 +7,7 @@ use super::actions::{When, nudge_direction};
 use super::command::Command;
 use super::keymap::{Chord, Keymap};
 use super::state::{Pane, Tool, UiState};
+use super::tools::things::ThingTool;
 
 /// Actions that do not wait for the end of a drag.
 const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
@@ -48,11 +49,17 @@ pub fn commands(
         }
         let over_3d = state.hovered_pane == Some(Pane::View3d);
         // With a brush in hand its own letters count.
-        let chosen = state.selected.is_some() && !matches!(state.tool, Tool::Brush | Tool::Voxel);
+        let brush = matches!(
+            state.tool,
+            Tool::Brush | Tool::Voxel | Tool::Region | Tool::Thing(ThingTool::Shrubs)
+        );
+        let chosen = state.any_chosen() && !matches!(state.tool, Tool::Brush | Tool::Voxel);
+        let things = !state.tools.things.chosen.is_empty() && !brush;
         let applies = |when| match when {
             When::Always => true,
             When::Over3d => over_3d,
             When::Chosen => chosen,
+            When::Things => things,
         };
         // Shift makes another key of some: `|` of a backslash. What is written on the key counts then.
         let on_key = || keymap.action(Chord::pressed(physical?, modifiers), applies);
@@ -138,7 +145,9 @@ fn is_flight(key: Key) -> bool {
 
 /// Arrows move what is chosen by 0.1 m, with Shift by 1 m, with Ctrl by 0.01 m.
 fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
-    state.selected?;
+    if !state.any_chosen() {
+        return None;
+    }
     let step_m = match (chord.ctrl, chord.shift, chord.alt) {
         (true, _, false) => 0.01,
         (false, true, false) => 1.0,

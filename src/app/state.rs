@@ -10,6 +10,7 @@ use crate::scene::{BevLayer, BoxId, Class};
 use crate::viewport::LidarColorMode;
 
 use super::compare::CompareMode;
+use super::tools::things::ThingTool;
 
 /// What the primary button does on a canvas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,17 +28,28 @@ pub enum Tool {
     Measure,
     /// Marks what is drawn anew.
     Region,
+    /// Puts things beside the road.
+    Thing(ThingTool),
 }
 
 impl Tool {
     /// Every tool with its name and key.
-    pub const ALL: [(Tool, &'static str, &'static str); 6] = [
+    pub const ALL: [(Tool, &'static str, &'static str); 11] = [
         (Tool::Select, "Select", "V"),
         (Tool::Brush, "Brush", "B"),
         (Tool::AddBox, "Add box", "A"),
         (Tool::Voxel, "Voxels", "B in 3D"),
         (Tool::Measure, "Measure", "M"),
         (Tool::Region, "Region", "N: draw anew"),
+        (Tool::Thing(ThingTool::Building), "Building", "Shift+B"),
+        (Tool::Thing(ThingTool::Tree), "Trees", "Shift+T"),
+        (Tool::Thing(ThingTool::Line), "Hedge, wall, fence", "Shift+L"),
+        (Tool::Thing(ThingTool::Shrubs), "Shrubs", "Shift+S"),
+        (
+            Tool::Thing(ThingTool::Post),
+            "Pole, sign, light",
+            "Shift+P; also stops, benches, bins",
+        ),
     ];
 }
 

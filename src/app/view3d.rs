@@ -8,6 +8,7 @@ use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, Widg
 use glam::{DVec2, DVec3};
 
 use crate::editor::pick::{self, Hit, Ray};
+use crate::editor::pick_things;
 use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
 use crate::viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
@@ -163,6 +164,7 @@ impl View3d {
         }
         self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
         super::tools::view3d::draw(ui, self, input, state);
+        super::tools::view3d_things::draw(ui, self, input, state);
         response
     }
 
@@ -536,6 +538,10 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
         }
         Hit::Voxel(v) => {
             parts.push(Class::from_id(v.label).map_or_else(String::new, Class::label));
+            let thing = pick_things::thing_of_voxel(scene.frame(), &scene.background, v.cell);
+            if let Some(thing) = thing.and_then(|id| scene.background.get(id)) {
+                parts.push(format!("{} #{}", thing.form.name(), thing.id.0));
+            }
             parts.push(format!("voxel {}, {}, {}", v.cell[0], v.cell[1], v.cell[2]));
         }
         Hit::Ground { .. } if GridSpec::voxel_at(p).is_none() => parts.push("outside the grid".into()),

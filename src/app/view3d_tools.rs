@@ -14,6 +14,7 @@ use crate::scene::{BevLayer, Class, Frame, GridSpec};
 use super::command::Command;
 use super::pointer::{self, Step};
 use super::state::{Tool, UiState, VoxelVerb};
+use super::tools::things;
 use super::tools::view3d::{self as tools, ViewGesture};
 use super::view3d::{View3d, View3dInput, point_of};
 
@@ -109,10 +110,13 @@ impl View3d {
                 _ => {}
             }
         }
+        // After the pointer: the click that ends an outline is one of its points.
+        things::press::keys(ui, response, state, commands);
         if response.hovered() && self.gesture == Gesture3d::None {
             let icon = match state.tool {
                 Tool::Select => egui::CursorIcon::Default,
                 Tool::Measure | Tool::Region => egui::CursorIcon::NotAllowed,
+                Tool::Thing(_) if !state.tools.things.is_open() => egui::CursorIcon::NotAllowed,
                 _ => egui::CursorIcon::Crosshair,
             };
             ui.ctx().set_cursor_icon(icon);
@@ -137,7 +141,7 @@ impl View3d {
         }
         let shift = modifiers.shift;
         match state.tool {
-            Tool::Select | Tool::Measure | Tool::Region => Gesture3d::Ignored,
+            Tool::Select | Tool::Measure | Tool::Region | Tool::Thing(_) => Gesture3d::Ignored,
             Tool::AddBox => Gesture3d::Place {
                 pressed: at,
                 moved: false,
@@ -241,7 +245,7 @@ impl View3d {
     ) {
         match gesture {
             Gesture3d::None | Gesture3d::Ignored => {}
-            Gesture3d::Tool(held) => tools::end(held, self, input, at, commands),
+            Gesture3d::Tool(held) => tools::end(held, self, input, state, at, commands),
             Gesture3d::Place { moved: true, .. } => {}
             Gesture3d::Place { .. } => {
                 if let Some((hit, ray)) = self.hit(input.scene.frame(), at) {

@@ -295,11 +295,7 @@ impl Edit {
                     scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }
-            Self::AddThings { .. }
-            | Self::RemoveThings { .. }
-            | Self::MoveThings { .. }
-            | Self::RaiseThings { .. }
-            | Self::ChangeThing { .. } => {
+            edit if edit.is_of_things() => {
                 if let Some(background) = things::changed(self, &scene.background)? {
                     things::replace_background(scene, background);
                 }
@@ -314,6 +310,18 @@ impl Edit {
             }
         }
         Ok(())
+    }
+
+    /// True if it changes things of the background.
+    pub fn is_of_things(&self) -> bool {
+        matches!(
+            self,
+            Self::AddThings { .. }
+                | Self::RemoveThings { .. }
+                | Self::MoveThings { .. }
+                | Self::RaiseThings { .. }
+                | Self::ChangeThing { .. }
+        )
     }
 
     fn apply_to(&self, frame: &mut Frame) -> Result<(), EditError> {

@@ -1,6 +1,7 @@
 //! The window driven as a user drives it: by labels, pointer and keys, with a scripted pipeline.
 
 mod bench;
+mod beside;
 mod checks;
 mod day;
 mod desk;

@@ -8,7 +8,8 @@ use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::app::theme;
-use crate::app::tools::{PaintShape, panel as tools};
+use crate::app::tools::things::{self, ThingCommand};
+use crate::app::tools::{PaintShape, ToolCommand, panel as tools};
 use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
@@ -28,6 +29,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
                 classes(ui, &Class::OBJECTS, &mut state.box_class, "Add");
             }
             Tool::Voxel => voxel_options(ui, state, commands),
+            Tool::Thing(tool) => things::panel::options(ui, tool, state),
         }
         ui.add_space(theme::GAP);
         section(ui, "Map layers");
@@ -38,6 +40,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
         toggle_row(ui, "Boxes", &mut state.show_boxes);
+        things_row(ui, state, commands);
         toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
         toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
         toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
@@ -273,6 +276,26 @@ fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
         if response.clicked() {
             *on = !*on;
         }
+    });
+}
+
+/// Outlines of things beside the road: shown or not, locked or not.
+fn things_row(ui: &mut Ui, state: &UiState, commands: &mut Vec<Command>) {
+    let mut send = |command| commands.push(Command::Tools(ToolCommand::Thing(command)));
+    let things = &state.tools.things;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if eye(ui, things.shown, "Show background things").clicked() {
+            send(ThingCommand::ToggleShown);
+        }
+        if lock(ui, things.locked, "Lock background things").clicked() {
+            send(ThingCommand::ToggleLocked);
+        }
+        let color = match things.is_open() {
+            true => theme::text(),
+            false => theme::text_weak(),
+        };
+        ui.label(egui::RichText::new("Background things").color(color));
     });
 }
 

@@ -29,6 +29,8 @@ pub mod settings;
 pub mod shortcuts;
 pub mod start;
 pub mod status;
+mod thing_list;
+mod things;
 mod thumbnail;
 pub mod toasts;
 pub mod toolbar;

@@ -7,16 +7,18 @@ use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
 use crate::app::panels::fields::{caption, field, fields, number, numbers};
 use crate::app::panels::label::label_ui;
+use crate::app::panels::{thing_list, things};
 use crate::app::state::UiState;
 use crate::app::theme;
 use crate::app::tools::{Choose, ToolCommand};
 use crate::editor::transform::Orientation;
 use crate::editor::{Document, Edit, arrange};
-use crate::scene::{BoxId, Class, Frame, SceneBox};
+use crate::scene::{BoxId, Class, Frame, SceneBox, Thing};
 
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
-    let frame = document.scene().frame();
+    let scene = document.scene();
+    let frame = scene.frame();
     let room = ui.available_height();
     let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
     let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
@@ -29,17 +31,26 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         .show(ui, |ui| {
             inferred(ui, frame, state, commands);
             section(ui, "Inspector");
+            let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
                 Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
                 Some(b) => inspector(ui, b, state, commands),
-                None => {
+                None if things.is_empty() => {
                     ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
                 }
+                None => {}
             }
+            things::inspector(ui, &things, &document.settled_scene().background, commands);
         });
-    let title = match frame.boxes.len() {
+    let rows = thing_list::rows(&scene.background, state);
+    let boxes = match frame.boxes.len() {
         1 => "1 box".to_owned(),
         n => format!("{n} boxes"),
+    };
+    let title = match scene.background.len() {
+        0 => boxes,
+        1 => format!("{boxes}, 1 thing"),
+        n => format!("{boxes}, {n} things"),
     };
     divide(ui, &title, below, most);
     let list_height = ui.available_height().max(80.0);
@@ -51,10 +62,15 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         .auto_shrink([false, false]);
     ui.spacing_mut().item_spacing.y = 1.0;
     let list = reveal(ui, list, &boxes, state.selected, list_height);
-    list.show_rows(ui, theme::ROW, boxes.len(), |ui, range| {
-        for b in &boxes[range] {
-            let guess = frame.inferred.boxes.contains(&b.id);
-            box_row(ui, b, guess, state.is_chosen(b.id), commands);
+    list.show_rows(ui, theme::ROW, boxes.len() + rows.len(), |ui, range| {
+        for i in range {
+            match boxes.get(i) {
+                Some(b) => {
+                    let guess = frame.inferred.boxes.contains(&b.id);
+                    box_row(ui, b, guess, state.is_chosen(b.id), commands);
+                }
+                None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, state, commands),
+            }
         }
     });
 }

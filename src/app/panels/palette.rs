@@ -9,7 +9,11 @@ use crate::app::command::Command;
 use crate::app::keymap::Keymap;
 use crate::app::state::{Pane, UiState};
 use crate::app::theme;
+use crate::app::tools::ToolCommand;
+use crate::app::tools::things::panel::TREES;
+use crate::app::tools::things::{ThingCommand, ThingKind};
 use crate::scene::Class;
+use crate::scene::background::{LineKind, PostKind};
 
 /// Lines that are shown at most.
 const SHOWN: usize = 12;
@@ -147,6 +151,14 @@ fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
         let title = format!("Place a box: {}", class.label());
         add(title, "box", Command::PlaceClass(class));
     }
+    for (kind, name) in kinds() {
+        let title = format!("Beside the road: {name}");
+        add(
+            title,
+            "thing",
+            Command::Tools(ToolCommand::Thing(ThingCommand::Take(kind))),
+        );
+    }
     for path in recent {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         add(
@@ -156,6 +168,14 @@ fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
         );
     }
     out
+}
+
+/// Every kind of thing that a tool draws or puts down.
+fn kinds() -> Vec<(ThingKind, String)> {
+    let trees = TREES.map(|(kind, name, _)| (ThingKind::Tree(kind), format!("{} tree", name.to_lowercase())));
+    let lines = LineKind::ALL.map(|kind| (ThingKind::Line(kind), kind.name().to_owned()));
+    let posts = PostKind::ALL.map(|kind| (ThingKind::Post(kind), kind.name().to_owned()));
+    trees.into_iter().chain(lines).chain(posts).collect()
 }
 
 /// Those that hold the letters of the query in order, the best ones first.

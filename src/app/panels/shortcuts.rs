@@ -144,7 +144,8 @@ impl Shortcuts {
                 let place = match action.when {
                     When::Always => "",
                     When::Over3d => "  (3D)",
-                    When::Chosen => "  (box chosen)",
+                    When::Chosen => "  (chosen)",
+                    When::Things => "  (thing chosen)",
                 };
                 let title = format!("{}{place}", action.title);
                 ui.label(egui::RichText::new(title).color(theme::text_weak()));

@@ -11,6 +11,8 @@ use crate::app::dock::Workspace;
 use crate::app::icons::{self, Icon};
 use crate::app::state::{Pane, Tool, UiState};
 use crate::app::theme;
+use crate::app::tools::ToolCommand;
+use crate::app::tools::things::{ThingCommand, ThingTool};
 use crate::viewport::ViewPreset;
 
 /// What the bar shows of the document and the worker.
@@ -58,18 +60,15 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
             menus(ui, input, state, commands);
         });
         divider(ui);
+        let narrow = ui.max_rect().width() < ROOM_FOR_ALL;
         for (tool, name, key) in Tool::ALL {
-            let icon = match tool {
-                Tool::Select => Icon::Cursor,
-                Tool::Brush => Icon::Brush,
-                Tool::AddBox => Icon::AddBox,
-                Tool::Voxel => Icon::Voxel,
-                Tool::Measure => Icon::Measure,
-                Tool::Region => Icon::Region,
-            };
-            if icons::button(ui, icon, name, key, state.tool == tool, true).clicked() {
+            let folded = narrow && matches!(tool, Tool::Thing(_));
+            if !folded && icons::button(ui, icon_of(tool), name, key, state.tool == tool, true).clicked() {
                 commands.push(Command::Tool(tool));
             }
+        }
+        if narrow {
+            thing_tools(ui, state.tool, commands);
         }
         divider(ui);
         let hint = |label: Option<&str>, keys: &str| {
@@ -111,6 +110,47 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
         });
         title(ui, input, left, right.inner);
     });
+}
+
+/// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
+const ROOM_FOR_ALL: f32 = 1360.0;
+
+fn icon_of(tool: Tool) -> Icon {
+    match tool {
+        Tool::Select => Icon::Cursor,
+        Tool::Brush => Icon::Brush,
+        Tool::AddBox => Icon::AddBox,
+        Tool::Voxel => Icon::Voxel,
+        Tool::Measure => Icon::Measure,
+        Tool::Region => Icon::Region,
+        Tool::Thing(ThingTool::Building) => Icon::Building,
+        Tool::Thing(ThingTool::Tree) => Icon::Tree,
+        Tool::Thing(ThingTool::Line) => Icon::Fence,
+        Tool::Thing(ThingTool::Shrubs) => Icon::Shrubs,
+        Tool::Thing(ThingTool::Post) => Icon::Lamp,
+    }
+}
+
+/// One button for all tools for things; it opens their list.
+fn thing_tools(ui: &mut Ui, in_hand: Tool, commands: &mut Vec<Command>) {
+    let (shown, selected) = match in_hand {
+        Tool::Thing(_) => (in_hand, true),
+        _ => (Tool::Thing(ThingTool::Building), false),
+    };
+    let hint = "buildings, trees, hedges, shrubs, posts";
+    let button = icons::button(ui, icon_of(shown), "Beside the road", hint, selected, true);
+    egui::Popup::menu(&button).show(|ui| {
+        for (tool, name, key) in Tool::ALL {
+            if matches!(tool, Tool::Thing(_)) && item(ui, name, short(key), true) {
+                commands.push(Command::Tool(tool));
+            }
+        }
+    });
+}
+
+/// The chord alone, without what else the hint says.
+fn short(key: &str) -> &str {
+    key.split(';').next().unwrap_or_default()
 }
 
 /// A chord in the second column of a menu.
@@ -165,12 +205,42 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             Command::Redo,
         );
         ui.separator();
-        let some = state.selected.is_some();
+        let some = state.any_chosen();
+        let what = match (state.selected.is_some(), state.tools.things.chosen.len()) {
+            (true, 0) | (false, 0) => "box",
+            (false, 1) => "thing",
+            (false, _) => "things",
+            (true, _) => "selection",
+        };
         on(
-            item(ui, "Duplicate box", "Ctrl+D", some),
+            item(ui, &format!("Duplicate {what}"), "Ctrl+D", some),
             Command::DuplicateSelected,
         );
-        on(item(ui, "Delete box", "Del", some), Command::DeleteSelected);
+        on(
+            item(ui, &format!("Delete {what}"), "Del", some),
+            Command::DeleteSelected,
+        );
+        let thing = |command| Command::Tools(ToolCommand::Thing(command));
+        let things = !state.tools.things.chosen.is_empty();
+        on(
+            item(ui, "Raise things", "]", things),
+            thing(ThingCommand::Raise(1)),
+        );
+        on(
+            item(ui, "Lower things", "[", things),
+            thing(ThingCommand::Raise(-1)),
+        );
+        on(
+            item(ui, "Things to the kerb", "D", things),
+            Command::Tools(ToolCommand::ToLane),
+        );
+        ui.menu_button("Add beside the road", |ui| {
+            for (tool, name, key) in Tool::ALL {
+                if matches!(tool, Tool::Thing(_)) {
+                    on(item(ui, name, short(key), true), Command::Tool(tool));
+                }
+            }
+        });
         ui.separator();
         on(
             item(ui, "Unlock painted voxels", "", input.has_paint),
@@ -180,7 +250,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
     ui.menu_button("View", |ui| {
         on(item(ui, "Frame all", "Home", true), Command::FrameAll);
         on(
-            item(ui, "Frame selection", "F", state.selected.is_some()),
+            item(ui, "Frame selection", "F", state.any_chosen()),
             Command::FrameSelection,
         );
         ui.separator();

@@ -16,6 +16,9 @@ use crate::editor::{Edit, Shape, choose, flood, measure};
 use crate::scene::{BevLayer, BoxId, Frame, GridSpec, Scene, SceneBox};
 
 use super::boxes::of;
+use super::things::ThingCommand;
+use super::things::drag::{self, Pull as ThingPull, ThingDrag};
+use super::things::press::{self, ThingPress};
 use super::{Choose, PaintShape, ToolCommand, gizmo};
 
 /// What the pointer is doing with one of these tools.
@@ -70,6 +73,17 @@ pub enum BevGesture {
         /// The pointer has left the place where it went down, or something was typed.
         moved: bool,
     },
+    /// Draws with a tool for things.
+    Thing(ThingPress),
+    /// Drags chosen things.
+    Things {
+        /// What was taken hold of.
+        drag: ThingDrag,
+        /// Where the pointer went down, m.
+        from_m: DVec2,
+        /// The pointer has left the place where it went down.
+        moved: bool,
+    },
 }
 
 /// Points that the pointer may move and still click.
@@ -90,7 +104,7 @@ pub(in crate::app) fn begin(
     match state.tool {
         Tool::Brush => paint(frame, state, at_m, modifiers, commands),
         Tool::Select => Some(Gesture::Tool(select(
-            map, frame, state, at_m, modifiers, commands,
+            map, scene, state, at_m, modifiers, commands,
         )?)),
         Tool::Measure => {
             let at_m = measure::snapped(frame, at_m, HANDLE_REACH / map.scale);
@@ -102,6 +116,10 @@ pub(in crate::app) fn begin(
             to_m: at_m,
             on: !modifiers.shift,
         })),
+        Tool::Thing(_) => {
+            let begun = ThingPress::begin(state, at_m, modifiers.alt, CLICK_SLACK / map.scale, commands);
+            Some(begun.map_or(Gesture::Ignored, |press| Gesture::Tool(BevGesture::Thing(press))))
+        }
         Tool::AddBox | Tool::Voxel => None,
     }
 }
@@ -174,12 +192,13 @@ fn layer_at(frame: &Frame, state: &UiState, at_m: DVec2) -> Option<BevLayer> {
 
 fn select(
     map: &ScreenMap,
-    frame: &Frame,
+    scene: &Scene,
     state: &UiState,
     at_m: DVec2,
     modifiers: Modifiers,
     commands: &mut Vec<Command>,
 ) -> Option<BevGesture> {
+    let frame = scene.frame();
     let chosen = state.chosen();
     let reach_m = HANDLE_REACH / map.scale;
     let hit = pick::box_at(frame, at_m);
@@ -218,6 +237,14 @@ fn select(
                 }
             };
             return Some(held(transform(frame, state, &ids, Kind::Move), at_m));
+        }
+        // A thing is chosen by a click and moved once it is: a drag over a forest still marks.
+        if let Some(drag) = press::held_things(scene, state, at_m, reach_m, modifiers.shift) {
+            return Some(BevGesture::Things {
+                drag,
+                from_m: at_m,
+                moved: false,
+            });
         }
     }
     let add = modifiers.shift;
@@ -263,13 +290,24 @@ pub(in crate::app) fn transform(frame: &Frame, state: &UiState, ids: &[BoxId], k
 pub(in crate::app) fn drag(
     gesture: &mut BevGesture,
     map: &ScreenMap,
-    frame: &Frame,
+    scene: &Scene,
     state: &UiState,
     at_m: DVec2,
     modifiers: Modifiers,
     commands: &mut Vec<Command>,
 ) {
+    let frame = scene.frame();
     match gesture {
+        BevGesture::Thing(press) => press.drag(at_m, modifiers.alt, commands),
+        BevGesture::Things { drag, from_m, moved } => {
+            *moved |= from_m.distance(at_m) * map.scale > CLICK_SLACK;
+            if *moved {
+                let edits = drag.edits(frame, state, at_m - *from_m, 0.0, modifiers.into());
+                if !edits.is_empty() {
+                    pointer::preview(commands, edits);
+                }
+            }
+        }
         BevGesture::Paint {
             rectangle,
             from_m,
@@ -384,18 +422,33 @@ fn moved_boxes(
     );
     let turns = transform.kind == Kind::Turn;
     let snap = state.tools.snap(modifiers.ctrl || turns && modifiers.shift);
-    transform.edits(frame, &pull, &snap)
+    let edits = transform.edits(frame, &pull, &snap);
+    drag::along_with(edits, &transform.start, frame, state)
 }
 
 /// What letting go does.
 pub(in crate::app) fn end(
     gesture: BevGesture,
     map: &ScreenMap,
-    frame: &Frame,
+    scene: &Scene,
     state: &UiState,
     commands: &mut Vec<Command>,
 ) {
+    let frame = scene.frame();
     match gesture {
+        BevGesture::Thing(press) => press.end(commands),
+        BevGesture::Things {
+            drag, moved: true, ..
+        } => {
+            let commit = ThingCommand::Commit(drag.label());
+            commands.push(Command::Tools(ToolCommand::Thing(commit)));
+        }
+        BevGesture::Things { drag, from_m, .. } => {
+            // A click on one of several chooses it alone.
+            if drag.pull() == ThingPull::Place {
+                press::click(scene, state, from_m, HANDLE_REACH / map.scale, false, commands);
+            }
+        }
         BevGesture::Paint { rectangle, erase, .. } => {
             commands.push(Command::Commit(match (rectangle, erase) {
                 (true, false) => "Paint rectangle",
@@ -407,8 +460,15 @@ pub(in crate::app) fn end(
         BevGesture::Marquee { from_m, to_m, add } => {
             if from_m.distance(to_m) * map.scale > CLICK_SLACK {
                 chosen(choose::in_rect(frame, from_m, to_m), add, commands);
-            } else if !add {
-                commands.push(Command::Select(None));
+                let (min, max) = (from_m.min(to_m), from_m.max(to_m));
+                press::in_area(
+                    scene,
+                    state,
+                    |p| p.cmpge(min).all() && p.cmple(max).all(),
+                    commands,
+                );
+            } else if pick::box_at(frame, from_m).is_none() || !add {
+                press::click(scene, state, from_m, HANDLE_REACH / map.scale, add, commands);
             }
         }
         // A brush has marked on its way.
@@ -422,11 +482,12 @@ pub(in crate::app) fn end(
         BevGesture::Lasso { points_m, add } => {
             if points_m.len() >= 3 {
                 chosen(choose::in_outline(frame, &points_m), add, commands);
+                press::in_area(scene, state, |p| choose::is_inside(&points_m, p), commands);
             } else if let Some(id) = points_m.first().and_then(|p| pick::box_at(frame, *p)) {
                 let how = if add { Choose::Toggle } else { Choose::Only };
                 commands.push(Command::Tools(ToolCommand::Choose(vec![id], how)));
-            } else if !add {
-                commands.push(Command::Select(None));
+            } else if let Some(at_m) = points_m.first() {
+                press::click(scene, state, *at_m, HANDLE_REACH / map.scale, add, commands);
             }
         }
         BevGesture::Transform {
@@ -438,7 +499,7 @@ pub(in crate::app) fn end(
             // A click on one of several chooses it alone.
             if transform.kind == Kind::Move
                 && transform.axis.is_none()
-                && state.chosen().len() > 1
+                && (state.chosen().len() > 1 || !state.tools.things.chosen.is_empty())
                 && let Some(b) = transform.start.first()
             {
                 commands.push(Command::Select(Some(b.id)));
@@ -557,6 +618,7 @@ pub(in crate::app) fn keys(
         }
         return;
     }
+    press::keys(ui, response, state, commands);
     let draws =
         matches!(state.tools.shape, PaintShape::Polygon | PaintShape::Street) && state.tool == Tool::Brush;
     let points = match state.tool {

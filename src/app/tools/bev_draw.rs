@@ -14,7 +14,8 @@ use crate::scene::{GridSpec, Scene};
 
 use super::bev::{BevGesture, pull};
 use super::gizmo::{Gizmo, Part};
-use super::{PaintShape, gizmo};
+use super::things::drag::Pull as ThingPull;
+use super::{PaintShape, gizmo, things};
 
 /// Draws over the finished view.
 pub(in crate::app) fn draw(
@@ -64,6 +65,16 @@ pub(in crate::app) fn draw(
             let text = transform.text(&pull, &state.tools.snap(ctrl));
             tag(painter, map.to_screen(*to_m), &text);
         }
+        Gesture::Tool(BevGesture::Things {
+            drag,
+            from_m,
+            moved: true,
+        }) if drag.pull() == ThingPull::Place => {
+            if let Some(p) = pointer {
+                let d = map.to_ego(p) - *from_m;
+                tag(painter, p, &format!("{:.1} m", d.length()));
+            }
+        }
         Gesture::Tool(BevGesture::Paint { from_m, .. }) => {
             if let Some(p) = pointer {
                 let d = map.to_ego(p) - *from_m;
@@ -72,6 +83,8 @@ pub(in crate::app) fn draw(
         }
         _ => {}
     }
+    let free = ui.input(|i| i.modifiers.alt);
+    things::draw::hands(painter, map, scene, state, pointer, free);
     if state.tools.row_open {
         for b in super::dialogs::coming(frame, state) {
             draw_box(ui, map, &b, BoxLook::Ghost);

@@ -18,7 +18,12 @@ impl SceneloomApp {
     pub(in crate::app) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
+        let of_voxels = command == ToolCommand::Delete && self.has_voxels();
+        if !of_voxels && self.carry(&command, ctx) {
+            return;
+        }
         match command {
+            ToolCommand::Thing(command) => self.thing_command(command),
             ToolCommand::Choose(ids, how) => self.state.choose(&ids, how),
             ToolCommand::ChooseAll => {
                 let all: Vec<_> = frame.boxes.keys().copied().collect();
@@ -155,7 +160,7 @@ impl SceneloomApp {
         }
     }
 
-    fn note(&mut self, text: &str) {
+    pub(in crate::app) fn note(&mut self, text: &str) {
         let now_s = self.now_s();
         self.toasts.push(Level::Info, text, now_s);
     }
@@ -192,6 +197,7 @@ impl SceneloomApp {
             let edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
             ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
             self.state.tools.clipboard = Clipboard { boxes };
+            self.state.tools.things.clipboard.clear();
         }
     }
 

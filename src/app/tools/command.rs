@@ -87,6 +87,8 @@ pub enum ToolCommand {
     Region(DVec2, DVec2, bool),
     /// Marks what a brush of that width (m) passes from one point to another (ego frame, m), or takes the mark away.
     RegionStroke(DVec2, DVec2, f64, bool),
+    /// Of the tools for things.
+    Thing(super::things::ThingCommand),
     /// Says something to the user.
     Note(String),
 }

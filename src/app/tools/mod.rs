@@ -8,7 +8,9 @@ pub mod dialogs;
 pub mod gizmo;
 pub mod options;
 pub mod panel;
+pub mod things;
 pub mod view3d;
+pub mod view3d_things;
 
 pub use command::{Choose, ToolCommand};
 pub use options::{PaintShape, ToolState, VoxelMode};

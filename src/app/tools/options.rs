@@ -16,7 +16,7 @@ use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
 use crate::generation::job::GenParams;
 use crate::generation::redraw::RedrawMask;
-use crate::scene::{BevLayer, BoxId, Class, Frame, SceneBox, SceneRev, variants};
+use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
 use super::Choose;
 
@@ -153,11 +153,13 @@ pub struct ToolState {
     /// Layers shown before one was shown alone.
     pub before_solo: Option<u32>,
     /// What was chosen in states of the scene, by their revision: undo brings it back.
-    pub selections: BTreeMap<SceneRev, Vec<BoxId>>,
+    pub selections: BTreeMap<SceneRev, (Vec<BoxId>, Vec<ThingId>)>,
     /// The dialog of rows, if it is open.
     pub row_open: bool,
     /// Its numbers.
     pub row: Row,
+    /// What the tools for things hold.
+    pub things: super::things::ThingState,
     /// Where the pointer is over the bird's-eye view, ego frame, m.
     pub pointer_m: Option<DVec2>,
 }
@@ -196,6 +198,7 @@ impl Default for ToolState {
             selections: BTreeMap::new(),
             row_open: false,
             row: Row::default(),
+            things: super::things::ThingState::default(),
             pointer_m: None,
         }
     }
@@ -267,10 +270,13 @@ impl UiState {
         }
     }
 
-    /// Chooses boxes; the last of them becomes the first of the selection.
+    /// Chooses boxes; the last of them becomes the first of the selection. Alone they are without things, too.
     pub fn choose(&mut self, ids: &[BoxId], how: Choose) {
         let mut now: BTreeSet<BoxId> = match how {
-            Choose::Only => BTreeSet::new(),
+            Choose::Only => {
+                self.tools.things.chosen.clear();
+                BTreeSet::new()
+            }
             Choose::Add | Choose::Toggle => self.chosen().into_iter().collect(),
         };
         for id in ids {
@@ -289,8 +295,11 @@ impl UiState {
         self.selection = now;
     }
 
-    /// Drops boxes that are not there any more from the selection.
-    pub fn tidy_selection(&mut self, boxes: &BTreeMap<BoxId, SceneBox>) {
+    /// Drops boxes and things that are not there any more from the selection.
+    pub fn tidy_selection(&mut self, scene: &Scene) {
+        let boxes = &scene.frame().boxes;
+        let things = &mut self.tools.things.chosen;
+        things.retain(|id| scene.background.get(*id).is_some());
         let mut left = self.chosen();
         left.retain(|id| boxes.contains_key(id));
         self.selected = self
@@ -303,21 +312,24 @@ impl UiState {
     /// Keeps what is chosen in a state of the scene, for when an undo comes back to it.
     pub fn remember_selection(&mut self, rev: SceneRev) {
         let kept = &mut self.tools.selections;
-        kept.insert(rev, Vec::new());
+        kept.insert(rev, Default::default());
         if kept.len() > REMEMBERED_SELECTIONS {
             kept.pop_first();
         }
-        let chosen = self.chosen();
+        let things = self.tools.things.chosen.iter().copied().collect();
+        let chosen = (self.chosen(), things);
         self.tools.selections.insert(rev, chosen);
     }
 
     /// Chooses what was chosen last in a state of the scene; all stays if that was nothing.
-    pub fn recall_selection(&mut self, rev: SceneRev, boxes: &BTreeMap<BoxId, SceneBox>) {
-        let mut ids = self.tools.selections.get(&rev).cloned().unwrap_or_default();
-        ids.retain(|id| boxes.contains_key(id));
-        if let Some(first) = ids.first().copied() {
+    pub fn recall_selection(&mut self, rev: SceneRev, scene: &Scene) {
+        let (mut ids, mut things) = self.tools.selections.get(&rev).cloned().unwrap_or_default();
+        ids.retain(|id| scene.frame().boxes.contains_key(id));
+        things.retain(|id| scene.background.get(*id).is_some());
+        if !ids.is_empty() || !things.is_empty() {
             self.choose(&ids, Choose::Only);
-            self.selected = Some(first);
+            self.selected = ids.first().copied();
+            self.choose_things(&things, Choose::Add);
         }
     }
 

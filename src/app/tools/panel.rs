@@ -81,8 +81,10 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
             .on_hover_text("Moves snap to lane centre and heading");
         ui.checkbox(&mut tools.snap_ground, "Ground")
             .on_hover_text("Moves set boxes on the ground");
+        ui.checkbox(&mut tools.things.snap_kerb, "Kerb")
+            .on_hover_text("Moves set things beside the kerb");
     });
-    let any = state.selected.is_some();
+    let any = state.any_chosen();
     let mut on = |clicked: bool, command| {
         if clicked {
             commands.push(Command::Tools(command));
@@ -92,7 +94,12 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
         on(
-            button(ui, "To lane", "D: lane centre, heading and ground", any),
+            button(
+                ui,
+                "To lane",
+                "D: lane centre, heading and ground; things go to the kerb",
+                any,
+            ),
             ToolCommand::ToLane,
         );
         on(button(ui, "To ground", "Shift+D", any), ToolCommand::DropToGround);
@@ -166,7 +173,7 @@ pub fn brush(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
 }
 
-fn slider<N: egui::emath::Numeric>(
+pub(in crate::app) fn slider<N: egui::emath::Numeric>(
     ui: &mut Ui,
     name: &str,
     value: &mut N,

@@ -17,6 +17,9 @@ use crate::scene::{BoxId, Class, Frame, GridSpec};
 
 use super::bev::{DragKey, chosen, drag_keys, step_name, transform};
 use super::gizmo::{Gizmo, Part};
+use super::things::drag::along_with;
+use super::things::press;
+use super::view3d_things::{self, ThingGesture};
 use super::{Choose, ToolCommand, VoxelMode, bev_draw};
 
 /// What the pointer is doing with one of these tools.
@@ -64,6 +67,8 @@ pub enum ViewGesture {
         /// What is done.
         verb: VoxelVerb,
     },
+    /// Of things, in `view3d_things.rs`.
+    Things(ThingGesture),
     /// A face pulled out or pushed in.
     Pull {
         /// The voxel that was pressed.
@@ -79,7 +84,7 @@ const CLICK_SLACK: f32 = 4.0;
 const PARALLEL: f64 = 1e-6;
 
 /// Where along a line through `point` the ray comes nearest, m; `None` for a ray that runs along it.
-fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> {
+pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> {
     let (d, w) = (ray.direction_in_ego, point_m - ray.origin_in_ego);
     let b = axis.dot(d);
     let denominator = 1.0 - b * b;
@@ -123,9 +128,14 @@ pub(in crate::app) fn begin(
     commands: &mut Vec<Command>,
 ) -> Option<Gesture3d> {
     match state.tool {
+        Tool::Select | Tool::Thing(_)
+            if let Some(held) = view3d_things::begin(view, input, state, at, modifiers, commands) =>
+        {
+            Some(Gesture3d::Tool(ViewGesture::Things(held)))
+        }
         Tool::Select => Some(Gesture3d::Tool(select(view, input, state, at, modifiers)?)),
         Tool::Voxel => voxels(view, input, state, at, modifiers, commands),
-        Tool::Measure | Tool::Region => Some(Gesture3d::Ignored),
+        Tool::Measure | Tool::Region | Tool::Thing(_) => Some(Gesture3d::Ignored),
         Tool::Brush | Tool::AddBox => None,
     }
 }
@@ -284,6 +294,7 @@ pub(in crate::app) fn drag(
             *moved |= from.distance(at) > CLICK_SLACK;
             show_transform(gesture, view, input.settled.frame(), state, ctrl, commands);
         }
+        ViewGesture::Things(held) => view3d_things::drag(held, view, input, state, at, ctrl, commands),
         ViewGesture::Area { points, lasso, .. } => {
             if !*lasso {
                 points.truncate(1);
@@ -440,6 +451,7 @@ fn show_transform(
         && let Some(pull) = pull(transform, view, *grabbed_m, *from, *to)
     {
         let edits = transform.edits(frame, &pull, &state.tools.snap(ctrl));
+        let edits = along_with(edits, &transform.start, frame, state);
         if !edits.is_empty() {
             pointer::preview(commands, edits);
         }
@@ -451,6 +463,7 @@ pub(in crate::app) fn end(
     gesture: ViewGesture,
     view: &View3d,
     input: &View3dInput<'_>,
+    state: &UiState,
     at: Pos2,
     commands: &mut Vec<Command>,
 ) {
@@ -472,6 +485,7 @@ pub(in crate::app) fn end(
                 commands.push(Command::Select(Some(id)));
             }
         }
+        ViewGesture::Things(held) => view3d_things::end(held, input, state, commands),
         ViewGesture::Area { points, lasso, add } => {
             let frame = input.scene.frame();
             let clicked = points.iter().all(|p| p.distance(at) <= CLICK_SLACK);
@@ -485,7 +499,10 @@ pub(in crate::app) fn end(
                     (Some(id), true) => {
                         commands.push(Command::Tools(ToolCommand::Choose(vec![id], Choose::Toggle)));
                     }
-                    (None, true) => {}
+                    (None, add) => {
+                        let thing = hit.and_then(|hit| view3d_things::thing_of(input, state, &hit));
+                        press::choose(thing, add, commands);
+                    }
                     (id, false) => commands.push(Command::Select(id)),
                 }
                 return;
@@ -505,6 +522,8 @@ pub(in crate::app) fn end(
             };
             let boxes = frame.boxes.values().filter(|b| inside(b.center_m));
             chosen(boxes.map(|b| b.id).collect(), add, commands);
+            let on_screen = |p: DVec2| inside(p.extend(frame.layout.relief.height_m(p)));
+            press::in_area(input.scene, state, on_screen, commands);
         }
         ViewGesture::Block { verb, .. } | ViewGesture::Row { verb, .. } => {
             commands.push(Command::Commit(step_of(verb)));

@@ -1,0 +1,158 @@
+//! The tree tool: a click stamps a tree, a drag scatters some along the way.
+
+use glam::DVec2;
+
+use crate::editor::kerb;
+use crate::scene::Form;
+use crate::scene::background::Tree;
+use crate::scene::draw::{Draw, hash};
+
+use super::{Outcome, Phase, Pointer, Site, ThingState};
+
+/// Trees stay this part of the spacing apart.
+const APART: f64 = 0.6;
+/// Most trees of one stroke.
+const MOST: usize = 500;
+
+/// Trees that are being scattered.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TreeStroke {
+    placed: Vec<Tree>,
+    last_m: Option<DVec2>,
+    drawn: u64,
+}
+
+impl TreeStroke {
+    /// Takes the pointer.
+    pub fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+        match p.phase {
+            Phase::Press => {
+                *self = Self::default();
+                self.place(p.at_m, 0.0, options);
+                self.last_m = Some(p.at_m);
+                self.preview()
+            }
+            Phase::Drag => {
+                let before = self.placed.len();
+                while let Some(from_m) = self.last_m {
+                    let way = p.at_m - from_m;
+                    let far = options.spacing_m.max(0.5);
+                    if way.length() < far || self.drawn as usize >= 4 * MOST {
+                        break;
+                    }
+                    let next_m = from_m + way.normalize() * far;
+                    self.last_m = Some(next_m);
+                    self.scatter(next_m, way.normalize().perp(), site, options);
+                }
+                match self.placed.len() > before {
+                    true => self.preview(),
+                    false => Outcome::Nothing,
+                }
+            }
+            Phase::Release { .. } => match self.placed.is_empty() {
+                true => Outcome::Nothing,
+                false => Outcome::Add(
+                    std::mem::take(&mut self.placed)
+                        .into_iter()
+                        .map(Form::Tree)
+                        .collect(),
+                ),
+            },
+        }
+    }
+
+    fn preview(&self) -> Outcome {
+        Outcome::Preview(self.placed.iter().cloned().map(Form::Tree).collect())
+    }
+
+    /// Puts one beside the way, where there is room and no roadway.
+    fn scatter(&mut self, at_m: DVec2, across: DVec2, site: &Site<'_>, options: &ThingState) {
+        self.drawn += 1;
+        let mut draw = Draw::new(hash(self.drawn), "scattered tree");
+        let jitter_m = options.spacing_m * 0.35;
+        let at_m = at_m
+            + across * draw.range(-jitter_m, jitter_m)
+            + across.perp() * draw.range(-0.3 * jitter_m, 0.3 * jitter_m);
+        let least_m = options.spacing_m * APART;
+        let near = |q: &DVec2| q.distance(at_m) < least_m;
+        let taken = site.trees_m.iter().any(near) || self.placed.iter().any(|t| near(&t.position_m));
+        if !taken && !kerb::is_roadway(site.layout, at_m) && self.placed.len() < MOST {
+            self.place(at_m, draw.range(-0.2, 0.2), options);
+        }
+    }
+
+    fn place(&mut self, position_m: DVec2, taller: f64, options: &ThingState) {
+        let height_m = options.tree_m * (1.0 + taller);
+        self.placed.push(Tree {
+            position_m,
+            height_m,
+            crown_radius_m: ThingState::crown_m(options.tree, height_m),
+            kind: options.tree,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{BevLayer, BevLayout, GridSpec};
+
+    fn stroke(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2]) -> Vec<Form> {
+        let options = ThingState::default();
+        let site = Site {
+            layout,
+            trees_m,
+            brush_m: 3.2,
+        };
+        let mut draft = TreeStroke::default();
+        let at = |phase, at_m| Pointer {
+            phase,
+            at_m,
+            reach_m: 0.4,
+            free: false,
+        };
+        draft.pointer(&at(Phase::Press, DVec2::ZERO), &site, &options);
+        for i in 1..=10 {
+            draft.pointer(&at(Phase::Drag, to_m * f64::from(i) / 10.0), &site, &options);
+        }
+        match draft.pointer(
+            &at(
+                Phase::Release {
+                    clicked: to_m == DVec2::ZERO,
+                },
+                to_m,
+            ),
+            &site,
+            &options,
+        ) {
+            Outcome::Add(forms) => forms,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_drag_scatters_and_a_click_stamps() {
+        let mut layout = BevLayout::default();
+        let one = stroke(DVec2::ZERO, &layout, &[]);
+        assert_eq!(one.len(), 1);
+        assert_eq!(one[0].points_m(), [DVec2::ZERO]);
+        let row = stroke(DVec2::X * 36.0, &layout, &[]);
+        assert!((5..=7).contains(&row.len()), "{}", row.len());
+        assert_eq!(row, stroke(DVec2::X * 36.0, &layout, &[]), "the same each time");
+        for (i, a) in row.iter().enumerate() {
+            assert_eq!(a.problem(), None);
+            for b in &row[..i] {
+                let apart = a.middle_m().distance(b.middle_m());
+                assert!(apart >= 3.6, "{apart}");
+            }
+        }
+        // Not where trees stand, and not on the roadway beyond x = 20.
+        let taken: Vec<DVec2> = row.iter().skip(1).take(2).map(Form::middle_m).collect();
+        assert_eq!(stroke(DVec2::X * 36.0, &layout, &taken).len(), row.len() - 2);
+        for x in 150..GridSpec::NX {
+            (0..GridSpec::NY).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true));
+        }
+        let beside = stroke(DVec2::X * 36.0, &layout, &[]);
+        assert!(!beside.is_empty() && beside.iter().all(|f| f.middle_m().x < 20.0));
+    }
+}

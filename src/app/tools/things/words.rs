@@ -1,0 +1,47 @@
+//! What things are called in undo steps and panels.
+
+use crate::scene::Form;
+
+/// One of a kind: `tree`; several: `5 trees`; of several kinds: `5 things`.
+pub fn count(forms: &[&Form]) -> String {
+    match forms {
+        [] => "nothing".to_owned(),
+        [one] => one.name().to_owned(),
+        [first, ..] if forms.iter().all(|f| f.name() == first.name()) => {
+            format!("{} {}", forms.len(), plural(first.name()))
+        }
+        _ => format!("{} things", forms.len()),
+    }
+}
+
+/// Several of a kind, without a number.
+pub fn plural(name: &str) -> String {
+    match name {
+        "shrubs" => "areas of shrubs".to_owned(),
+        "stairs" => "stairs".to_owned(),
+        name if name.ends_with("ch") => format!("{name}es"),
+        name => format!("{name}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::background::{Line, LineKind, Post, PostKind};
+    use glam::DVec2;
+
+    #[test]
+    fn things_are_called_what_they_are() {
+        let hedge = Form::Line(Line::typical(LineKind::Hedge, vec![DVec2::ZERO, DVec2::X]));
+        let bench = Form::Post(Post {
+            kind: PostKind::Bench,
+            position_m: DVec2::ZERO,
+            yaw_rad: 0.0,
+            height_m: 1.0,
+        });
+        assert_eq!(count(&[&hedge]), "hedge");
+        assert_eq!(count(&[&hedge, &hedge]), "2 hedges");
+        assert_eq!(count(&[&bench, &bench, &bench]), "3 benches");
+        assert_eq!(count(&[&hedge, &bench]), "2 things");
+    }
+}
