@@ -86,10 +86,11 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
     }
 }
 
-/// A scene from labels: their voxels as they are, layout and boxes inferred.
+/// A scene from labels: their voxels as they are, layout, boxes and background inferred.
 pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     let frame = occ3d::load(path).with_context(|| path.display().to_string())?;
     let (layout, boxes) = (infer::layout(&frame.labels), infer::boxes(&frame.labels));
+    let background = infer::background(&frame.labels, &layout);
     // Data sets name the folder after the frame and the file `labels`.
     let stem = path.file_stem().map(|s| s.to_string_lossy());
     let folder = path
@@ -109,13 +110,16 @@ pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     let inferred = Inferred {
         layout: true,
         boxes: boxes.keys().copied().collect(),
+        background: !background.is_empty(),
         unobserved: seen.and_then(|seen: Vec<bool>| Unobserved::from_observed(&seen)),
     };
     let frame = Frame {
         inferred,
         ..Frame::new(layout, boxes, frame.labels)
     };
-    Ok(Scene::single(name, frame, Arc::new(SensorRig::default()), 0))
+    let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
+    scene.background = Arc::new(background);
+    Ok(scene)
 }
 
 /// Where and how a road network becomes a scene.
@@ -242,3 +246,7 @@ pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Ve
     found.sort();
     Ok(found)
 }
+
+#[cfg(test)]
+#[path = "open_background_tests.rs"]
+mod background_tests;

@@ -4,13 +4,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
 use super::shape::at_least;
 use crate::scene::draft::ground_bin;
 use crate::scene::grid::NOT_PAINTED;
+use crate::scene::raster::polygon_cells;
 use crate::scene::solid::fill::{fill, smear_down};
 use crate::scene::{
     Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
@@ -238,7 +239,7 @@ fn clear(
     cleared: &mut BTreeSet<[usize; 3]>,
 ) {
     let own = columns_of(thing, layout);
-    let around: BTreeSet<[usize; 2]> = own
+    let mut around: BTreeSet<[usize; 2]> = own
         .keys()
         .flat_map(|[x, y]| {
             let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
@@ -251,7 +252,16 @@ fn clear(
         .values()
         .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
         .max();
-    let top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
+    let mut top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
+    if let Form::Shrubs(shrubs) = &thing.form {
+        // What grows there is the area's, whether one of the plants drawn for it stands in the column or not.
+        polygon_cells(&shrubs.outline_m, |x, y| {
+            let height_m = layout.relief.column_m(x, y) + shrubs.height_m;
+            let bin = GridSpec::to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
+            top = top.max((bin + MARGIN).min(GridSpec::NZ - 1));
+            around.insert([x, y]);
+        });
+    }
     for [x, y] in around {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);

@@ -21,6 +21,9 @@ pub struct Candidate {
     pub class: &'static str,
     /// Where it stands, in words.
     pub place: String,
+    /// The words that name it alone, if it is no box: they replace those that were asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answer: Option<String>,
 }
 
 /// What a mention means in a scene.
