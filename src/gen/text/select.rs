@@ -26,6 +26,13 @@ pub struct Candidate {
     pub answer: Option<String>,
 }
 
+impl Candidate {
+    /// What the words that were asked about become if this is the one: `#7`.
+    pub fn says(&self) -> String {
+        self.answer.clone().unwrap_or_else(|| format!("#{}", self.id.0))
+    }
+}
+
 /// What a mention means in a scene.
 pub enum Chosen {
     /// These.
@@ -73,6 +80,7 @@ pub fn where_is(map: &LaneMap<'_>, b: &SceneBox) -> Candidate {
         id: b.id,
         class: b.class.name(),
         place: format!("{called}{:.0} m {along}{across}{doing}", x.abs()),
+        answer: None,
     }
 }
 
