@@ -109,7 +109,9 @@ fn things_are_found_in_simulated_labels() {
         let near = |list: &[(DVec2, f64)], p: DVec2| list.iter().any(|(q, _)| q.distance(p) < 1.5);
         for (p, radius) in &known {
             let mut voxels = 0;
-            disc_cells(*p, *radius, |x, y| voxels += seen(&(x * GridSpec::NY + y), Class::Vegetation));
+            disc_cells(*p, *radius, |x, y| {
+                voxels += seen(&(x * GridSpec::NY + y), Class::Vegetation)
+            });
             if voxels >= 25 && p.abs().max_element() < 39.0 {
                 trees.1 += 1;
                 trees.0 += usize::from(near(&guessed, *p));
@@ -129,13 +131,18 @@ fn things_are_found_in_simulated_labels() {
         scene.background = Arc::new(found);
         let before = scene.background.clone();
         let mut document = Document::new(scene);
-        document.apply("Remove", &Edit::RemoveThings { ids }).expect("they are there");
+        document
+            .apply("Remove", &Edit::RemoveThings { ids })
+            .expect("they are there");
         let after = &document.scene().frame().occupancy;
         for (i, class) in [Class::Manmade, Class::Vegetation].into_iter().enumerate() {
             let columns = covered(&before, class);
             let all = standing(&grid, class);
             cover[i].1 += all.len();
-            cover[i].0 += all.iter().filter(|[x, y, _]| columns.contains(&(x * GridSpec::NY + y))).count();
+            cover[i].0 += all
+                .iter()
+                .filter(|[x, y, _]| columns.contains(&(x * GridSpec::NY + y)))
+                .count();
             gone[i].1 += all.len();
             gone[i].0 += all.len() - standing(after, class).len();
         }
@@ -150,9 +157,16 @@ fn things_are_found_in_simulated_labels() {
     }
     println!(
         "buildings found {buildings:?} {:.2}, on known ones {sound_buildings:?} {:.2}; trees within 1.5 m {trees:?} {:.2}, of those found {sound_trees:?} {:.2}; manmade, vegetation voxels covered {:.3} {:.3}, gone with all things {:.3} {:.3}; {:.0} things and {:.0} ms a frame; other voxels changed {other_changes}",
-        share(buildings), share(sound_buildings), share(trees), share(sound_trees),
-        share(cover[0]), share(cover[1]), share(gone[0]), share(gone[1]),
-        things as f64 / WORLDS as f64, 1e3 * seconds / WORLDS as f64,
+        share(buildings),
+        share(sound_buildings),
+        share(trees),
+        share(sound_trees),
+        share(cover[0]),
+        share(cover[1]),
+        share(gone[0]),
+        share(gone[1]),
+        things as f64 / WORLDS as f64,
+        1e3 * seconds / WORLDS as f64,
     );
     assert!(share(buildings) > 0.5, "{buildings:?}");
     assert!(share(trees) > 0.6, "{trees:?}");

@@ -203,15 +203,10 @@ impl Prompt {
                         .map(|c| format!("  {} {}: {}", c.says(), c.class.replace('_', " "), c.place)),
                 );
             }
-            lines.extend(
-                reading
-                    .not_understood
-                    .iter()
-                    .map(|u| match &u.why {
-                        Some(why) => format!("not understood: {:?} ({why})", u.text),
-                        None => format!("not understood: {:?}", u.text),
-                    }),
-            );
+            lines.extend(reading.not_understood.iter().map(|u| match &u.why {
+                Some(why) => format!("not understood: {:?} ({why})", u.text),
+                None => format!("not understood: {:?}", u.text),
+            }));
             lines.extend(reading.notes.iter().map(|n| format!("note: {n}")));
             lines.join("\n")
         });

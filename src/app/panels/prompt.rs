@@ -282,6 +282,8 @@ impl PromptPane {
         self.changed_by.clone_from(&self.prompt);
         let reading = text::read_edit(&self.prompt, scene, self.seed);
         let edits = text::all_edits(&reading);
+        // "The trees near the junction" ask for no other road.
+        let no_things = reading.things.is_empty();
         let EditReading {
             questions,
             not_understood,
@@ -292,6 +294,7 @@ impl PromptPane {
         self.notes.extend(not_understood.iter().map(unread));
         let road = text::read(&self.prompt)
             .ok()
+            .filter(|_| no_things)
             .and_then(|r| r.description.road.kind);
         if let Some(road) = road {
             let name = format!("{road:?}").to_lowercase();

@@ -12,9 +12,9 @@ use super::{Amount, Said, Taken, Verb, What, take};
 use crate::generation::text::description::{Became, Phrase, Unread};
 use crate::generation::text::edit::{EditReading, Question};
 use crate::generation::text::select::Candidate;
+use crate::scene::Form;
 use crate::scene::background::STOREY_M;
 use crate::scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
-use crate::scene::Form;
 
 /// Change of a height if none is said: a building by storeys, other things by this share of theirs.
 const USUAL_STOREYS: f64 = 2.0;
@@ -100,7 +100,7 @@ pub fn read_edit(
                 out.things.extend(in_world(edit, &open.world_from_ego));
             }
             Err(Stopped::Asked(question)) => out.questions.push(Question {
-                phrase: phrase_of(&words, &s),
+                phrase: s.target.of(text).to_owned(),
                 ..question
             }),
             Err(Stopped::Cannot(why)) => out.not_understood.push(Unread {
@@ -118,40 +118,40 @@ fn in_grid(form: &Form) -> bool {
     lo.max_element() < 40.0 && hi.min_element() > -40.0
 }
 
-/// The words that name the target: from its article on, or the verb's rest.
-fn phrase_of(words: &str, said: &Said) -> String {
-    let lower = words.to_lowercase();
-    let from = [" the ", " that ", " this "].iter().filter_map(|a| lower.find(a)).min();
-    let from = from.map_or(0, |at| at + 1);
-    let rest = words.get(from..).unwrap_or(words);
-    // What is asked of it stays: "by two storeys".
-    let rest_lower = rest.to_lowercase();
-    let end = match said.by.is_some() || said.height.is_some() || said.way.is_some() {
-        true => [" by ", " to ", " two ", " taller", " higher", " lower"].iter().filter_map(|a| rest_lower.find(a)).min(),
-        false => None,
-    };
-    rest.get(..end.unwrap_or(rest.len())).unwrap_or(rest).to_owned()
-}
-
 enum Stopped {
     Asked(Question),
     Cannot(String),
 }
 
 /// Edits in the ego frame, in the order that they are applied, and what was done in words.
-fn carry_out(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<ThingEdit>, String), Stopped> {
+fn carry_out(
+    s: &Said,
+    now: &Background,
+    ground: Ground,
+    seed: u64,
+) -> Result<(Vec<ThingEdit>, String), Stopped> {
     let called = name(s);
     if matches!(s.verb, Verb::Add | Verb::Have) {
         let forms = forms(s, ground, seed).map_err(Stopped::Cannot)?;
-        let meaning = format!("adds {} {}", forms.len(), if forms.len() == 1 { "thing" } else { "things" });
+        let meaning = format!(
+            "adds {} {}",
+            forms.len(),
+            if forms.len() == 1 { "thing" } else { "things" }
+        );
         return Ok((vec![ThingEdit::Add { forms }], meaning));
     }
     if matches!(s.what, What::Place(p) if p != crate::generation::world::scenery::Setting::Forest) {
-        return Err(Stopped::Cannot(format!("{called}: a kind of place is no single thing; name buildings, trees or fences")));
+        return Err(Stopped::Cannot(format!(
+            "{called}: a kind of place is no single thing; name buildings, trees or fences"
+        )));
     }
     let ids = match targets(s, now, &ground) {
         Meant::These(ids) if ids.is_empty() => {
-            let why = match (s.place.near, ground.roads.crossings.is_empty(), ground.roads.junctions_m.is_empty()) {
+            let why = match (
+                s.place.near,
+                ground.roads.crossings.is_empty(),
+                ground.roads.junctions_m.is_empty(),
+            ) {
                 (Some(super::NearTo::Crossing), true, _) => "there is no crossing in this scene".to_owned(),
                 (Some(super::NearTo::Junction), _, true) => "there is no junction in this scene".to_owned(),
                 _ => format!("no {called} is there"),
@@ -234,7 +234,11 @@ fn apply(now: &mut Background, edits: &[ThingEdit], all: &Background) {
                 for form in forms {
                     // The id that the editor will give it.
                     let id = ThingId(now.next_id().0.max(all.next_id().0));
-                    now.insert(crate::scene::Thing { id, form: form.clone(), look: id.0 });
+                    now.insert(crate::scene::Thing {
+                        id,
+                        form: form.clone(),
+                        look: id.0,
+                    });
                 }
             }
             ThingEdit::Move { ids, by_m } => change(now, ids, |form| form.map_points(|p| p + *by_m, 0.0)),
@@ -253,12 +257,17 @@ fn change(now: &mut Background, ids: &[ThingId], mut change: impl FnMut(&mut For
 }
 
 fn in_world(edits: Vec<ThingEdit>, world_from_ego: &Pose) -> Vec<ThingEdit> {
-    let turned = |by: DVec2| (world_from_ego.apply(by.extend(0.0)) - world_from_ego.apply(glam::DVec3::ZERO)).truncate();
+    let turned = |by: DVec2| {
+        (world_from_ego.apply(by.extend(0.0)) - world_from_ego.apply(glam::DVec3::ZERO)).truncate()
+    };
     let one = |edit| match edit {
         ThingEdit::Add { forms } => ThingEdit::Add {
             forms: forms.iter().map(|f| f.in_frame(world_from_ego)).collect(),
         },
-        ThingEdit::Move { ids, by_m } => ThingEdit::Move { ids, by_m: turned(by_m) },
+        ThingEdit::Move { ids, by_m } => ThingEdit::Move {
+            ids,
+            by_m: turned(by_m),
+        },
         same => same,
     };
     edits.into_iter().map(one).collect()

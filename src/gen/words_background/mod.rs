@@ -10,6 +10,8 @@ mod tests;
 pub mod wishes;
 
 use super::text::tokens::{Span, Token, TokenKind, tokens};
+use crate::generation::world::scenery::Setting;
+use crate::scene::background::PostKind;
 pub use lexicon::{Verb, What};
 use lexicon::{Word, lookup};
 
@@ -90,6 +92,8 @@ pub struct Said {
     pub place: Where,
     /// Bytes of the text.
     pub span: Span,
+    /// Those that name the thing, without the amount of a change.
+    pub target: Span,
 }
 
 /// What of a text is about the background, and the rest with the same bytes in the same places.
@@ -121,13 +125,17 @@ pub fn take(text: &str, edits: bool) -> Taken {
             // "a car behind a truck and a tree": part of where the car is.
             before || joint.is_some_and(|t| t.kind == TokenKind::Comma) || s.place != Where::default()
         });
-        verb = said.as_ref().map(|s| s.verb).filter(|v| *v != Verb::Have).or_else(|| {
-            let first = clause.first().and_then(|t| lookup(&[t.text.as_str()]));
-            match first {
-                Some((Word::Verb(v), _)) => Some(v),
-                _ => verb,
-            }
-        });
+        verb = said
+            .as_ref()
+            .map(|s| s.verb)
+            .filter(|v| *v != Verb::Have)
+            .or_else(|| {
+                let first = clause.first().and_then(|t| lookup(&[t.text.as_str()]));
+                match first {
+                    Some((Word::Verb(v), _)) => Some(v),
+                    _ => verb,
+                }
+            });
         before = said.is_some() || !clause.iter().any(|t| is_preposition(&t.text));
         let Some(said) = said else { continue };
         let joint = joint.filter(|t| t.kind == TokenKind::Word || t.kind == TokenKind::Comma);
@@ -144,8 +152,8 @@ fn blank(text: &mut String, span: Span) {
 
 fn is_preposition(word: &str) -> bool {
     const LIST: &[&str] = &[
-        "behind", "front", "between", "near", "next", "beside", "by", "at", "past", "under", "with", "toward", "towards",
-        "around", "against", "from", "into", "onto",
+        "behind", "front", "between", "near", "next", "beside", "by", "at", "past", "under", "with",
+        "toward", "towards", "around", "against", "from", "into", "onto",
     ];
     LIST.contains(&word)
 }
@@ -172,7 +180,9 @@ fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
         out.push((joint, &tokens[start..i]));
         // ", and" joins once.
         joint = match out.last() {
-            Some((before, clause)) if clause.is_empty() && tokens[i].kind == TokenKind::Word => before.or(Some(&tokens[i])),
+            Some((before, clause)) if clause.is_empty() && tokens[i].kind == TokenKind::Word => {
+                before.or(Some(&tokens[i]))
+            }
             _ => Some(&tokens[i]),
         };
         start = i + 1;
@@ -184,7 +194,8 @@ fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
 
 /// Reads one clause; `None` if it is not about the background, or not wholly understood.
 fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Option<Said> {
-    let words = senses(clause)?;
+    let spoken = senses(clause)?;
+    let words: Vec<Word> = spoken.iter().map(|(word, _)| *word).collect();
     let mut s = Said {
         verb: Verb::Have,
         what: What::Thing,
@@ -201,6 +212,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         way: None,
         place: Where::default(),
         span,
+        target: span,
     };
     let (mut verb, mut what, mut article) = (None, None, None);
     let (mut no, mut all, mut comparative, mut absolute) = (false, false, None, false);
@@ -276,13 +288,17 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
                     (Some(Word::Metre), _) => {
                         match () {
                             () if before == Some(Word::To) => s.height = Some(Amount::Metres(n)),
-                            () if before == Some(Word::By) || wants(Verb::Move) => s.by = Some(Amount::Metres(n)),
+                            () if before == Some(Word::By) || wants(Verb::Move) => {
+                                s.by = Some(Amount::Metres(n))
+                            }
                             () if wants(Verb::Raise) || wants(Verb::Lower) => s.by = Some(Amount::Metres(n)),
                             () => s.place.distance_m = Some(n),
                         }
                         i += 1;
                     }
-                    (Some(Word::What(..) | Word::Tall | Word::Low | Word::Row), _) => s.count = Some(n.min(500.0) as u32),
+                    (Some(Word::What(..) | Word::Tall | Word::Low | Word::Row), _) => {
+                        s.count = Some(n.min(500.0) as u32)
+                    }
                     _ => return None,
                 }
             }
@@ -332,10 +348,41 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         Verb::Have if edits => s.verb = Verb::Add,
         _ => {}
     }
+    s.target = target(&spoken, &s);
+    // "Clear the car park" is about what stands on it, "bus stops ahead" about a bus.
+    let cleared = matches!(s.what, What::Place(p) if p != Setting::Forest) && s.verb == Verb::Remove && !no;
+    let stops = s.what == What::Post(PostKind::BusStop) && verb.is_none();
+    if cleared || stops {
+        return None;
+    }
     // Surroundings as a whole ("a forest") belong to the other reader unless a side is named.
-    let whole = matches!(s.what, What::Place(_)) && !edits && s.place.side.is_none() && s.verb == Verb::Have;
+    let whole = matches!(s.what, What::Place(_)) && s.place.side.is_none() && verb.is_none() && !no;
     let other = whole && !words.contains(&Word::Both);
     (!other && (edits || !may_be_barrier(&s))).then_some(s)
+}
+
+/// From the article of the thing to where the amount of a change begins.
+fn target(spoken: &[(Word, Span)], s: &Said) -> Span {
+    let at = spoken
+        .iter()
+        .position(|(w, _)| matches!(w, Word::What(..)))
+        .unwrap_or(0);
+    let from = spoken[..at]
+        .iter()
+        .rposition(|(w, _)| matches!(w, Word::The | Word::A))
+        .unwrap_or(at);
+    let changes = s.by.is_some() || s.height.is_some() || s.way.is_some();
+    let amount = |(w, _): &(Word, Span)| {
+        matches!(
+            w,
+            Word::Number(_) | Word::By | Word::To | Word::Taller | Word::Lower | Word::Tall
+        )
+    };
+    let end = spoken[at..]
+        .iter()
+        .position(|w| changes && amount(w))
+        .map_or(spoken.len(), |i| at + i);
+    spoken[from].1.to(spoken[end - 1].1)
 }
 
 /// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.
@@ -345,19 +392,19 @@ fn may_be_barrier(s: &Said) -> bool {
 }
 
 /// What the words of a clause say, one after another; `None` if one is not known.
-fn senses(clause: &[Token]) -> Option<Vec<Word>> {
+fn senses(clause: &[Token]) -> Option<Vec<(Word, Span)>> {
     let clause: Vec<&Token> = clause.iter().filter(|t| t.text != "#").collect();
     let words: Vec<&str> = clause.iter().map(|t| t.text.as_str()).collect();
     let mut out = Vec::new();
     let mut i = 0;
     while i < words.len() {
         if let TokenKind::Number(n) = clause[i].kind {
-            out.push(Word::Number(n));
+            out.push((Word::Number(n), clause[i].span));
             i += 1;
             continue;
         }
         let (word, n) = lookup(&words[i..])?;
-        out.push(word);
+        out.push((word, clause[i].span.to(clause[i + n - 1].span)));
         i += n;
     }
     Some(out)

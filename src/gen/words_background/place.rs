@@ -101,7 +101,13 @@ impl Ground {
     }
 
     /// The free place that fits best: at the way along the road that was said, as near to the road as `from_paved_m`.
-    pub fn place(&self, place: &Where, along_m: f64, from_paved_m: f64, fits: &dyn Fn(DVec2) -> bool) -> Option<DVec2> {
+    pub fn place(
+        &self,
+        place: &Where,
+        along_m: f64,
+        from_paved_m: f64,
+        fits: &dyn Fn(DVec2) -> bool,
+    ) -> Option<DVec2> {
         let mut order: Vec<(f64, usize)> = (0..GridSpec::COLUMNS)
             .filter(|c| !self.taken[*c])
             .filter_map(|c| {
@@ -132,7 +138,11 @@ impl Ground {
             let (own, p) = (self.own[c], middle_m(c));
             let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
             let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
-            if wrong_side || (paved - from_paved_m).abs() > 0.3 || !self.has_room(p, 0.3) || !self.fits(&place, p) {
+            if wrong_side
+                || (paved - from_paved_m).abs() > 0.3
+                || !self.has_room(p, 0.3)
+                || !self.fits(&place, p)
+            {
                 continue;
             }
             let slot = (own.x / STEP_M).round() as i64;
@@ -143,14 +153,19 @@ impl Ground {
         }
         let mut out: Vec<Vec<(i64, f64, DVec2)>> = Vec::new();
         for (slot, (offset, p)) in at {
-            let goes_on = out.last().and_then(|l| l.last()).is_some_and(|(s, o, _)| slot - s <= 2 && (offset - o).abs() < 2.5);
+            let goes_on = out
+                .last()
+                .and_then(|l| l.last())
+                .is_some_and(|(s, o, _)| slot - s <= 2 && (offset - o).abs() < 2.5);
             match out.last_mut().filter(|_| goes_on) {
                 Some(line) => line.push((slot, offset, p)),
                 None => out.push(vec![(slot, offset, p)]),
             }
         }
         out.retain(|l| l.len() >= 3);
-        out.into_iter().map(|l| l.into_iter().map(|(.., p)| p).collect()).collect()
+        out.into_iter()
+            .map(|l| l.into_iter().map(|(.., p)| p).collect())
+            .collect()
     }
 }
 

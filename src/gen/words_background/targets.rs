@@ -29,11 +29,13 @@ pub(super) enum Meant {
 /// True if any of the points is near what was said.
 pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> bool {
     let Some(near) = place.near else { return true };
-    let reach = place.distance_m.unwrap_or(NEAR_M[match near {
-        NearTo::Crossing => 0,
-        NearTo::Junction => 1,
-        NearTo::Ego => 2,
-    }]);
+    let reach = place.distance_m.unwrap_or(
+        NEAR_M[match near {
+            NearTo::Crossing => 0,
+            NearTo::Junction => 1,
+            NearTo::Ego => 2,
+        }],
+    );
     points_m.iter().any(|p| match near {
         NearTo::Crossing => roads.crossings.iter().any(|c| {
             crate::scene::road_map::inside(&c.outline_m, *p) || outline_distance_m(&c.outline_m, *p) <= reach
@@ -48,17 +50,24 @@ pub(super) fn is(what: What, form: &Form) -> bool {
     match (what, form) {
         (What::Thing, _) | (What::Building(_), Form::Building(_)) | (What::Shrubs, Form::Shrubs(_)) => true,
         (What::Tree(kind), Form::Tree(t)) => kind.is_none_or(|k| t.kind == k),
-        (What::Line(LineKind::Wall), Form::Line(l)) => matches!(l.kind, LineKind::Wall | LineKind::RetainingWall),
+        (What::Line(LineKind::Wall), Form::Line(l)) => {
+            matches!(l.kind, LineKind::Wall | LineKind::RetainingWall)
+        }
         (What::Line(kind), Form::Line(l)) => l.kind == kind,
         (What::Post(PostKind::Pole), Form::Post(p)) => {
-            matches!(p.kind, PostKind::Pole | PostKind::StreetLight | PostKind::Sign | PostKind::TrafficLight)
+            matches!(
+                p.kind,
+                PostKind::Pole | PostKind::StreetLight | PostKind::Sign | PostKind::TrafficLight
+            )
         }
         (What::Post(kind), Form::Post(p)) => p.kind == kind,
-        (What::Plants | What::Place(crate::generation::world::scenery::Setting::Forest), form) => match form {
-            Form::Tree(_) | Form::Shrubs(_) => true,
-            Form::Line(l) => l.kind == LineKind::Hedge,
-            _ => false,
-        },
+        (What::Plants | What::Place(crate::generation::world::scenery::Setting::Forest), form) => {
+            match form {
+                Form::Tree(_) | Form::Shrubs(_) => true,
+                Form::Line(l) => l.kind == LineKind::Hedge,
+                _ => false,
+            }
+        }
         _ => false,
     }
 }
@@ -78,7 +87,11 @@ pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Mean
         return row(&fits, said, ground);
     }
     if let (Some(along), None) = (said.place.distance_m, said.place.near) {
-        let along = if said.place.ahead == Some(false) { -along } else { along };
+        let along = if said.place.ahead == Some(false) {
+            -along
+        } else {
+            along
+        };
         let off = |t: &Thing| (ground.roads.along_ego_lane(t.form.middle_m()).x - along).abs();
         fits.retain(|t| off(t) <= OFF_M);
         fits.sort_by(|a, b| off(a).total_cmp(&off(b)));
@@ -104,7 +117,12 @@ fn candidate(thing: &Thing, ground: &Ground) -> (ThingId, String, String) {
     let own = ground.roads.along_ego_lane(thing.form.middle_m());
     let along = if own.x >= 0.0 { "ahead" } else { "behind" };
     let side = if own.y >= 0.0 { "left" } else { "right" };
-    let place = format!("{:.0} m {along}, {:.0} m {side}, {:.1} m high", own.x.abs(), own.y.abs(), thing.form.height_m());
+    let place = format!(
+        "{:.0} m {along}, {:.0} m {side}, {:.1} m high",
+        own.x.abs(),
+        own.y.abs(),
+        thing.form.height_m()
+    );
     (thing.id, place, format!("thing #{}", thing.id.0))
 }
 
@@ -132,11 +150,10 @@ fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
     let mut rows: Vec<Vec<(&Thing, DVec2)>> = Vec::new();
     for (t, own) in list {
         let belongs = |row: &&mut Vec<(&Thing, DVec2)>| {
-            row.last()
-                .is_some_and(|(last, at)| {
-                    let apart = last.form.middle_m().distance(t.form.middle_m());
-                    (at.y > 0.0) == (own.y > 0.0) && apart <= ROW_GAP_M && (at.y - own.y).abs() < 4.0
-                })
+            row.last().is_some_and(|(last, at)| {
+                let apart = last.form.middle_m().distance(t.form.middle_m());
+                (at.y > 0.0) == (own.y > 0.0) && apart <= ROW_GAP_M && (at.y - own.y).abs() < 4.0
+            })
         };
         match rows.iter_mut().find(belongs) {
             Some(row) => row.push((t, own)),
@@ -148,7 +165,13 @@ fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
     match (of(true).next(), of(false).next()) {
         (Some(a), Some(b)) if !said.plural => Meant::Ask(
             [(a, "left"), (b, "right")]
-                .map(|((t, _), side)| (t.id, format!("the row on the {side}"), format!("the tree row on the {side}")))
+                .map(|((t, _), side)| {
+                    (
+                        t.id,
+                        format!("the row on the {side}"),
+                        format!("the tree row on the {side}"),
+                    )
+                })
                 .to_vec(),
         ),
         _ => Meant::These(rows.iter().flatten().map(|(t, _)| t.id).collect()),

@@ -56,7 +56,10 @@ pub fn scenery(
             }
             continue;
         }
-        let sides: Vec<SideOf> = s.place.side.map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
+        let sides: Vec<SideOf> = s
+            .place
+            .side
+            .map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
         for side in sides {
             let mut here = s.clone();
             here.place.side = Some(side);
@@ -86,14 +89,24 @@ fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
     if s.row || s.place.distance_m.is_some() || s.count.is_some() || s.place.near.is_some() {
         return false;
     }
-    let of = |what: What| things.iter().filter(move |t| is(what, &t.form) && ground.fits(&s.place, t.form.middle_m()));
+    let of = |what: What| {
+        things
+            .iter()
+            .filter(move |t| is(what, &t.form) && ground.fits(&s.place, t.form.middle_m()))
+    };
     match s.what {
         What::Place(Setting::Forest | Setting::Park) => of(What::Tree(None)).count() >= 3,
         What::Place(Setting::Country) => true,
         What::Place(_) => of(What::Building(None)).count() > 0,
         What::Building(_) => of(s.what).count() > 0,
         What::Line(_) => {
-            let length = |t: &crate::scene::Thing| t.form.points_m().windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+            let length = |t: &crate::scene::Thing| {
+                t.form
+                    .points_m()
+                    .windows(2)
+                    .map(|w| w[0].distance(w[1]))
+                    .sum::<f64>()
+            };
             of(s.what).map(length).sum::<f64>() > 20.0
         }
         what => of(what).count() >= if s.plural { 3 } else { 1 },
@@ -107,7 +120,10 @@ fn style(description: &Description, wishes: &[(String, Said)], layout: &BevLayou
     }
     let sides = [(SideOf::Left, &mut style.left), (SideOf::Right, &mut style.right)];
     for (which, side) in sides {
-        let here = wishes.iter().map(|w| &w.1).filter(|s| s.place.side.is_none_or(|of| of == which));
+        let here = wishes
+            .iter()
+            .map(|w| &w.1)
+            .filter(|s| s.place.side.is_none_or(|of| of == which));
         // Kinds of place first: "trees" among them say how many.
         let (places, rest): (Vec<&Said>, Vec<&Said>) = here.partition(|s| matches!(s.what, What::Place(_)));
         for s in places.into_iter().chain(rest) {
@@ -154,7 +170,10 @@ fn wish(side: &mut Side, s: &Said) {
         }
         What::Building(_) if no => side.built = 0.0,
         What::Building(kind) => {
-            let bare = matches!(side.setting, Setting::Forest | Setting::Motorway | Setting::Country | Setting::Park);
+            let bare = matches!(
+                side.setting,
+                Setting::Forest | Setting::Motorway | Setting::Country | Setting::Park
+            );
             // Houses suit an old town as well, towers do not suit a suburb.
             let fits = matches!((kind, side.setting), (Some(Setting::Suburb), Setting::OldTown));
             if let Some(setting) = kind.filter(|_| !fits) {
@@ -162,7 +181,11 @@ fn wish(side: &mut Side, s: &Said) {
             } else if bare {
                 side.setting = Setting::City;
             }
-            side.built = if s.dense.is_some() { many } else { side.built.max(1.1) };
+            side.built = if s.dense.is_some() {
+                many
+            } else {
+                side.built.max(1.1)
+            };
             side.storeys = storeys(s, side.setting).or(side.storeys);
         }
         What::Tree(_) => side.trees = if no { 0.0 } else { many.max(0.4) * 1.2 },
@@ -212,7 +235,10 @@ pub(super) fn name(s: &Said) -> String {
 /// New things of a clause, ego frame; an error in words where there is no room or it cannot be made.
 pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>, String> {
     let mut draw = Draw::new(seed, "by words");
-    let sides: Vec<SideOf> = s.place.side.map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
+    let sides: Vec<SideOf> = s
+        .place
+        .side
+        .map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
     let height = s.height.map(|h| match h {
         Amount::Storeys(n) => n * STOREY_M,
         Amount::Metres(m) => m,
@@ -233,10 +259,18 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
                 out.push(Form::Line(line));
             }
         }
-        return if out.is_empty() { Err(no_room()) } else { Ok(sound(out)?) };
+        return if out.is_empty() {
+            Err(no_room())
+        } else {
+            Ok(sound(out)?)
+        };
     }
     if s.row || s.place.along {
-        let spacing = if matches!(s.what, What::Tree(_)) { 8.0 } else { 14.0 };
+        let spacing = if matches!(s.what, What::Tree(_)) {
+            8.0
+        } else {
+            14.0
+        };
         for side in &sides {
             for line in ground.lines(&s.place, *side, 1.0) {
                 let mut last: Option<DVec2> = None;
@@ -248,24 +282,41 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
                 }
             }
         }
-        return if out.is_empty() { Err(no_room()) } else { Ok(sound(out)?) };
+        return if out.is_empty() {
+            Err(no_room())
+        } else {
+            Ok(sound(out)?)
+        };
     }
     let (count, spacing) = match s.what {
-        What::Place(Setting::Forest) | What::Place(Setting::Park) => (if s.dense == Some(false) { 14 } else { 45 }, 0.0),
+        What::Place(Setting::Forest) | What::Place(Setting::Park) => {
+            (if s.dense == Some(false) { 14 } else { 45 }, 0.0)
+        }
         What::Place(_) | What::Plants | What::Thing => {
-            return Err(format!("{}: only buildings, trees, shrubs, lines and posts can be put in by words", name(s)));
+            return Err(format!(
+                "{}: only buildings, trees, shrubs, lines and posts can be put in by words",
+                name(s)
+            ));
         }
         _ => (s.count.unwrap_or(if s.plural { 4 } else { 1 }), 6.0),
     };
     let sign = if s.place.ahead == Some(false) { -1.0 } else { 1.0 };
-    let first = s.place.distance_m.filter(|_| s.place.near.is_none()).unwrap_or(8.0);
+    let first = s
+        .place
+        .distance_m
+        .filter(|_| s.place.near.is_none())
+        .unwrap_or(8.0);
     for i in 0..count.min(200) {
         let along = match spacing {
             0.0 => draw.range(-38.0, 38.0),
             step => sign * (first + f64::from(i) * step),
         };
         // Far from the road too, in a wood.
-        let from_paved = if spacing == 0.0 { draw.range(2.0, 16.0) } else { 1.2 };
+        let from_paved = if spacing == 0.0 {
+            draw.range(2.0, 16.0)
+        } else {
+            1.2
+        };
         let fits = |p: DVec2| {
             let mut try_draw = Draw::new(seed, "try");
             match single(s, p, height, scale, &ground, &mut try_draw) {
@@ -274,12 +325,17 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
                 None => false,
             }
         };
-        let Some(p) = ground.place(&s.place, along, from_paved, &fits) else { break };
+        let Some(p) = ground.place(&s.place, along, from_paved, &fits) else {
+            break;
+        };
         // A place that was named exactly is not another one.
         if s.place.distance_m.is_some() && s.place.near.is_none() && i == 0 {
             let off = (ground.roads.along_ego_lane(p).x - along).abs();
             if off > 5.0 {
-                return Err(format!("no room for {} {first:.0} m away: the nearest is {off:.0} m from there", name(s)));
+                return Err(format!(
+                    "no room for {} {first:.0} m away: the nearest is {off:.0} m from there",
+                    name(s)
+                ));
             }
         }
         if let Some(form) = single(s, p, height, scale, &ground, &mut draw) {
@@ -287,7 +343,11 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
             out.push(form);
         }
     }
-    if out.is_empty() { Err(no_room()) } else { sound(out) }
+    if out.is_empty() {
+        Err(no_room())
+    } else {
+        sound(out)
+    }
 }
 
 fn sound(forms: Vec<Form>) -> Result<Vec<Form>, String> {
@@ -298,14 +358,22 @@ fn sound(forms: Vec<Form>) -> Result<Vec<Form>, String> {
 }
 
 /// One thing at a place.
-fn single(s: &Said, p: DVec2, height: Option<f64>, scale: f64, ground: &Ground, draw: &mut Draw) -> Option<Form> {
+fn single(
+    s: &Said,
+    p: DVec2,
+    height: Option<f64>,
+    scale: f64,
+    ground: &Ground,
+    draw: &mut Draw,
+) -> Option<Form> {
     let along = ground.roads.ego_direction(p);
     let on_left = ground.roads.along_ego_lane(p).y > 0.0;
     let away = if on_left { along.perp() } else { -along.perp() };
     Some(match s.what {
         What::Tree(_) | What::Place(_) => {
             let named = if let What::Tree(kind) = s.what { kind } else { None };
-            let kind = named.unwrap_or([TreeKind::Broadleaf, TreeKind::Conifer][usize::from(draw.chance(0.25))]);
+            let kind =
+                named.unwrap_or([TreeKind::Broadleaf, TreeKind::Conifer][usize::from(draw.chance(0.25))]);
             let height_m = height.unwrap_or_else(|| draw.range(5.0, 8.0) * scale);
             let slim = match kind {
                 TreeKind::Conifer => 0.2,
@@ -329,11 +397,17 @@ fn single(s: &Said, p: DVec2, height: Option<f64>, scale: f64, ground: &Ground, 
             let height_m = height.unwrap_or(storeys * STOREY_M * scale).max(STOREY_M);
             // Its front, not its middle, stands at the place.
             let middle = p + away * (depth / 2.0);
-            Form::Building(Building::rectangle(middle, DVec2::new(length, depth) / 2.0, along, height_m))
+            Form::Building(Building::rectangle(
+                middle,
+                DVec2::new(length, depth) / 2.0,
+                along,
+                height_m,
+            ))
         }
         What::Shrubs => {
             let radius = 1.6;
-            let corner = |i: usize| p + away + DVec2::from_angle(i as f64 * std::f64::consts::FRAC_PI_3) * radius;
+            let corner =
+                |i: usize| p + away + DVec2::from_angle(i as f64 * std::f64::consts::FRAC_PI_3) * radius;
             Form::Shrubs(Shrubs {
                 outline_m: (0..6).map(corner).collect(),
                 height_m: height.unwrap_or(1.2 * scale),
@@ -343,7 +417,11 @@ fn single(s: &Said, p: DVec2, height: Option<f64>, scale: f64, ground: &Ground, 
         What::Post(kind) => {
             let facing = match kind {
                 PostKind::Sign | PostKind::TrafficLight => {
-                    if on_left { along } else { -along }
+                    if on_left {
+                        along
+                    } else {
+                        -along
+                    }
                 }
                 _ => -away,
             };
@@ -358,6 +436,9 @@ fn single(s: &Said, p: DVec2, height: Option<f64>, scale: f64, ground: &Ground, 
 /// The line with fewer vertices: a vertex about every 8 m, and both ends.
 fn thinned(points_m: &[DVec2]) -> Vec<DVec2> {
     let last = points_m.len().saturating_sub(1);
-    let keep = points_m.iter().enumerate().filter(|(i, _)| i % 5 == 0 || *i == last);
+    let keep = points_m
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| i % 5 == 0 || *i == last);
     keep.map(|(_, p)| *p).collect()
 }

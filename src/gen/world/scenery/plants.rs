@@ -119,7 +119,9 @@ pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
         let side = *site.side(p);
         let patch = 1.0 + 0.8 * noise(site.seed ^ 0x5eed, p.x / 9.0, p.y / 9.0);
         // 160 draws over 6,400 m²: 25 per 1,000 m².
-        if chance > undergrowth(side.setting) / 25.0 * side.green * side.shrubs * patch || site.paved_m(p) < 1.2 {
+        if chance > undergrowth(side.setting) / 25.0 * side.green * side.shrubs * patch
+            || site.paved_m(p) < 1.2
+        {
             continue;
         }
         let mut own = Draw::new(pick, "patch");

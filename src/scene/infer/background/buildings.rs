@@ -34,7 +34,12 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
         .collect();
     // Nothing was seen there: inside or behind something, or out of reach.
     let hidden: Vec<bool> = (0..GridSpec::COLUMNS)
-        .map(|c| labels.column(c / GridSpec::NY, c % GridSpec::NY).iter().all(|l| *l == crate::scene::Class::FREE))
+        .map(|c| {
+            labels
+                .column(c / GridSpec::NY, c % GridSpec::NY)
+                .iter()
+                .all(|l| *l == crate::scene::Class::FREE)
+        })
         .collect();
     let mut pieces: Vec<(Rectangle, Vec<usize>)> = Vec::new();
     for part in parts(&closed(&tall, 1)) {
@@ -50,7 +55,8 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
                 open += usize::from(!tall[c] && !hidden[c] && manmade.top_m[c] == 0.0);
             });
             let size = 2.0 * r.half_m;
-            let sound = size.x <= LONGEST_M && size.y <= DEEPEST_M && f64::from(open as u32) <= OPEN * f64::from(all);
+            let sound =
+                size.x <= LONGEST_M && size.y <= DEEPEST_M && f64::from(open as u32) <= OPEN * f64::from(all);
             sound && height_step(r, columns, manmade).is_none()
         };
         for (rectangle, columns) in split(part, &fits) {
@@ -103,7 +109,9 @@ fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f
     }
     // Four slots on either side that agree among themselves.
     let level = |list: &[f64]| {
-        let (low, high) = list.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), t| (l.min(*t), h.max(*t)));
+        let (low, high) = list
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(l, h), t| (l.min(*t), h.max(*t)));
         (high - low < 0.9).then_some((low + high) / 2.0)
     };
     let n = 4;
@@ -140,9 +148,18 @@ fn deepened(r: Rectangle, may: &dyn Fn(DVec2) -> bool) -> Rectangle {
     for is_high in [away_is_high, !away_is_high] {
         while high - low < USUAL_DEPTH_M {
             let next = if is_high { high + step } else { low - step };
-            let line = if is_high { next - step / 2.0 } else { next + step / 2.0 };
+            let line = if is_high {
+                next - step / 2.0
+            } else {
+                next + step / 2.0
+            };
             let count = (2.0 * r.half_m.x / step).max(1.0) as usize;
-            let at = |i: usize| r.ground(DVec2::new((i as f64 + 0.5) / count as f64 * 2.0 * r.half_m.x - r.half_m.x, line));
+            let at = |i: usize| {
+                r.ground(DVec2::new(
+                    (i as f64 + 0.5) / count as f64 * 2.0 * r.half_m.x - r.half_m.x,
+                    line,
+                ))
+            };
             let free = (0..count).filter(|i| may(at(*i))).count();
             if free * 10 < count * 8 {
                 break;

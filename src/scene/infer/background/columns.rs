@@ -82,9 +82,7 @@ pub(super) fn parts(set: &[bool]) -> Vec<Vec<usize>> {
 
 /// The set with gaps of up to `2 * reach` columns closed: grown, then shrunk again.
 pub(super) fn closed(set: &[bool], reach: usize) -> Vec<bool> {
-    let grown: Vec<bool> = (0..set.len())
-        .map(|c| around(c, reach).any(|n| set[n]))
-        .collect();
+    let grown: Vec<bool> = (0..set.len()).map(|c| around(c, reach).any(|n| set[n])).collect();
     let all = |c: usize| around(c, reach).all(|n| grown[n]);
     (0..set.len()).map(|c| set[c] || (grown[c] && all(c))).collect()
 }

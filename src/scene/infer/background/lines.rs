@@ -23,7 +23,9 @@ pub(super) fn walls_and_poles(manmade: &Standing, left: &[bool]) -> Vec<Form> {
             out.push(pole(&part, manmade));
             continue;
         }
-        for (r, columns) in split(part, &|r, columns| 2.0 * r.half_m.y <= WIDEST_M || is_filled(r, columns)) {
+        for (r, columns) in split(part, &|r, columns| {
+            2.0 * r.half_m.y <= WIDEST_M || is_filled(r, columns)
+        }) {
             let top = top_m(&columns, manmade);
             if 2.0 * r.half_m.x < SHORTEST_M && columns.len() <= 2 * POLE {
                 out.push(pole(&columns, manmade));
@@ -47,7 +49,8 @@ pub(super) fn hedges_and_shrubs(vegetation: &Standing, left: &[bool]) -> Vec<For
     for part in parts(left).into_iter().filter(|p| p.len() >= 3) {
         for (r, columns) in split(part, &|r, columns| is_filled(r, columns)) {
             let top = top_m(&columns, vegetation);
-            let is_hedge = 2.0 * r.half_m.y <= WIDEST_M && r.half_m.x > 2.0 && top > 0.7 && is_dense(&r, &columns);
+            let is_hedge =
+                2.0 * r.half_m.y <= WIDEST_M && r.half_m.x > 2.0 && top > 0.7 && is_dense(&r, &columns);
             out.push(match is_hedge {
                 true => line(LineKind::Hedge, &r, top),
                 false => Form::Shrubs(Shrubs {
@@ -99,7 +102,10 @@ fn pole(columns: &[usize], manmade: &Standing) -> Form {
         _ => PostKind::Pole,
     };
     // The nearest of its columns, so that it stands on one.
-    let near = columns.iter().map(|c| middle_m(*c)).min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle)));
+    let near = columns
+        .iter()
+        .map(|c| middle_m(*c))
+        .min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle)));
     Form::Post(Post {
         kind,
         position_m: near.unwrap_or(middle),

@@ -26,7 +26,8 @@ impl Rectangle {
     /// The one of least area, by trying headings a degree apart; half a column more on every side than the middles.
     pub fn around(columns: &[usize]) -> Self {
         let points: Vec<DVec2> = columns.iter().map(|c| middle_m(*c)).collect();
-        let all = (0..90).map(|degree| Self::in_direction(&points, DVec2::from_angle(f64::from(degree).to_radians())));
+        let all = (0..90)
+            .map(|degree| Self::in_direction(&points, DVec2::from_angle(f64::from(degree).to_radians())));
         let least = all.min_by(|a, b| a.area_m2().total_cmp(&b.area_m2()));
         let found = least.unwrap_or(Self {
             middle_m: DVec2::ZERO,
@@ -83,7 +84,10 @@ impl Rectangle {
 }
 
 /// Cuts columns until `fits` takes each part with its rectangle, or no cut saves area.
-pub(super) fn split(columns: Vec<usize>, fits: &dyn Fn(&Rectangle, &[usize]) -> bool) -> Vec<(Rectangle, Vec<usize>)> {
+pub(super) fn split(
+    columns: Vec<usize>,
+    fits: &dyn Fn(&Rectangle, &[usize]) -> bool,
+) -> Vec<(Rectangle, Vec<usize>)> {
     let mut out = Vec::new();
     let mut open = vec![(columns, 0)];
     while let Some((columns, depth)) = open.pop() {

@@ -32,7 +32,9 @@ impl Labels {
         let points = ends.map(|(x, y)| DVec2::new(x, y));
         let mut cells = Vec::new();
         line_cells(&points, 0.25, |x, y| cells.push((x, y)));
-        cells.into_iter().for_each(|(x, y)| self.stand(x, y, class, -1.0, to_m));
+        cells
+            .into_iter()
+            .for_each(|(x, y)| self.stand(x, y, class, -1.0, to_m));
     }
 
     fn things(&self) -> Vec<Form> {
@@ -90,11 +92,20 @@ fn low_long_and_thin_is_a_wall_and_one_column_a_pole() {
     labels.line([(-15.0, -9.0), (12.0, -9.0)], Class::Manmade, 1.5);
     labels.stand(150, 150, Class::Manmade, -1.0, 5.0);
     let found = labels.things();
-    let lines: Vec<_> = found.iter().filter(|f| matches!(f, Form::Line(l) if l.kind == LineKind::Wall)).collect();
+    let lines: Vec<_> = found
+        .iter()
+        .filter(|f| matches!(f, Form::Line(l) if l.kind == LineKind::Wall))
+        .collect();
     assert_eq!((lines.len(), found.len()), (1, 2), "{found:?}");
-    let Form::Line(wall) = lines[0] else { unreachable!() };
+    let Form::Line(wall) = lines[0] else {
+        unreachable!()
+    };
     assert!(wall.points_m[0].distance(wall.points_m[1]) > 25.0);
-    assert!(found.iter().any(|f| matches!(f, Form::Post(p) if p.height_m > 4.0)));
+    assert!(
+        found
+            .iter()
+            .any(|f| matches!(f, Form::Post(p) if p.height_m > 4.0))
+    );
 }
 
 /// Trees with stems, two crowns that touch among them, a hedge and a patch of shrubs.
@@ -116,9 +127,16 @@ fn vegetation_becomes_trees_hedges_and_shrubs() {
         .collect();
     assert_eq!(trees.len(), 3, "{found:?}");
     for p in places {
-        let near = trees.iter().find(|t| t.position_m.distance(p) < 0.6).expect("a tree there");
+        let near = trees
+            .iter()
+            .find(|t| t.position_m.distance(p) < 0.6)
+            .expect("a tree there");
         assert!((1.2..2.4).contains(&near.crown_radius_m) && (4.0..5.4).contains(&near.height_m));
     }
     let count = |name: &str| found.iter().filter(|f| f.name() == name).count();
-    assert_eq!((count("hedge"), count("shrubs"), found.len()), (1, 1, 5), "{found:?}");
+    assert_eq!(
+        (count("hedge"), count("shrubs"), found.len()),
+        (1, 1, 5),
+        "{found:?}"
+    );
 }

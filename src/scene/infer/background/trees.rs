@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::columns::{Standing, around, middle_m};
+use crate::scene::GridSpec;
 use crate::scene::background::{Tree, TreeKind};
 use crate::scene::distance::signed_distance_m;
-use crate::scene::GridSpec;
 
 /// Vegetation lower than this is shrubs, m.
 const LOWEST_M: f64 = 2.0;
@@ -23,7 +23,9 @@ const STEM: f64 = 100.0;
 
 /// Trees of the labels; the columns of their crowns are marked in `taken`.
 pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
-    let high: Vec<bool> = (0..GridSpec::COLUMNS).map(|c| vegetation.top_m[c] >= LOWEST_M).collect();
+    let high: Vec<bool> = (0..GridSpec::COLUMNS)
+        .map(|c| vegetation.top_m[c] >= LOWEST_M)
+        .collect();
     let mut left = high.clone();
     let mut trees: Vec<Tree> = Vec::new();
     for pass in 0..PASSES {
@@ -63,7 +65,11 @@ fn scores(vegetation: &Standing, left: &[bool], with_stems: bool) -> Vec<f64> {
     let deep = signed_distance_m(|c| left[c]);
     let crown = |c: usize| match left[c] {
         // Deep inside the crown, high and dense.
-        true => f64::from(deep[c].abs()).min(4.0) + 0.25 * vegetation.top_m[c] + 0.05 * f64::from(vegetation.count(c)),
+        true => {
+            f64::from(deep[c].abs()).min(4.0)
+                + 0.25 * vegetation.top_m[c]
+                + 0.05 * f64::from(vegetation.count(c))
+        }
         false => 0.0,
     };
     let rough: Vec<f64> = (0..GridSpec::COLUMNS).map(crown).collect();
@@ -97,7 +103,8 @@ fn is_stem(vegetation: &Standing, c: usize) -> bool {
 fn peaks(scores: &[f64], trees: &[Tree]) -> Vec<DVec2> {
     let is_peak = |c: &usize| {
         let reach = if scores[*c] >= STEM { 2 } else { 3 };
-        scores[*c] > 0.0 && around(*c, reach).all(|n| scores[n] < scores[*c] || (scores[n] == scores[*c] && n >= *c))
+        scores[*c] > 0.0
+            && around(*c, reach).all(|n| scores[n] < scores[*c] || (scores[n] == scores[*c] && n >= *c))
     };
     let mut order: Vec<usize> = (0..scores.len()).filter(is_peak).collect();
     order.sort_by(|a, b| scores[*b].total_cmp(&scores[*a]).then(a.cmp(b)));
