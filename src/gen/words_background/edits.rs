@@ -75,7 +75,7 @@ pub fn read_edit(
     let Taken { mut said, rest } = take(text, true);
     // "Fence" and "guard rail" name barriers too, which are boxes.
     let has_barriers = open.boxes.values().any(|b| b.class == Class::Barrier);
-    let is_barrier = |s: &Said| has_barriers && super::may_be_barrier(s);
+    let is_barrier = |s: &Said| has_barriers && super::read::may_be_barrier(s);
     if said.is_empty() || said.iter().any(is_barrier) {
         return read_rest(text);
     }
@@ -154,6 +154,7 @@ fn carry_out(
             ) {
                 (Some(super::NearTo::Crossing), true, _) => "there is no crossing in this scene".to_owned(),
                 (Some(super::NearTo::Junction), _, true) => "there is no junction in this scene".to_owned(),
+                _ if s.row => format!("no row of three or more along the road is there ({called})"),
                 _ => format!("no {called} is there"),
             };
             return Err(Stopped::Cannot(why));
@@ -171,7 +172,7 @@ fn carry_out(
                 })
                 .collect();
             return Err(Stopped::Asked(Question {
-                text: format!("{} of {called} fit: which?", candidates.len()),
+                text: format!("{called}: {} fit, which one?", candidates.len()),
                 phrase: String::new(),
                 candidates,
             }));

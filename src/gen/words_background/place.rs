@@ -46,7 +46,7 @@ impl Ground {
     /// Marks the ground of a form as taken.
     pub fn take(&mut self, form: &Form) {
         let taken = &mut self.taken;
-        let mut take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
+        let take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
         match form {
             Form::Building(b) => polygon_cells(&b.outline_m, take),
             Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + 0.2, take),
@@ -54,7 +54,7 @@ impl Ground {
             Form::Tree(t) => disc_cells(t.position_m, 1.0, take),
             Form::Post(p) => disc_cells(p.position_m, 0.6, take),
             // Other things may grow or stand among shrubs.
-            Form::Shrubs(_) => take(0, 0),
+            Form::Shrubs(_) => {}
         }
     }
 

@@ -468,3 +468,74 @@ fn the_sentences_of_the_other_reader_are_left_alone() {
     assert!(all > 10_000, "{all}");
     assert!(taken.is_empty(), "{taken:#?}");
 }
+
+/// A description's sides look as they were described, and nothing that must not be there is.
+#[test]
+fn descriptions_become_scenery() {
+    use super::wishes::scenery;
+    use crate::generation::text::description::Description;
+    use crate::generation::world::template;
+    let said = |list: &[&str]| Description {
+        background: list.iter().map(|s| (*s).to_owned()).collect(),
+        ..Description::default()
+    };
+    let none = BTreeMap::new();
+    let (mut houses, mut worlds) = (0, 0);
+    for seed in 0..12 {
+        let layout = template::layout("intersection", seed).expect("a template");
+        let roads = crate::scene::road_map::RoadMap::new(&layout);
+        if roads.crossings.is_empty() {
+            continue;
+        }
+        worlds += 1;
+        let wish = said(&[
+            "tall apartment buildings on the left",
+            "a dense forest on the right",
+            "no trees near the crossing",
+        ]);
+        let (things, short) = scenery(&wish, &layout, &none, seed);
+        assert_eq!(things.problem(), None);
+        assert!(short.is_empty(), "{short:?}");
+        let on_left = |form: &Form| roads.along_ego_lane(form.middle_m()).y > 0.0;
+        let (mut trees_right, mut near) = (0, 0);
+        for thing in things.iter() {
+            match &thing.form {
+                Form::Building(b) if on_left(&thing.form) => {
+                    houses += 1;
+                    assert!(b.storeys() >= 8, "{}", b.storeys());
+                }
+                Form::Building(_) => panic!("a building in the forest"),
+                Form::Tree(t) => {
+                    trees_right += usize::from(!on_left(&thing.form));
+                    let close = |c: &crate::scene::road_map::CrossingArea| {
+                        crate::scene::road_map::outline_distance_m(&c.outline_m, t.position_m) < 12.0
+                    };
+                    near += usize::from(roads.crossings.iter().any(close));
+                }
+                _ => {}
+            }
+        }
+        assert!(trees_right > 25, "{trees_right}");
+        assert_eq!(near, 0);
+        // The same words, the same scenery; and without them another.
+        assert_eq!(scenery(&wish, &layout, &none, seed).0, things);
+        let plain = scenery(&said(&[]), &layout, &none, seed).0;
+        assert_eq!(
+            plain,
+            crate::generation::world::scenery::background(&layout, &none, seed)
+        );
+        let (hedged, short) = scenery(&said(&["a hedge along the right side"]), &layout, &none, seed);
+        let is_hedge = |f: &Form| matches!(f, Form::Line(l) if l.kind == LineKind::Hedge);
+        assert!(
+            short.is_empty() && hedged.iter().any(|t| is_hedge(&t.form) && !on_left(&t.form)),
+            "{short:?}"
+        );
+    }
+    assert!(worlds > 2 && houses > worlds, "{worlds} {houses}");
+    // What cannot be had is said.
+    let empty = BevLayout::default();
+    for words in ["no trees near the crossing", "a tree 300 m ahead on the left"] {
+        let (_, short) = scenery(&said(&[words]), &empty, &none, 1);
+        assert!(short.len() == 1 && short[0].contains(words), "{short:?}");
+    }
+}

@@ -117,7 +117,7 @@ fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f
     let n = 4;
     (n..tops.len().saturating_sub(n)).find_map(|i| {
         let (before, after) = (level(&tops[i - n..i])?, level(&tops[i..i + n])?);
-        ((before - after).abs() > STEP_M).then(|| i as f64 * slot_m - r.half_m.x)
+        ((before - after).abs() > STEP_M).then_some(i as f64 * slot_m - r.half_m.x)
     })
 }
 
