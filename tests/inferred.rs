@@ -31,9 +31,11 @@ fn an_imported_frame_is_marked_and_survives_saving() {
         frame.boxes.keys().copied().collect::<BTreeSet<_>>()
     );
     assert!(frame.boxes.len() > 3, "{} boxes", frame.boxes.len());
+    assert!(frame.inferred.background && scene.background.len() > 10);
     let bytes = project::to_bytes(&scene).expect("sound");
     let again = project::from_bytes(&bytes).expect("readable");
     assert_eq!(again.frame(), frame);
+    assert_eq!(again.background, scene.background);
 
     // A guess about no box is refused.
     scene.frame_mut().inferred.boxes.insert(BoxId(9_999));

@@ -1,12 +1,17 @@
 //! Text to scenes and edits: what the window and the command line share.
 
+use std::collections::BTreeMap;
+
 use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
 use crate::editor::{Edit, Shape};
-use crate::generation::text::description::{Description, Reading};
+use crate::generation::text::description::{Became, Description, Phrase, Reading, Road};
 use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
 use crate::generation::text::{self};
+use crate::generation::words_background::edits::{OpenBackground, ThingEdit};
+use crate::generation::words_background::wishes::scenery;
+use crate::generation::words_background::{self, NearTo, take};
 use crate::generation::world::World;
 use crate::scene::{BevLayer, Polyline, PolylineKind, Scene};
 
@@ -25,7 +30,7 @@ pub fn read(prompt: &str) -> anyhow::Result<Reading> {
             "the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\""
         );
     }
-    let reading = text::read(prompt);
+    let reading = read_all(prompt);
     if reading.description.is_empty() {
         let some: Vec<&str> = reading
             .not_understood
@@ -43,24 +48,85 @@ pub fn read(prompt: &str) -> anyhow::Result<Reading> {
     Ok(reading)
 }
 
+/// What is said of the background first, then all else.
+fn read_all(prompt: &str) -> Reading {
+    let taken = take(prompt, false);
+    let mut reading = text::read(&taken.rest);
+    let description = &mut reading.description;
+    for said in &taken.said {
+        let words = said.span.of(prompt).to_owned();
+        let phrase = Phrase {
+            span: said.span,
+            text: words.clone(),
+            became: Became::Background(description.background.len()),
+            meaning: format!("beside the road: {words}"),
+        };
+        // Where a crossing or a junction is spoken of, the road has one.
+        match said.place.near {
+            Some(NearTo::Crossing) => description.road.crossing = !description.road.no_crossing,
+            Some(NearTo::Junction) if description.road.kind.is_none() => {
+                description.road.kind = Some(Road::Intersection);
+            }
+            _ => {}
+        }
+        let comma = if description.summary.is_empty() { "" } else { "; " };
+        description.summary.push_str(&format!("{comma}{words}"));
+        description.background.push(words);
+        reading.phrases.push(phrase);
+    }
+    reading.phrases.sort_by_key(|p| p.span.start);
+    reading
+}
+
 /// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
 /// `sceneloom new` makes it.
 pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Made {
     made(lay_out(prompt, description, seed, how), seed)
 }
 
-/// A scene of a layout from words.
-pub fn made(laid: Laid, seed: u64) -> Made {
-    let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
-    let world = World::new(laid.road.layout.clone(), boxes, seed);
+/// A scene of a layout from words; what its background lacks is added to what the road lacks.
+pub fn made(mut laid: Laid, seed: u64) -> Made {
+    let boxes: BTreeMap<_, _> = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
+    let (things, short) = scenery(&laid.description, &laid.road.layout, &boxes, seed);
+    laid.road.missing.extend(short);
+    let world = World::with_background(laid.road.layout.clone(), boxes, things, seed);
     let mut scene = crate::app::open::of_world(&world, "prompt");
     scene.prompt = laid.description.style().into();
     Made { scene, laid }
 }
 
-/// Reads words as edits of a scene; see [`read_edit`](crate::generation::text::edit::read_edit).
+/// Reads words as edits of a scene: of its background, and of all else; see
+/// [`read_edit`](crate::generation::text::edit::read_edit).
 pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> EditReading {
-    crate::generation::text::edit::read_edit(prompt, &open_scene(scene), seed)
+    let frame = scene.frame();
+    let open = OpenBackground {
+        things: &scene.background,
+        world_from_ego: frame.world_from_ego,
+        layout: &frame.layout,
+        boxes: &frame.boxes,
+    };
+    words_background::edits::read_edit(prompt, &open, seed, |rest| {
+        crate::generation::text::edit::read_edit(rest, &open_scene(scene), seed)
+    })
+}
+
+/// All edits of a reading: those of the background after those of boxes and map.
+pub fn all_edits(reading: &EditReading) -> Vec<Edit> {
+    let things = reading.things.iter().map(thing_edit);
+    reading.edits.iter().flat_map(edits).chain(things).collect()
+}
+
+fn thing_edit(edit: &ThingEdit) -> Edit {
+    match edit.clone() {
+        ThingEdit::Add { forms } => Edit::AddThings { forms },
+        ThingEdit::Remove { ids } => Edit::RemoveThings { ids },
+        ThingEdit::Raise { ids, by_m } => Edit::RaiseThings { ids, by_m },
+        ThingEdit::Move { ids, by_m } => Edit::MoveThings {
+            ids,
+            by_m,
+            turn_deg: 0.0,
+        },
+    }
 }
 
 /// The part of a scene that text edits look at.

@@ -424,6 +424,7 @@ impl Edit {
             Self::Correct { edit } => correct(frame, edit)?,
             Self::ConfirmInferred {} => {
                 frame.inferred.layout = false;
+                frame.inferred.background = false;
                 frame.inferred.boxes.clear();
             }
             Self::Waive {

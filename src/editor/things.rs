@@ -4,13 +4,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
 use super::shape::at_least;
 use crate::scene::draft::ground_bin;
 use crate::scene::grid::NOT_PAINTED;
+use crate::scene::raster::polygon_cells;
 use crate::scene::solid::fill::{fill, smear_down};
 use crate::scene::{
     Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
@@ -151,9 +152,11 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             occupancy,
             painted,
             source,
+            inferred,
             ..
         } = frame;
-        redraw(occupancy, layout, painted, &gone, &come, &kept);
+        let guessed = inferred.background;
+        redraw(occupancy, layout, painted, &gone, &come, &kept, guessed);
         let source = Arc::make_mut(source);
         redraw(
             &mut source.occupancy,
@@ -162,6 +165,7 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             &gone,
             &come,
             &kept,
+            guessed,
         );
     }
 }
@@ -195,7 +199,8 @@ fn columns_of(thing: &Thing, layout: &BevLayout) -> Columns {
     columns
 }
 
-/// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out.
+/// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out. Where the
+/// kept ones are `guessed` from voxels they only get back what was of their class: more of them was never seen there.
 fn redraw(
     grid: &mut VoxelGrid,
     layout: &BevLayout,
@@ -203,20 +208,25 @@ fn redraw(
     gone: &[Thing],
     come: &[Thing],
     kept: &[Thing],
+    guessed: bool,
 ) {
-    let mut cleared: BTreeSet<[usize; 3]> = BTreeSet::new();
+    let mut cleared: BTreeMap<[usize; 3], u8> = BTreeMap::new();
     for thing in gone {
         clear(grid, painted, thing, layout, &mut cleared);
     }
     let emptied: BTreeSet<[usize; 2]> = cleared
-        .iter()
+        .keys()
         .map(|[x, y, _]| [*x, *y])
         .filter(|[x, y]| grid.get(*x, *y, ground_bin(layout, *x, *y)) == Class::FREE)
         .collect();
     refill_ground(grid, layout, &emptied.into_iter().collect::<Vec<_>>());
     if !cleared.is_empty() {
         for thing in kept.iter().filter(|t| gone.iter().any(|g| near(t, g))) {
-            stamp(grid, layout, painted, thing, |voxel| cleared.contains(&voxel));
+            let class = thing.form.class().id();
+            let wanted = |was: &u8| !guessed || *was == class;
+            stamp(grid, layout, painted, thing, |voxel| {
+                cleared.get(&voxel).is_some_and(wanted)
+            });
         }
     }
     for thing in come {
@@ -235,10 +245,10 @@ fn clear(
     painted: &VoxelPaint,
     thing: &Thing,
     layout: &BevLayout,
-    cleared: &mut BTreeSet<[usize; 3]>,
+    cleared: &mut BTreeMap<[usize; 3], u8>,
 ) {
     let own = columns_of(thing, layout);
-    let around: BTreeSet<[usize; 2]> = own
+    let mut around: BTreeSet<[usize; 2]> = own
         .keys()
         .flat_map(|[x, y]| {
             let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
@@ -251,7 +261,16 @@ fn clear(
         .values()
         .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
         .max();
-    let top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
+    let mut top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
+    if let Form::Shrubs(shrubs) = &thing.form {
+        // What grows there is the area's, whether one of the plants drawn for it stands in the column or not.
+        polygon_cells(&shrubs.outline_m, |x, y| {
+            let height_m = layout.relief.column_m(x, y) + shrubs.height_m;
+            let bin = GridSpec::to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
+            top = top.max((bin + MARGIN).min(GridSpec::NZ - 1));
+            around.insert([x, y]);
+        });
+    }
     for [x, y] in around {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);
@@ -261,8 +280,9 @@ fn clear(
                 .get(&[x, y])
                 .is_some_and(|c| c[z] != Class::FREE && c[z] == column[z]);
             if (is_own || column[z] == class) && locked[z] == NOT_PAINTED {
+                // What it was first, if several things clear it.
+                cleared.entry([x, y, z]).or_insert(column[z]);
                 column[z] = Class::FREE;
-                cleared.insert([x, y, z]);
             }
         }
         if column != *grid.column(x, y) {

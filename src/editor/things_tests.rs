@@ -283,3 +283,52 @@ fn bad_edits_leave_the_scene_as_it_was() {
         assert_eq!(doc.scene().rev, rev);
     }
 }
+
+/// Removing an area of shrubs takes every low plant of its ground, also where none was drawn for it; what is higher or
+/// beside it stays.
+#[test]
+fn shrubs_go_with_all_their_ground() {
+    let mut doc = Document::new(scene(Relief::FLAT));
+    let outline_m = [(10.0, 10.0), (16.0, 10.0), (16.0, 14.0), (10.0, 14.0)].map(|(x, y)| DVec2::new(x, y));
+    let area = crate::scene::background::Shrubs {
+        outline_m: outline_m.to_vec(),
+        height_m: 1.0,
+        per_m2: 0.05,
+    };
+    doc.apply(
+        "Add",
+        &Edit::AddThings {
+            forms: vec![Form::Shrubs(area)],
+        },
+    )
+    .expect("sound");
+    let columns = |lo: f64, hi: f64| {
+        let all = (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
+        all.filter(move |[x, y]| {
+            let p = GridSpec::center(*x, *y, 0);
+            (10.0..16.0).contains(&p.x) && (lo..hi).contains(&p.y)
+        })
+    };
+    let cells: Vec<[usize; 3]> = columns(10.0, 16.0)
+        .flat_map(|[x, y]| [[x, y, 2], [x, y, 12]])
+        .collect();
+    let mut scene = Scene::clone(doc.scene());
+    for [x, y, z] in &cells {
+        scene
+            .frame_mut()
+            .occupancy
+            .set(*x, *y, *z, Class::Vegetation.id());
+    }
+    let mut doc = Document::new(scene);
+    let ids = vec![ThingId(1)];
+    doc.apply("Remove", &Edit::RemoveThings { ids }).expect("there");
+    let after = &doc.scene().frame().occupancy;
+    let left = |lo, hi, z| {
+        columns(lo, hi)
+            .filter(|[x, y]| after.get(*x, *y, z) == Class::Vegetation.id())
+            .count()
+    };
+    assert_eq!(left(10.0, 14.0, 2), 0);
+    assert_eq!(left(10.0, 14.0, 12), columns(10.0, 14.0).count());
+    assert!(left(14.8, 16.0, 2) > 20);
+}

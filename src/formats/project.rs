@@ -99,13 +99,15 @@ struct FrameHeader {
 struct InferredHeader {
     layout: bool,
     boxes: BTreeSet<BoxId>,
+    #[serde(skip_serializing_if = "is_false")]
+    background: bool,
     /// Whether `unobserved.u16` is there.
     unobserved: bool,
 }
 
 impl InferredHeader {
     fn is_empty(&self) -> bool {
-        !self.layout && self.boxes.is_empty() && !self.unobserved
+        !self.layout && self.boxes.is_empty() && !self.background && !self.unobserved
     }
 }
 
@@ -214,6 +216,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
         inferred: InferredHeader {
             layout: frame.inferred.layout,
             boxes: frame.inferred.boxes.clone(),
+            background: frame.inferred.background,
             unobserved: frame.inferred.unobserved.is_some(),
         },
         waivers: frame.waivers.to_vec(),
@@ -363,6 +366,7 @@ fn read_frame<R: Read + Seek>(
         inferred: Inferred {
             layout: header.inferred.layout,
             boxes: header.inferred.boxes,
+            background: header.inferred.background,
             unobserved,
         },
         waivers: Arc::new(header.waivers),

@@ -22,5 +22,6 @@ pub mod solver;
 pub mod text;
 pub mod trade;
 pub mod weights;
+pub mod words_background;
 pub mod worker;
 pub mod world;

@@ -50,6 +50,8 @@ pub struct Inferred {
     pub layout: bool,
     /// Boxes that were fitted to voxels and not touched since.
     pub boxes: BTreeSet<BoxId>,
+    /// The things of the background were fitted to voxels.
+    pub background: bool,
     /// What the data set's masks say, if it has any.
     pub unobserved: Option<Unobserved>,
 }
@@ -57,7 +59,7 @@ pub struct Inferred {
 impl Inferred {
     /// True if there is a guess left.
     pub fn any(&self) -> bool {
-        self.layout || !self.boxes.is_empty()
+        self.layout || self.background || !self.boxes.is_empty()
     }
 }
 

@@ -1,5 +1,6 @@
 //! `sceneloom import`: a scene from a road network or from labels.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
@@ -9,7 +10,7 @@ use serde_json::json;
 use super::{Common, Outcome, output};
 use crate::app::open::{self, Kind, Placement};
 use crate::formats::project;
-use crate::scene::BevLayer;
+use crate::scene::{BevLayer, Scene};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -136,7 +137,7 @@ impl Import {
         Ok(())
     }
 
-    /// Labels carry neither layout nor boxes: both are inferred.
+    /// Labels carry neither layout nor boxes nor things: all are inferred.
     fn labels(&self) -> Outcome {
         let scene = open::labels(&self.file)?;
         project::save(&self.output, &scene).context("write the scene")?;
@@ -147,20 +148,31 @@ impl Import {
             "roads": 0,
             "lanes": 0,
             "skipped": {},
-            "inferred": ["layout", "boxes"],
+            "inferred": ["layout", "boxes", "background"],
+            "things": things(&scene),
             "occupied_voxels": frame.occupancy.count_set(),
             "file": self.output,
         });
         output::report(&self.common, &report, || {
             format!(
-                "{}: {} occupied voxels; inferred: {} boxes, {} road and {} sidewalk columns",
+                "{}: {} occupied voxels; inferred: {} boxes, {} road and {} sidewalk columns, {} things beside the road",
                 self.output.display(),
                 frame.occupancy.count_set(),
                 frame.boxes.len(),
                 frame.layout.count(BevLayer::DrivableArea),
                 frame.layout.count(BevLayer::Walkway),
+                scene.background.len(),
             )
         });
         Ok(())
     }
+}
+
+/// Number of things of each kind.
+fn things(scene: &Scene) -> BTreeMap<&'static str, usize> {
+    let mut counts = BTreeMap::new();
+    for thing in scene.background.iter() {
+        *counts.entry(thing.form.name()).or_default() += 1;
+    }
+    counts
 }

@@ -11,7 +11,6 @@ use crate::app::prompting::{How, Keep, Placer};
 use crate::app::{enrich, open, text};
 use crate::editor::Document;
 use crate::formats::project;
-use crate::generation::text::edit::read_edit;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -166,8 +165,8 @@ impl Prompt {
             );
         }
         let scene = open::scene(base)?;
-        let reading = read_edit(&self.text, &text::open_scene(&scene), self.seed);
-        let edits: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
+        let reading = text::read_edit(&self.text, &scene, self.seed);
+        let edits = text::all_edits(&reading);
         let mut document = Document::new(scene);
         document
             .apply_all("Edit by text", &edits)
@@ -180,6 +179,7 @@ impl Prompt {
             "not_understood": reading.not_understood,
             "notes": reading.notes,
             "boxes": document.scene().frame().boxes.len(),
+            "things": document.scene().background.len(),
             "prompt": *document.scene().prompt,
             "seed": self.seed,
             "file": if asked.is_empty() && !edits.is_empty() { Some(&self.output) } else { None },
@@ -200,30 +200,27 @@ impl Prompt {
                 lines.extend(
                     q.candidates
                         .iter()
-                        .map(|c| format!("  #{} {}: {}", c.id.0, c.class.replace('_', " "), c.place)),
+                        .map(|c| format!("  {} {}: {}", c.says(), c.class.replace('_', " "), c.place)),
                 );
             }
-            lines.extend(
-                reading
-                    .not_understood
-                    .iter()
-                    .map(|u| format!("not understood: {:?}", u.text)),
-            );
+            lines.extend(reading.not_understood.iter().map(|u| match &u.why {
+                Some(why) => format!("not understood: {:?} ({why})", u.text),
+                None => format!("not understood: {:?}", u.text),
+            }));
             lines.extend(reading.notes.iter().map(|n| format!("note: {n}")));
             lines.join("\n")
         });
         if !asked.is_empty() {
             return Err(Stop::Short(format!(
-                "{} Name one, such as \"#{}\"",
+                "{} Name one, such as \"{}\"",
                 asked.join(" "),
-                first_id(&reading)
+                first_answer(&reading)
             )));
         }
         if edits.is_empty() {
-            let why = reading
-                .notes
-                .first()
-                .cloned()
+            let unread = reading.not_understood.iter().find_map(|u| u.why.clone());
+            let why = (reading.notes.first().cloned())
+                .or(unread)
                 .unwrap_or_else(|| "nothing in the text changes the scene".into());
             return Err(Stop::Short(format!("nothing was changed: {why}")));
         }
@@ -231,10 +228,10 @@ impl Prompt {
     }
 }
 
-fn first_id(reading: &crate::generation::text::edit::EditReading) -> u32 {
+fn first_answer(reading: &crate::generation::text::edit::EditReading) -> String {
     reading
         .questions
         .first()
         .and_then(|q| q.candidates.first())
-        .map_or(1, |c| c.id.0)
+        .map_or_else(|| "#1".into(), |c| c.says())
 }

@@ -151,12 +151,19 @@ fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<
         1 => "1 box",
         n => &format!("{n} boxes"),
     };
+    if frame.inferred.background {
+        let what = "What stands beside the road is a guess.";
+        ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
+    }
     let what = match (frame.inferred.layout, boxes) {
+        (false, "") => String::new(),
         (true, "") => "The map layers are guesses.".to_owned(),
         (true, boxes) => format!("The map layers and {boxes} are guesses."),
         (false, boxes) => format!("{boxes}: guesses."),
     };
-    ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
+    if !what.is_empty() {
+        ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
+    }
     ui.horizontal(|ui| {
         ui.checkbox(&mut state.correcting, "Correct them").on_hover_text(
             "While ticked, edits of boxes and map layers change no voxel and generate nothing.",

@@ -280,17 +280,21 @@ impl PromptPane {
     fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
         self.changed_by.clone_from(&self.prompt);
+        let reading = text::read_edit(&self.prompt, scene, self.seed);
+        let edits = text::all_edits(&reading);
+        // "The trees near the junction" ask for no other road.
+        let no_things = reading.things.is_empty();
         let EditReading {
-            edits,
             questions,
             not_understood,
             notes,
             ..
-        } = text::read_edit(&self.prompt, scene, self.seed);
+        } = reading;
         self.notes = notes;
         self.notes.extend(not_understood.iter().map(unread));
         let road = text::read(&self.prompt)
             .ok()
+            .filter(|_| no_things)
             .and_then(|r| r.description.road.kind);
         if let Some(road) = road {
             let name = format!("{road:?}").to_lowercase();
@@ -299,7 +303,6 @@ impl PromptPane {
             ));
         }
         self.questions = questions;
-        let edits: Vec<_> = edits.iter().flat_map(text::edits).collect();
         if edits.is_empty() && self.questions.is_empty() && self.notes.is_empty() {
             self.notes.push("The words name no change of this scene.".into());
         }
@@ -403,23 +406,23 @@ impl PromptPane {
             for candidate in &question.candidates {
                 let id = candidate.id;
                 let text = format!(
-                    "{} #{}   {}",
+                    "{} {}   {}",
                     candidate.class.replace('_', " "),
-                    id.0,
+                    candidate.says(),
                     candidate.place
                 );
                 let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
                 let response = ui.add(button);
-                if response.hovered() && scene.frame().boxes.contains_key(&id) {
+                if response.hovered() && candidate.answer.is_none() && scene.frame().boxes.contains_key(&id) {
                     commands.push(Command::Select(Some(id)));
                 }
                 if response.clicked() {
-                    chosen = Some((question.phrase.clone(), id));
+                    chosen = Some((question.phrase.clone(), candidate.says()));
                 }
             }
         }
-        if let Some((phrase, id)) = chosen {
-            self.prompt = self.prompt.replacen(&phrase, &format!("#{}", id.0), 1);
+        if let Some((phrase, answer)) = chosen {
+            self.prompt = self.prompt.replacen(&phrase, &answer, 1);
             self.change(scene, commands);
         }
     }

@@ -15,6 +15,7 @@ use super::second_look::Done;
 use super::select::{Candidate, Chosen, choose};
 use super::tokens::{LONGEST, Span};
 use super::words::edits::{Pick, Verb};
+use crate::generation::words_background::edits::ThingEdit;
 use crate::scene::graph::{LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind};
 use crate::scene::{BevLayout, BoxId, BoxLabel, Class, SceneBox};
 
@@ -102,6 +103,9 @@ pub struct Question {
 pub struct EditReading {
     /// Changes, in order.
     pub edits: Vec<TextEdit>,
+    /// Changes of the background, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub things: Vec<ThingEdit>,
     /// What must be answered first; the edits of the other commands stand.
     pub questions: Vec<Question>,
     /// Part by part.

@@ -50,7 +50,7 @@ pub mod road;
 mod said;
 mod same_words;
 mod second_look;
-mod select;
+pub mod select;
 mod shares;
 mod slips;
 mod spaces;

@@ -21,6 +21,16 @@ pub struct Candidate {
     pub class: &'static str,
     /// Where it stands, in words.
     pub place: String,
+    /// The words that name it alone, if it is no box: they replace those that were asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answer: Option<String>,
+}
+
+impl Candidate {
+    /// What the words that were asked about become if this is the one: `#7`.
+    pub fn says(&self) -> String {
+        self.answer.clone().unwrap_or_else(|| format!("#{}", self.id.0))
+    }
 }
 
 /// What a mention means in a scene.
@@ -70,6 +80,7 @@ pub fn where_is(map: &LaneMap<'_>, b: &SceneBox) -> Candidate {
         id: b.id,
         class: b.class.name(),
         place: format!("{called}{:.0} m {along}{across}{doing}", x.abs()),
+        answer: None,
     }
 }
 

@@ -74,7 +74,7 @@ pub(super) fn avenues(site: &mut Site<'_>, draw: &mut Draw) {
                 Setting::Country => 0.35,
                 _ => 0.1,
             };
-            if chance > rows * side.green || !site.free(p, 0.8) || site.road_m(p) < 0.6 {
+            if chance > rows * side.green * side.trees || !site.free(p, 0.8) || site.road_m(p) < 0.6 {
                 continue;
             }
             // One row, one kind.
@@ -97,7 +97,7 @@ pub(super) fn trees(site: &mut Site<'_>, draw: &mut Draw) {
         // 420 draws over 6,400 m²: 65.6 per 1,000 m².
         let groves = 1.0 - gather + gather * (1.0 + 1.6 * noise(site.seed, p.x / 16.0, p.y / 16.0)).max(0.0);
         let near_road = (site.paved_m(p) / 4.0).min(1.0);
-        if chance > per_1000 / 65.6 * side.green * groves * near_road {
+        if chance > per_1000 / 65.6 * side.green * side.trees * groves * near_road {
             continue;
         }
         let new = tree(&side, p, &mut Draw::new(pick, "tree"));
@@ -119,7 +119,9 @@ pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
         let side = *site.side(p);
         let patch = 1.0 + 0.8 * noise(site.seed ^ 0x5eed, p.x / 9.0, p.y / 9.0);
         // 160 draws over 6,400 m²: 25 per 1,000 m².
-        if chance > undergrowth(side.setting) / 25.0 * side.green * patch || site.paved_m(p) < 1.2 {
+        if chance > undergrowth(side.setting) / 25.0 * side.green * side.shrubs * patch
+            || site.paved_m(p) < 1.2
+        {
             continue;
         }
         let mut own = Draw::new(pick, "patch");

@@ -51,6 +51,10 @@ pub struct Side {
     pub setting: Setting,
     /// Number of trees and shrubs, 1 = usual for the setting; 0 is none.
     pub green: f64,
+    /// Number of trees beyond that: a factor on `green`.
+    pub trees: f64,
+    /// Number of shrubs beyond that: a factor on `green`.
+    pub shrubs: f64,
     /// Number of buildings, 1 = usual for the setting; 0 is none.
     pub built: f64,
     /// Storeys of every building; none leaves it to the setting.
@@ -63,6 +67,8 @@ impl Side {
         Self {
             setting,
             green: 1.0,
+            trees: 1.0,
+            shrubs: 1.0,
             built: 1.0,
             storeys: None,
         }
@@ -94,6 +100,8 @@ impl Style {
         let side = |draw: &mut Draw| Side {
             setting: Setting::ALL[draw.weighted(&weights)],
             green: draw.range(0.4, 1.4),
+            trees: 1.0,
+            shrubs: 1.0,
             built: draw.range(0.6, 1.1),
             storeys: None,
         };

@@ -1,0 +1,174 @@
+//! Ground for new things that words ask for: beside the road, clear of what is there.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::{SideOf, Where};
+use crate::generation::world::scenery::distance_cells;
+use crate::scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
+use crate::scene::road_map::RoadMap;
+use crate::scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+
+/// Things end at the border of the grid, m.
+const BORDER_M: f64 = 39.4;
+
+/// A scene's ground with room for new things; all in the ego frame.
+pub struct Ground {
+    /// Lanes, crossings and junctions.
+    pub roads: RoadMap,
+    to_paved: Vec<f32>,
+    taken: Vec<bool>,
+    own: Vec<DVec2>, // of each column: way along the ego lane, and offset to its left
+}
+
+impl Ground {
+    /// The ground of a scene with things in the ego frame.
+    pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, things: &Background) -> Self {
+        let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
+        let roads = RoadMap::new(layout);
+        let own = (0..GridSpec::COLUMNS).map(|c| roads.along_ego_lane(middle_m(c)));
+        let mut out = Self {
+            own: own.collect(),
+            roads,
+            to_paved: distance_cells(|c| layout.cells()[c] & paved != 0),
+            taken: vec![false; GridSpec::COLUMNS],
+        };
+        for b in boxes.values() {
+            box_cells(b, 0.4, |x, y| out.taken[x * GridSpec::NY + y] = true);
+        }
+        for thing in things.iter() {
+            out.take(&thing.form);
+        }
+        out
+    }
+
+    /// Marks the ground of a form as taken.
+    pub fn take(&mut self, form: &Form) {
+        let taken = &mut self.taken;
+        let take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
+        match form {
+            Form::Building(b) => polygon_cells(&b.outline_m, take),
+            Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + 0.2, take),
+            Form::Bridge(b) => line_cells(&b.points_m, b.width_m / 2.0, take),
+            Form::Tree(t) => disc_cells(t.position_m, 1.0, take),
+            Form::Post(p) => disc_cells(p.position_m, 0.6, take),
+            // Other things may grow or stand among shrubs.
+            Form::Shrubs(_) => {}
+        }
+    }
+
+    /// Distance from paved ground, m.
+    pub fn paved_m(&self, p: DVec2) -> f64 {
+        GridSpec::column_at(p.x, p.y).map_or(0.0, |[x, y]| {
+            f64::from(self.to_paved[x * GridSpec::NY + y]) * GridSpec::VOXEL_M
+        })
+    }
+
+    fn is_free(&self, x: usize, y: usize, gap_m: f64) -> bool {
+        let c = x * GridSpec::NY + y;
+        !self.taken[c] && f64::from(self.to_paved[c]) * GridSpec::VOXEL_M > gap_m
+    }
+
+    /// True if a disc is free and off the paved ground.
+    pub fn has_room(&self, p: DVec2, radius_m: f64) -> bool {
+        let mut free = p.abs().max_element() < BORDER_M - radius_m;
+        disc_cells(p, radius_m, |x, y| free &= self.is_free(x, y, 0.3));
+        free
+    }
+
+    /// True if an outline is free, off the paved ground and in the grid.
+    pub fn has_room_for(&self, outline_m: &[DVec2]) -> bool {
+        let mut free = outline_m.iter().all(|p| p.abs().max_element() < BORDER_M);
+        polygon_cells(outline_m, |x, y| free &= self.is_free(x, y, 0.4));
+        free
+    }
+
+    /// True if a point fits what was said of a side, ahead and behind, and near what.
+    pub fn fits(&self, place: &Where, p: DVec2) -> bool {
+        let own = self.roads.along_ego_lane(p);
+        let side = match place.side {
+            Some(SideOf::Left) => own.y > 0.0,
+            Some(SideOf::Right) => own.y < 0.0,
+            None => true,
+        };
+        let ahead = match place.ahead {
+            Some(true) => own.x > 0.0,
+            Some(false) => own.x < 0.0,
+            None => true,
+        };
+        side && ahead && super::targets::is_near(&self.roads, place, &[p])
+    }
+
+    /// The free place that fits best: at the way along the road that was said, as near to the road as `from_paved_m`.
+    pub fn place(
+        &self,
+        place: &Where,
+        along_m: f64,
+        from_paved_m: f64,
+        fits: &dyn Fn(DVec2) -> bool,
+    ) -> Option<DVec2> {
+        let mut order: Vec<(f64, usize)> = (0..GridSpec::COLUMNS)
+            .filter(|c| !self.taken[*c])
+            .filter_map(|c| {
+                let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
+                let own = self.own[c];
+                // Beside the own road rather than beside one that leads away from it.
+                let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
+                (paved > 0.3 && cost < 60.0).then_some((cost, c))
+            })
+            .collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let found = order.iter().find(|(_, c)| {
+            let p = middle_m(*c);
+            self.fits(place, p) && fits(p)
+        });
+        found.map(|(_, c)| middle_m(*c))
+    }
+
+    /// Lines beside the ego's road at a distance from its paved ground, in order along it; gaps where there is no room.
+    pub fn lines(&self, place: &Where, side: SideOf, from_paved_m: f64) -> Vec<Vec<DVec2>> {
+        const STEP_M: f64 = 1.6;
+        let place = Where {
+            side: Some(side),
+            ..*place
+        };
+        let mut at: BTreeMap<i64, (f64, DVec2)> = BTreeMap::new();
+        for c in 0..GridSpec::COLUMNS {
+            let (own, p) = (self.own[c], middle_m(c));
+            let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
+            let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
+            if wrong_side
+                || (paved - from_paved_m).abs() > 0.3
+                || !self.has_room(p, 0.3)
+                || !self.fits(&place, p)
+            {
+                continue;
+            }
+            let slot = (own.x / STEP_M).round() as i64;
+            let best = at.entry(slot).or_insert((f64::INFINITY, p));
+            if own.y.abs() < best.0 {
+                *best = (own.y.abs(), p);
+            }
+        }
+        let mut out: Vec<Vec<(i64, f64, DVec2)>> = Vec::new();
+        for (slot, (offset, p)) in at {
+            let goes_on = out
+                .last()
+                .and_then(|l| l.last())
+                .is_some_and(|(s, o, _)| slot - s <= 2 && (offset - o).abs() < 2.5);
+            match out.last_mut().filter(|_| goes_on) {
+                Some(line) => line.push((slot, offset, p)),
+                None => out.push(vec![(slot, offset, p)]),
+            }
+        }
+        out.retain(|l| l.len() >= 3);
+        out.into_iter()
+            .map(|l| l.into_iter().map(|(.., p)| p).collect())
+            .collect()
+    }
+}
+
+fn middle_m(c: usize) -> DVec2 {
+    GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate()
+}

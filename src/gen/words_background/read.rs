@@ -1,0 +1,310 @@
+//! Words to typed clauses: parts a text, and reads each part that is about the background.
+
+use super::lexicon::{Word, lookup};
+use super::{Amount, NearTo, Said, SideOf, Taken, Verb, What, Where};
+use crate::generation::text::tokens::{Span, Token, TokenKind, tokens};
+use crate::generation::world::scenery::Setting;
+use crate::scene::background::PostKind;
+
+/// Reads all clauses about the background. `edits`: the text changes a scene rather than describes one.
+pub fn take(text: &str, edits: bool) -> Taken {
+    let tokens = tokens(text);
+    let mut out = Taken {
+        said: Vec::new(),
+        rest: text.to_owned(),
+    };
+    let mut verb = None; // carried from one clause of a sentence to the next
+    let mut before = true; // whether the clause before was taken
+    for (joint, clause) in clauses(&tokens) {
+        if joint.is_none_or(|t| t.kind == TokenKind::Stop || t.text == "then") {
+            (verb, before) = (None, true);
+        }
+        let Some(span) = clause.first().zip(clause.last()).map(|(a, b)| a.span.to(b.span)) else {
+            continue;
+        };
+        let said = read(clause, span, edits, verb).filter(|s| {
+            // "a car behind a truck and a tree": part of where the car is.
+            before || joint.is_some_and(|t| t.kind == TokenKind::Comma) || s.place != Where::default()
+        });
+        verb = said
+            .as_ref()
+            .map(|s| s.verb)
+            .filter(|v| *v != Verb::Have)
+            .or_else(|| {
+                let first = clause.first().and_then(|t| lookup(&[t.text.as_str()]));
+                match first {
+                    Some((Word::Verb(v), _)) => Some(v),
+                    _ => verb,
+                }
+            });
+        before = said.is_some() || !clause.iter().any(|t| is_preposition(&t.text));
+        let Some(said) = said else { continue };
+        let joint = joint.filter(|t| t.kind == TokenKind::Word || t.kind == TokenKind::Comma);
+        blank(&mut out.rest, joint.map_or(span, |t| t.span.to(span)));
+        out.said.push(said);
+    }
+    out
+}
+
+fn blank(text: &mut String, span: Span) {
+    let spaces = " ".repeat(span.end - span.start);
+    text.replace_range(span.start..span.end, &spaces);
+}
+
+fn is_preposition(word: &str) -> bool {
+    const LIST: &[&str] = &[
+        "behind", "front", "between", "near", "next", "beside", "by", "at", "past", "under", "with",
+        "toward", "towards", "around", "against", "from", "into", "onto",
+    ];
+    LIST.contains(&word)
+}
+
+/// Clauses, each with the mark or word that joins it to the one before.
+fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
+    let joins = |i: usize| {
+        let t = &tokens[i];
+        let word = |i: usize| tokens.get(i).map_or("", |t| t.text.as_str());
+        match t.kind {
+            TokenKind::Stop | TokenKind::Comma => true,
+            TokenKind::Word => match t.text.as_str() {
+                // "left and right" is one place
+                "and" => !(word(i.wrapping_sub(1)) == "left" && word(i + 1) == "right"),
+                "but" | "then" | "while" | "plus" => true,
+                "with" => i > 0 && !matches!(word(i - 1), "lined" | "road" | "street"),
+                _ => false,
+            },
+            _ => false,
+        }
+    };
+    let (mut out, mut start, mut joint) = (Vec::new(), 0, None);
+    for i in (0..tokens.len()).filter(|i| joins(*i)) {
+        out.push((joint, &tokens[start..i]));
+        // ", and" joins once.
+        joint = match out.last() {
+            Some((before, clause)) if clause.is_empty() && tokens[i].kind == TokenKind::Word => {
+                before.or(Some(&tokens[i]))
+            }
+            _ => Some(&tokens[i]),
+        };
+        start = i + 1;
+    }
+    out.push((joint, &tokens[start..]));
+    out.retain(|(_, clause)| !clause.is_empty());
+    out
+}
+
+/// Reads one clause; `None` if it is not about the background, or not wholly understood.
+fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Option<Said> {
+    let spoken = senses(clause)?;
+    let words: Vec<Word> = spoken.iter().map(|(word, _)| *word).collect();
+    let mut s = Said {
+        verb: Verb::Have,
+        what: What::Thing,
+        id: None,
+        plural: false,
+        definite: false,
+        count: None,
+        row: false,
+        nearest: None,
+        dense: None,
+        tall: None,
+        height: None,
+        by: None,
+        way: None,
+        place: Where::default(),
+        span,
+        target: span,
+    };
+    let (mut verb, mut what, mut article) = (None, None, None);
+    let (mut no, mut all, mut comparative) = (false, false, None);
+    let mut i = 0;
+    while i < words.len() {
+        let next = |k: usize| words.get(i + k).copied();
+        match words[i] {
+            Word::Verb(_) if verb.is_some() => return None,
+            Word::Verb(v) => verb = Some(v),
+            Word::What(..) if what.is_some() => {
+                // "tree row", "a row of trees"; anything else is about two things.
+                return None;
+            }
+            Word::What(w, plural) => {
+                what = Some(w);
+                s.plural = plural;
+                s.definite = article == Some(Word::The);
+                if let Some(Word::Number(n)) = next(1).filter(|_| clause.iter().any(|t| t.text == "#")) {
+                    s.id = Some(n as u32);
+                    i += 1;
+                }
+            }
+            w @ (Word::A | Word::The) => article = Some(w),
+            Word::No => no = true,
+            Word::All => all = true,
+            Word::Left if verb == Some(Verb::Move) && s.by.is_some() => s.way = Some((0.0, 1.0)),
+            Word::Right if verb == Some(Verb::Move) && s.by.is_some() => s.way = Some((0.0, -1.0)),
+            Word::Ahead if verb == Some(Verb::Move) && s.by.is_some() => s.way = Some((1.0, 0.0)),
+            Word::Behind if verb == Some(Verb::Move) && s.by.is_some() => s.way = Some((-1.0, 0.0)),
+            Word::Left | Word::Right if s.place.side.is_some() => return None,
+            Word::Left => s.place.side = Some(SideOf::Left),
+            Word::Right => s.place.side = Some(SideOf::Right),
+            Word::Both => {}
+            Word::Ahead => s.place.ahead = Some(true),
+            // "behind the trees" is no place of a thing
+            Word::Behind if i + 1 < words.len() && what.is_some() && verb.is_none() => return None,
+            Word::Behind => s.place.ahead = Some(false),
+            Word::Near => s.place.near = s.place.near.or(Some(NearTo::Ego)),
+            Word::Crossing => s.place.near = Some(NearTo::Crossing),
+            Word::Junction => s.place.near = Some(NearTo::Junction),
+            Word::Me => s.place.near = s.place.near.or(Some(NearTo::Ego)),
+            Word::Road => {
+                // "near the road" is where all of it stands
+                if s.place.near == Some(NearTo::Ego) {
+                    s.place.near = None;
+                }
+            }
+            Word::Along => s.place.along = true,
+            Word::Number(n) => {
+                if !n.is_finite() || n < 0.0 {
+                    return None;
+                }
+                let before = i.checked_sub(1).map(|k| words[k]);
+                let wants = |v: Verb| verb == Some(v) || (verb.is_none() && carried == Some(v));
+                match (next(1), next(2)) {
+                    (Some(Word::Storey), after) => {
+                        let grows = matches!(after, Some(Word::Taller | Word::Lower));
+                        let changes = before == Some(Word::By) || wants(Verb::Raise) || wants(Verb::Lower);
+                        match grows || (changes && before != Some(Word::To)) {
+                            true => s.by = Some(Amount::Storeys(n)),
+                            false => s.height = Some(Amount::Storeys(n)),
+                        }
+                        i += 1;
+                    }
+                    (Some(Word::Metre), Some(Word::Tall | Word::Low)) => {
+                        s.height = Some(Amount::Metres(n));
+                        i += 2;
+                    }
+                    (Some(Word::Metre), Some(Word::Taller | Word::Lower)) => {
+                        s.by = Some(Amount::Metres(n));
+                        i += 1;
+                    }
+                    (Some(Word::Metre), _) => {
+                        match () {
+                            () if before == Some(Word::To) => s.height = Some(Amount::Metres(n)),
+                            () if before == Some(Word::By) || wants(Verb::Move) => {
+                                s.by = Some(Amount::Metres(n))
+                            }
+                            () if wants(Verb::Raise) || wants(Verb::Lower) => s.by = Some(Amount::Metres(n)),
+                            () => s.place.distance_m = Some(n),
+                        }
+                        i += 1;
+                    }
+                    (Some(Word::What(..) | Word::Tall | Word::Low | Word::Row), _) => {
+                        s.count = Some(n.min(500.0) as u32)
+                    }
+                    _ => return None,
+                }
+            }
+            Word::Tall if what.is_some() && verb == Some(Verb::Make) => comparative = Some(Verb::Raise),
+            Word::Tall => s.tall = Some(true),
+            Word::Low => s.tall = Some(false),
+            Word::Taller => comparative = Some(Verb::Raise),
+            Word::Lower => comparative = Some(Verb::Lower),
+            Word::Dense => s.dense = Some(true),
+            Word::Sparse => s.dense = Some(false),
+            Word::Nearest => s.nearest = Some(true),
+            Word::Furthest => s.nearest = Some(false),
+            Word::Row => s.row = true,
+            Word::Storey | Word::Metre => return None,
+            Word::To | Word::By | Word::Filler => {}
+        }
+        i += 1;
+    }
+    s.what = what?;
+    if s.what == What::Thing && s.id.is_none() {
+        return None;
+    }
+    s.place.along |= s.row;
+    s.plural |= no || all;
+    s.verb = match (verb.or(carried.filter(|_| edits)), comparative) {
+        _ if no && verb.is_none_or(|v| v == Verb::Make || v == Verb::Have) => Verb::Remove,
+        // "no" beside another command says nothing that could be carried out
+        _ if no => return None,
+        (Some(Verb::Make) | None, Some(change)) => change,
+        (Some(Verb::Add), Some(_)) | (Some(Verb::Remove), _) if s.by.is_some() => return None,
+        (Some(Verb::Make), None) => {
+            s.height?;
+            Verb::Raise
+        }
+        (Some(v), _) => v,
+        (None, None) => Verb::Have,
+    };
+    if s.verb == Verb::Move && (s.by.is_none() || s.way.is_none()) {
+        return None;
+    }
+    match s.verb {
+        // A description says what is there, not which: "the building" alone belongs to another sentence.
+        Verb::Have if edits && s.height.is_some() && s.definite => s.verb = Verb::Raise,
+        Verb::Have if s.definite => return None,
+        Verb::Have if edits => s.verb = Verb::Add,
+        _ => {}
+    }
+    s.target = target(&spoken, &s);
+    // "Clear the car park" is about what stands on it, "bus stops ahead" about a bus.
+    let cleared = matches!(s.what, What::Place(p) if p != Setting::Forest) && s.verb == Verb::Remove && !no;
+    let stops = s.what == What::Post(PostKind::BusStop) && verb.is_none();
+    if cleared || stops {
+        return None;
+    }
+    // Surroundings as a whole ("a forest") belong to the other reader unless a side is named.
+    let whole = matches!(s.what, What::Place(_)) && s.place.side.is_none() && verb.is_none() && !no;
+    let other = whole && !words.contains(&Word::Both);
+    (!other && (edits || !may_be_barrier(&s))).then_some(s)
+}
+
+/// From the article of the thing to where the amount of a change begins.
+fn target(spoken: &[(Word, Span)], s: &Said) -> Span {
+    let at = spoken
+        .iter()
+        .position(|(w, _)| matches!(w, Word::What(..)))
+        .unwrap_or(0);
+    let from = spoken[..at]
+        .iter()
+        .rposition(|(w, _)| matches!(w, Word::The | Word::A))
+        .unwrap_or(at);
+    let changes = s.by.is_some() || s.height.is_some() || s.way.is_some();
+    let amount = |(w, _): &(Word, Span)| {
+        matches!(
+            w,
+            Word::Number(_) | Word::By | Word::To | Word::Taller | Word::Lower | Word::Tall
+        )
+    };
+    let end = spoken[at..]
+        .iter()
+        .position(|w| changes && amount(w))
+        .map_or(spoken.len(), |i| at + i);
+    spoken[from].1.to(spoken[end - 1].1)
+}
+
+/// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.
+pub(super) fn may_be_barrier(s: &Said) -> bool {
+    use crate::scene::background::LineKind::{Fence, GuardRail};
+    matches!(s.what, What::Line(Fence | GuardRail)) && !s.place.along
+}
+
+/// What the words of a clause say, one after another; `None` if one is not known.
+fn senses(clause: &[Token]) -> Option<Vec<(Word, Span)>> {
+    let clause: Vec<&Token> = clause.iter().filter(|t| t.text != "#").collect();
+    let words: Vec<&str> = clause.iter().map(|t| t.text.as_str()).collect();
+    let mut out = Vec::new();
+    let mut i = 0;
+    while i < words.len() {
+        if let TokenKind::Number(n) = clause[i].kind {
+            out.push((Word::Number(n), clause[i].span));
+            i += 1;
+            continue;
+        }
+        let (word, n) = lookup(&words[i..])?;
+        out.push((word, clause[i].span.to(clause[i + n - 1].span)));
+        i += n;
+    }
+    Some(out)
+}

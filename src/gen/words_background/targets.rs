@@ -1,0 +1,179 @@
+//! Which things of a scene the words mean.
+
+use glam::DVec2;
+
+use super::place::Ground;
+use super::{NearTo, Said, SideOf, What, Where};
+use crate::scene::background::{LineKind, PostKind};
+use crate::scene::road_map::{RoadMap, outline_distance_m};
+use crate::scene::{Background, Form, Thing, ThingId};
+
+/// "Near" a crossing, a junction, and the ego vehicle, m.
+const NEAR_M: [f64; 3] = [12.0, 20.0, 15.0];
+/// A thing "12 m ahead" is at most this far from there, m.
+const OFF_M: f64 = 6.0;
+/// Most candidates that a question names.
+const MOST: usize = 8;
+/// Trees of a row stand at most this far from each other and from the paved ground, m.
+const ROW_GAP_M: f64 = 14.0;
+const ROW_FROM_PAVED_M: f64 = 2.6;
+
+/// What a clause means in a scene.
+pub(super) enum Meant {
+    /// These; none if nothing fits.
+    These(Vec<ThingId>),
+    /// One is meant and several fit: each with its place in words and the words that name it alone.
+    Ask(Vec<(ThingId, String, String)>),
+}
+
+/// True if any of the points is near what was said.
+pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> bool {
+    let Some(near) = place.near else { return true };
+    let reach = place.distance_m.unwrap_or(
+        NEAR_M[match near {
+            NearTo::Crossing => 0,
+            NearTo::Junction => 1,
+            NearTo::Ego => 2,
+        }],
+    );
+    points_m.iter().any(|p| match near {
+        NearTo::Crossing => roads.crossings.iter().any(|c| {
+            crate::scene::road_map::inside(&c.outline_m, *p) || outline_distance_m(&c.outline_m, *p) <= reach
+        }),
+        NearTo::Junction => roads.junctions_m.iter().any(|j| j.distance(*p) <= reach),
+        NearTo::Ego => p.length() <= reach,
+    })
+}
+
+/// True if a form is what the word names.
+pub(super) fn is(what: What, form: &Form) -> bool {
+    match (what, form) {
+        (What::Thing, _) | (What::Building(_), Form::Building(_)) | (What::Shrubs, Form::Shrubs(_)) => true,
+        (What::Tree(kind), Form::Tree(t)) => kind.is_none_or(|k| t.kind == k),
+        (What::Line(LineKind::Wall), Form::Line(l)) => {
+            matches!(l.kind, LineKind::Wall | LineKind::RetainingWall)
+        }
+        (What::Line(kind), Form::Line(l)) => l.kind == kind,
+        (What::Post(PostKind::Pole), Form::Post(p)) => {
+            matches!(
+                p.kind,
+                PostKind::Pole | PostKind::StreetLight | PostKind::Sign | PostKind::TrafficLight
+            )
+        }
+        (What::Post(kind), Form::Post(p)) => p.kind == kind,
+        (What::Plants | What::Place(crate::generation::world::scenery::Setting::Forest), form) => {
+            match form {
+                Form::Tree(_) | Form::Shrubs(_) => true,
+                Form::Line(l) => l.kind == LineKind::Hedge,
+                _ => false,
+            }
+        }
+        _ => false,
+    }
+}
+
+/// The things that a clause means; `things` in the ego frame, those in the grid.
+pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Meant {
+    if let Some(id) = said.id {
+        let found = things.get(ThingId(id)).filter(|t| is(said.what, &t.form));
+        return Meant::These(found.map(|t| t.id).into_iter().collect());
+    }
+    let mut fits: Vec<&Thing> = things
+        .iter()
+        .filter(|t| is(said.what, &t.form) && is_there(said, t, ground))
+        .collect();
+    fits.sort_by(|a, b| a.form.middle_m().length().total_cmp(&b.form.middle_m().length()));
+    if said.row {
+        return row(&fits, said, ground);
+    }
+    if let (Some(along), None) = (said.place.distance_m, said.place.near) {
+        let along = if said.place.ahead == Some(false) {
+            -along
+        } else {
+            along
+        };
+        let off = |t: &Thing| (ground.roads.along_ego_lane(t.form.middle_m()).x - along).abs();
+        fits.retain(|t| off(t) <= OFF_M);
+        fits.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        fits.truncate(if said.plural { usize::MAX } else { 1 });
+    }
+    let ids = |list: &[&Thing]| Meant::These(list.iter().map(|t| t.id).collect());
+    let n = said.count.unwrap_or(1) as usize;
+    match said.nearest {
+        Some(true) => return ids(&fits[..n.min(fits.len())]),
+        Some(false) => return ids(&fits[fits.len() - n.min(fits.len())..]),
+        None => {}
+    }
+    match () {
+        () if said.plural && said.count.is_none() => ids(&fits),
+        // "remove two trees": which two does not matter; "a taller building": the nearest.
+        () if !said.definite => ids(&fits[..n.min(fits.len())]),
+        () if fits.len() <= n => ids(&fits),
+        () => Meant::Ask(fits.iter().take(MOST).map(|t| candidate(t, ground)).collect()),
+    }
+}
+
+fn candidate(thing: &Thing, ground: &Ground) -> (ThingId, String, String) {
+    let own = ground.roads.along_ego_lane(thing.form.middle_m());
+    let along = if own.x >= 0.0 { "ahead" } else { "behind" };
+    let side = if own.y >= 0.0 { "left" } else { "right" };
+    let place = format!(
+        "{:.0} m {along}, {:.0} m {side}, {:.1} m high",
+        own.x.abs(),
+        own.y.abs(),
+        thing.form.height_m()
+    );
+    (thing.id, place, format!("thing #{}", thing.id.0))
+}
+
+fn is_there(said: &Said, thing: &Thing, ground: &Ground) -> bool {
+    let (place, points) = (&said.place, thing.form.points_m());
+    let middle = thing.form.middle_m();
+    let own = ground.roads.along_ego_lane(middle);
+    let side = match place.side {
+        Some(SideOf::Left) => own.y > 0.0,
+        Some(SideOf::Right) => own.y < 0.0,
+        None => true,
+    };
+    let ahead = place.ahead.is_none_or(|ahead| (own.x > 0.0) == ahead);
+    side && ahead && is_near(&ground.roads, place, &points)
+}
+
+/// The row that is meant: trees that stand along the road, one after another.
+fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
+    let mut list: Vec<(&Thing, DVec2)> = fits
+        .iter()
+        .filter(|t| ground.paved_m(t.form.middle_m()) <= ROW_FROM_PAVED_M)
+        .map(|t| (*t, ground.roads.along_ego_lane(t.form.middle_m())))
+        .collect();
+    list.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
+    let mut rows: Vec<Vec<(&Thing, DVec2)>> = Vec::new();
+    for (t, own) in list {
+        let belongs = |row: &&mut Vec<(&Thing, DVec2)>| {
+            row.last().is_some_and(|(last, at)| {
+                let apart = last.form.middle_m().distance(t.form.middle_m());
+                (at.y > 0.0) == (own.y > 0.0) && apart <= ROW_GAP_M && (at.y - own.y).abs() < 4.0
+            })
+        };
+        match rows.iter_mut().find(belongs) {
+            Some(row) => row.push((t, own)),
+            None => rows.push(vec![(t, own)]),
+        }
+    }
+    rows.retain(|r| r.len() >= 3);
+    let of = |left: bool| rows.iter().filter(move |r| (r[0].1.y > 0.0) == left).flatten();
+    match (of(true).next(), of(false).next()) {
+        (Some(a), Some(b)) if !said.plural => Meant::Ask(
+            [(a, "left"), (b, "right")]
+                .map(|((t, _), side)| {
+                    (
+                        t.id,
+                        format!("the row on the {side}"),
+                        format!("the tree row on the {side}"),
+                    )
+                })
+                .to_vec(),
+        ),
+        _ => Meant::These(rows.iter().flatten().map(|(t, _)| t.id).collect()),
+    }
+}

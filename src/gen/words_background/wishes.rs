@@ -1,0 +1,444 @@
+//! A description's background to scenery: a style for each side of the road, new things where the style brings none, and
+//! what must not be there taken out.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::place::Ground;
+use super::targets::{Meant, is, targets};
+use super::{Amount, Said, SideOf, Verb, What, take};
+use crate::generation::text::description::{Description, Environment, Road};
+use crate::generation::world::draw::Draw;
+use crate::generation::world::scenery::{Setting, Side, Style, background_of};
+use crate::scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};
+use crate::scene::{Background, BevLayout, BoxId, Form, SceneBox};
+
+/// What a description says of the background, clause by clause, each with its words.
+pub fn wishes(description: &Description) -> Vec<(String, Said)> {
+    let read = |words: &String| {
+        let mut said = take(words, false).said;
+        if said.is_empty() {
+            // A word of its own is wanted on both sides: "forest".
+            said = take(&format!("{words} on both sides"), false).said;
+        }
+        said.into_iter().map(|s| (words.clone(), s)).collect::<Vec<_>>()
+    };
+    description.background.iter().flat_map(read).collect()
+}
+
+/// The scenery that a description asks for on a layout, and what of it could not be had, one line each.
+pub fn scenery(
+    description: &Description,
+    layout: &BevLayout,
+    boxes: &BTreeMap<BoxId, SceneBox>,
+    seed: u64,
+) -> (Background, Vec<String>) {
+    let wishes = wishes(description);
+    let style = style(description, &wishes, layout, seed);
+    let mut things = background_of(layout, boxes, &style, seed);
+    let mut short = Vec::new();
+    for (i, (words, s)) in wishes.iter().enumerate() {
+        let ground = Ground::new(layout, boxes, &things);
+        if s.verb == Verb::Remove {
+            let lacks = match s.place.near {
+                Some(super::NearTo::Crossing) => ground.roads.crossings.is_empty(),
+                Some(super::NearTo::Junction) => ground.roads.junctions_m.is_empty(),
+                _ => false,
+            };
+            if lacks {
+                short.push(format!("{words}: this road has none"));
+            }
+            if let Meant::These(ids) = targets(s, &things, &ground) {
+                ids.iter().for_each(|id| {
+                    things.remove(*id);
+                });
+            }
+            continue;
+        }
+        let sides: Vec<SideOf> = s
+            .place
+            .side
+            .map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
+        for side in sides {
+            let mut here = s.clone();
+            here.place.side = Some(side);
+            if s.place.side.is_none() && !s.place.along && !s.plural && side == SideOf::Right {
+                continue; // one was asked for, somewhere
+            }
+            if s.place.side.is_none() && !s.place.along && !s.plural {
+                here.place.side = None;
+            }
+            let ground = Ground::new(layout, boxes, &things);
+            if is_there(&here, &things, &ground) {
+                continue;
+            }
+            match forms(&here, ground, seed ^ i as u64) {
+                Ok(forms) => forms.into_iter().for_each(|f| {
+                    things.add(f);
+                }),
+                Err(why) => short.push(format!("{words}: {why}")),
+            }
+        }
+    }
+    (things, short)
+}
+
+/// True if what was described is there already.
+fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
+    if s.row || s.place.distance_m.is_some() || s.count.is_some() || s.place.near.is_some() {
+        return false;
+    }
+    let of = |what: What| {
+        things
+            .iter()
+            .filter(move |t| is(what, &t.form) && ground.fits(&s.place, t.form.middle_m()))
+    };
+    match s.what {
+        What::Place(Setting::Forest | Setting::Park) => of(What::Tree(None)).count() >= 3,
+        What::Place(Setting::Country) => true,
+        What::Place(_) => of(What::Building(None)).count() > 0,
+        What::Building(_) => of(s.what).count() > 0,
+        What::Line(_) => {
+            let length = |t: &crate::scene::Thing| {
+                t.form
+                    .points_m()
+                    .windows(2)
+                    .map(|w| w[0].distance(w[1]))
+                    .sum::<f64>()
+            };
+            of(s.what).map(length).sum::<f64>() > 20.0
+        }
+        what => of(what).count() >= if s.plural { 3 } else { 1 },
+    }
+}
+
+fn style(description: &Description, wishes: &[(String, Said)], layout: &BevLayout, seed: u64) -> Style {
+    let mut style = Style::drawn(layout, seed);
+    if let Some(setting) = around(description) {
+        style = Style::both(Side::usual(setting));
+    }
+    let sides = [(SideOf::Left, &mut style.left), (SideOf::Right, &mut style.right)];
+    for (which, side) in sides {
+        let here = wishes
+            .iter()
+            .map(|w| &w.1)
+            .filter(|s| s.place.side.is_none_or(|of| of == which));
+        // Kinds of place first: "trees" among them say how many.
+        let (places, rest): (Vec<&Said>, Vec<&Said>) = here.partition(|s| matches!(s.what, What::Place(_)));
+        for s in places.into_iter().chain(rest) {
+            // What is near a crossing, or counted, is put in or taken out afterwards.
+            if s.place.near.is_none() && s.count.is_none() && !(s.row || s.place.distance_m.is_some()) {
+                wish(side, s);
+            }
+        }
+    }
+    style
+}
+
+/// The kind of place that surroundings and road name.
+fn around(description: &Description) -> Option<Setting> {
+    let road = match description.road.kind {
+        Some(Road::Highway) => Some(Setting::Motorway),
+        Some(Road::Suburb) => Some(Setting::Suburb),
+        _ => None,
+    };
+    let environment = description.environment.map(|e| match e {
+        Environment::Downtown | Environment::Urban => Setting::City,
+        Environment::Suburban | Environment::Residential => Setting::Suburb,
+        Environment::Rural => Setting::Country,
+        Environment::Highway => Setting::Motorway,
+        Environment::Industrial => Setting::Industry,
+        Environment::Nature => Setting::Forest,
+    });
+    environment.or(road)
+}
+
+fn wish(side: &mut Side, s: &Said) {
+    let no = s.verb == Verb::Remove;
+    let many = match s.dense {
+        Some(true) => 1.7,
+        Some(false) => 0.4,
+        None => 1.0,
+    };
+    match s.what {
+        What::Place(Setting::Forest) if no => side.trees = 0.0,
+        What::Place(_) if no => {}
+        What::Place(setting) => {
+            *side = Side::usual(setting);
+            side.green = many;
+        }
+        What::Building(_) if no => side.built = 0.0,
+        What::Building(kind) => {
+            let bare = matches!(
+                side.setting,
+                Setting::Forest | Setting::Motorway | Setting::Country | Setting::Park
+            );
+            // Houses suit an old town as well, towers do not suit a suburb.
+            let fits = matches!((kind, side.setting), (Some(Setting::Suburb), Setting::OldTown));
+            if let Some(setting) = kind.filter(|_| !fits) {
+                side.setting = setting;
+            } else if bare {
+                side.setting = Setting::City;
+            }
+            side.built = if s.dense.is_some() {
+                many
+            } else {
+                side.built.max(1.1)
+            };
+            side.storeys = storeys(s, side.setting).or(side.storeys);
+        }
+        What::Tree(_) => side.trees = if no { 0.0 } else { many.max(0.4) * 1.2 },
+        What::Shrubs => side.shrubs = if no { 0.0 } else { many * 1.4 },
+        What::Plants if no => side.green = 0.0,
+        What::Plants => side.green = many * 1.3,
+        What::Line(_) | What::Post(_) | What::Thing => {}
+    }
+}
+
+fn storeys(s: &Said, setting: Setting) -> Option<u32> {
+    let said = s.height.map(|h| match h {
+        Amount::Storeys(n) => n,
+        Amount::Metres(m) => m / STOREY_M,
+    });
+    let usual = match (s.tall?, setting) {
+        (true, Setting::City) => 9,
+        (true, Setting::OldTown) => 6,
+        (true, Setting::Industry | Setting::Retail) => 4,
+        (true, _) => 4,
+        (false, Setting::City) => 2,
+        (false, _) => 1,
+    };
+    Some(said.map_or(usual, |n| n.round().clamp(1.0, 60.0) as u32))
+}
+
+/// A clause's things in words.
+pub(super) fn name(s: &Said) -> String {
+    let one = match s.what {
+        What::Building(_) => "building",
+        What::Tree(_) => "tree",
+        What::Shrubs => "shrubs",
+        What::Line(kind) => kind.name(),
+        What::Post(kind) => kind.name(),
+        What::Place(_) => "place",
+        What::Plants => "plants",
+        What::Thing => "thing",
+    };
+    let side = match s.place.side {
+        Some(SideOf::Left) => " on the left",
+        Some(SideOf::Right) => " on the right",
+        None => "",
+    };
+    format!("{one}{side}")
+}
+
+/// New things of a clause, ego frame; an error in words where there is no room or it cannot be made.
+pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>, String> {
+    let mut draw = Draw::new(seed, "by words");
+    let sides: Vec<SideOf> = s
+        .place
+        .side
+        .map_or(vec![SideOf::Left, SideOf::Right], |side| vec![side]);
+    let height = s.height.map(|h| match h {
+        Amount::Storeys(n) => n * STOREY_M,
+        Amount::Metres(m) => m,
+    });
+    let scale = match s.tall {
+        Some(true) => 1.6,
+        Some(false) => 0.6,
+        None => 1.0,
+    };
+    let no_room = || format!("no room for {} beside the road", name(s));
+    let mut out = Vec::new();
+    if let What::Line(kind) = s.what {
+        let from_paved = kind.typical_m().1 / 2.0 + 0.7;
+        for side in &sides {
+            for points_m in ground.lines(&s.place, *side, from_paved) {
+                let mut line = Line::typical(kind, thinned(&points_m));
+                line.height_m = height.unwrap_or(line.height_m * scale);
+                out.push(Form::Line(line));
+            }
+        }
+        return if out.is_empty() {
+            Err(no_room())
+        } else {
+            Ok(sound(out)?)
+        };
+    }
+    if s.row || s.place.along {
+        let spacing = if matches!(s.what, What::Tree(_)) {
+            8.0
+        } else {
+            14.0
+        };
+        for side in &sides {
+            for line in ground.lines(&s.place, *side, 1.0) {
+                let mut last: Option<DVec2> = None;
+                for p in line {
+                    if last.is_none_or(|l| l.distance(p) >= spacing) {
+                        last = Some(p);
+                        out.extend(single(s, p, height, scale, &ground, &mut draw));
+                    }
+                }
+            }
+        }
+        return if out.is_empty() {
+            Err(no_room())
+        } else {
+            Ok(sound(out)?)
+        };
+    }
+    let (count, spacing) = match s.what {
+        What::Place(Setting::Forest) | What::Place(Setting::Park) => {
+            (if s.dense == Some(false) { 14 } else { 45 }, 0.0)
+        }
+        What::Place(_) | What::Plants | What::Thing => {
+            return Err(format!(
+                "{}: only buildings, trees, shrubs, lines and posts can be put in by words",
+                name(s)
+            ));
+        }
+        _ => (s.count.unwrap_or(if s.plural { 4 } else { 1 }), 6.0),
+    };
+    let sign = if s.place.ahead == Some(false) { -1.0 } else { 1.0 };
+    let first = s
+        .place
+        .distance_m
+        .filter(|_| s.place.near.is_none())
+        .unwrap_or(8.0);
+    for i in 0..count.min(200) {
+        let along = match spacing {
+            0.0 => draw.range(-38.0, 38.0),
+            step => sign * (first + f64::from(i) * step),
+        };
+        // Far from the road too, in a wood.
+        let from_paved = if spacing == 0.0 {
+            draw.range(2.0, 16.0)
+        } else {
+            1.2
+        };
+        let fits = |p: DVec2| {
+            let mut try_draw = Draw::new(seed, "try");
+            match single(s, p, height, scale, &ground, &mut try_draw) {
+                Some(Form::Building(b)) => ground.has_room_for(&b.outline_m),
+                Some(_) => ground.has_room(p, 0.5),
+                None => false,
+            }
+        };
+        let Some(p) = ground.place(&s.place, along, from_paved, &fits) else {
+            break;
+        };
+        // A place that was named exactly is not another one.
+        if s.place.distance_m.is_some() && s.place.near.is_none() && i == 0 {
+            let off = (ground.roads.along_ego_lane(p).x - along).abs();
+            if off > 5.0 {
+                return Err(format!(
+                    "no room for {} {first:.0} m away: the nearest is {off:.0} m from there",
+                    name(s)
+                ));
+            }
+        }
+        if let Some(form) = single(s, p, height, scale, &ground, &mut draw) {
+            ground.take(&form);
+            out.push(form);
+        }
+    }
+    if out.is_empty() {
+        Err(no_room())
+    } else {
+        sound(out)
+    }
+}
+
+fn sound(forms: Vec<Form>) -> Result<Vec<Form>, String> {
+    match forms.iter().find_map(Form::problem) {
+        Some(problem) => Err(problem),
+        None => Ok(forms),
+    }
+}
+
+/// One thing at a place.
+fn single(
+    s: &Said,
+    p: DVec2,
+    height: Option<f64>,
+    scale: f64,
+    ground: &Ground,
+    draw: &mut Draw,
+) -> Option<Form> {
+    let along = ground.roads.ego_direction(p);
+    let on_left = ground.roads.along_ego_lane(p).y > 0.0;
+    let away = if on_left { along.perp() } else { -along.perp() };
+    Some(match s.what {
+        What::Tree(_) | What::Place(_) => {
+            let named = if let What::Tree(kind) = s.what { kind } else { None };
+            let kind =
+                named.unwrap_or([TreeKind::Broadleaf, TreeKind::Conifer][usize::from(draw.chance(0.25))]);
+            let height_m = height.unwrap_or_else(|| draw.range(5.0, 8.0) * scale);
+            let slim = match kind {
+                TreeKind::Conifer => 0.2,
+                TreeKind::Columnar => 0.15,
+                TreeKind::Broadleaf | TreeKind::Bare => 0.3,
+            };
+            Form::Tree(Tree {
+                position_m: p,
+                height_m,
+                crown_radius_m: (height_m * slim).clamp(0.5, 3.4),
+                kind,
+            })
+        }
+        What::Building(kind) => {
+            let (length, depth, storeys) = match kind {
+                Some(Setting::Suburb | Setting::Country) => (11.0, 9.0, 2.0),
+                Some(Setting::Industry | Setting::Retail) => (22.0, 14.0, 2.5),
+                Some(Setting::City) => (18.0, 11.0, 5.0),
+                _ => (12.0, 9.0, 3.0),
+            };
+            let height_m = height.unwrap_or(storeys * STOREY_M * scale).max(STOREY_M);
+            // Its front, not its middle, stands at the place.
+            let middle = p + away * (depth / 2.0);
+            Form::Building(Building::rectangle(
+                middle,
+                DVec2::new(length, depth) / 2.0,
+                along,
+                height_m,
+            ))
+        }
+        What::Shrubs => {
+            let radius = 1.6;
+            let corner =
+                |i: usize| p + away + DVec2::from_angle(i as f64 * std::f64::consts::FRAC_PI_3) * radius;
+            Form::Shrubs(Shrubs {
+                outline_m: (0..6).map(corner).collect(),
+                height_m: height.unwrap_or(1.2 * scale),
+                per_m2: 0.9,
+            })
+        }
+        What::Post(kind) => {
+            let facing = match kind {
+                PostKind::Sign | PostKind::TrafficLight => {
+                    if on_left {
+                        along
+                    } else {
+                        -along
+                    }
+                }
+                _ => -away,
+            };
+            let mut post = Post::typical(kind, p, facing.to_angle());
+            post.height_m = height.unwrap_or(post.height_m);
+            Form::Post(post)
+        }
+        What::Line(_) | What::Plants | What::Thing => return None,
+    })
+}
+
+/// The line with fewer vertices: a vertex about every 8 m, and both ends.
+fn thinned(points_m: &[DVec2]) -> Vec<DVec2> {
+    let last = points_m.len().saturating_sub(1);
+    let keep = points_m
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| i % 5 == 0 || *i == last);
+    keep.map(|(_, p)| *p).collect()
+}

@@ -1,0 +1,88 @@
+//! What the columns of labels show of one class, and sets of columns: connected, grown, closed.
+
+use glam::DVec2;
+
+use crate::scene::draft::ground_bin;
+use crate::scene::{BevLayout, Class, GridSpec, VoxelGrid};
+
+/// Voxels of one class, column by column `[x][y]`, above the ground.
+pub(super) struct Standing {
+    /// Top of the highest voxel above the ground, m; 0 where there is none.
+    pub top_m: Vec<f64>,
+    /// Bits of the bins above the ground that hold the class.
+    bins: Vec<u16>,
+}
+
+impl Standing {
+    pub fn of(class: Class, labels: &VoxelGrid, layout: &BevLayout) -> Self {
+        let mut out = Self {
+            top_m: vec![0.0; GridSpec::COLUMNS],
+            bins: vec![0; GridSpec::COLUMNS],
+        };
+        for c in 0..GridSpec::COLUMNS {
+            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let ground = ground_bin(layout, x, y);
+            let column = labels.column(x, y);
+            for z in (ground + 1..GridSpec::NZ).filter(|z| column[*z] == class.id()) {
+                // Tops are where they are; only the undersides of these labels reach down.
+                let top = (z + 1) as f64 * GridSpec::VOXEL_M + GridSpec::MIN_M[2];
+                out.top_m[c] = (top - layout.relief.column_m(x, y)).max(0.1);
+                out.bins[c] |= 1 << (z - ground);
+            }
+        }
+        out
+    }
+
+    /// Number of voxels in a column.
+    pub fn count(&self, c: usize) -> u32 {
+        self.bins[c].count_ones()
+    }
+
+    /// How many of the four bins above the ground hold the class.
+    pub fn low(&self, c: usize) -> u32 {
+        (self.bins[c] >> 1 & 0b1111).count_ones()
+    }
+}
+
+/// Middle of a column on the ground, m.
+pub(super) fn middle_m(c: usize) -> DVec2 {
+    GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate()
+}
+
+/// The columns within `reach` of a column in x and y, itself among them.
+pub(super) fn around(c: usize, reach: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+    let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
+    let xs = x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1);
+    xs.flat_map(move |x| ys.clone().map(move |y| x * GridSpec::NY + y))
+}
+
+/// Columns that touch each other (8 neighbours), part by part.
+pub(super) fn parts(set: &[bool]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; set.len()];
+    let mut out = Vec::new();
+    for start in 0..set.len() {
+        if !set[start] || std::mem::replace(&mut seen[start], true) {
+            continue;
+        }
+        let mut part = vec![start];
+        let mut next = 0;
+        while next < part.len() {
+            for near in around(part[next], 1) {
+                if set[near] && !std::mem::replace(&mut seen[near], true) {
+                    part.push(near);
+                }
+            }
+            next += 1;
+        }
+        out.push(part);
+    }
+    out
+}
+
+/// The set with gaps of up to `2 * reach` columns closed: grown, then shrunk again.
+pub(super) fn closed(set: &[bool], reach: usize) -> Vec<bool> {
+    let grown: Vec<bool> = (0..set.len()).map(|c| around(c, reach).any(|n| set[n])).collect();
+    let all = |c: usize| around(c, reach).all(|n| grown[n]);
+    (0..set.len()).map(|c| set[c] || (grown[c] && all(c))).collect()
+}

@@ -1,0 +1,115 @@
+//! Walls, fences, rails, hedges and poles from columns that belong to no building and no tree.
+
+use glam::DVec2;
+
+use super::columns::{Standing, middle_m, parts};
+use super::rectangle::{Rectangle, split};
+use crate::scene::background::{Line, LineKind, Post, PostKind, Shrubs};
+use crate::scene::{Form, GridSpec};
+
+/// Most columns of a pole.
+const POLE: usize = 4;
+/// Shortest line, and widest one, m.
+const SHORTEST_M: f64 = 2.0;
+const WIDEST_M: f64 = 1.7;
+/// Share of its rectangle that a straight part fills.
+const FILLED: f64 = 0.62;
+
+/// Walls, fences, rails and poles of the manmade columns of `left`.
+pub(super) fn walls_and_poles(manmade: &Standing, left: &[bool]) -> Vec<Form> {
+    let mut out = Vec::new();
+    for part in parts(left) {
+        if part.len() <= POLE {
+            out.push(pole(&part, manmade));
+            continue;
+        }
+        for (r, columns) in split(part, &|r, columns| {
+            2.0 * r.half_m.y <= WIDEST_M || is_filled(r, columns)
+        }) {
+            let top = top_m(&columns, manmade);
+            if 2.0 * r.half_m.x < SHORTEST_M && columns.len() <= 2 * POLE {
+                out.push(pole(&columns, manmade));
+                continue;
+            }
+            let kind = match top {
+                t if t < 1.0 => LineKind::GuardRail,
+                // Mesh and boards let rays through: what is seen of a fence has gaps.
+                t if t < LineKind::Fence.typical_m().0 + 0.3 && !is_dense(&r, &columns) => LineKind::Fence,
+                _ => LineKind::Wall,
+            };
+            out.push(line(kind, &r, top));
+        }
+    }
+    out
+}
+
+/// Hedges and areas of shrubs of the columns of `left`.
+pub(super) fn hedges_and_shrubs(vegetation: &Standing, left: &[bool]) -> Vec<Form> {
+    let mut out = Vec::new();
+    for part in parts(left).into_iter().filter(|p| p.len() >= 3) {
+        for (r, columns) in split(part, &|r, columns| is_filled(r, columns)) {
+            let top = top_m(&columns, vegetation);
+            let is_hedge =
+                2.0 * r.half_m.y <= WIDEST_M && r.half_m.x > 2.0 && top > 0.7 && is_dense(&r, &columns);
+            out.push(match is_hedge {
+                true => line(LineKind::Hedge, &r, top),
+                false => Form::Shrubs(Shrubs {
+                    outline_m: r.corners_m(),
+                    height_m: top,
+                    per_m2: 1.0,
+                }),
+            });
+        }
+    }
+    out
+}
+
+fn top_m(columns: &[usize], of: &Standing) -> f64 {
+    let tops = columns.iter().map(|c| of.top_m[*c]);
+    tops.fold(0.3, f64::max)
+}
+
+fn share(r: &Rectangle, columns: &[usize]) -> f64 {
+    columns.len() as f64 * GridSpec::VOXEL_M.powi(2) / r.area_m2()
+}
+
+fn is_filled(r: &Rectangle, columns: &[usize]) -> bool {
+    share(r, columns) >= FILLED
+}
+
+fn is_dense(r: &Rectangle, columns: &[usize]) -> bool {
+    share(r, columns) > 0.8
+}
+
+fn line(kind: LineKind, r: &Rectangle, top_m: f64) -> Form {
+    let end = DVec2::new(r.half_m.x, 0.0);
+    // Columns are wider than most lines: half a column on either side is theirs.
+    let width = (2.0 * r.half_m.y - GridSpec::VOXEL_M).max(kind.typical_m().1);
+    Form::Line(Line {
+        kind,
+        points_m: vec![r.ground(-end), r.ground(end)],
+        height_m: top_m,
+        width_m: width,
+    })
+}
+
+fn pole(columns: &[usize], manmade: &Standing) -> Form {
+    let middle = columns.iter().map(|c| middle_m(*c)).sum::<DVec2>() / columns.len() as f64;
+    let top = top_m(columns, manmade);
+    let kind = match top {
+        t if t < 1.3 => PostKind::Bollard,
+        t if t < 3.2 && columns.len() > 1 => PostKind::Sign,
+        _ => PostKind::Pole,
+    };
+    // The nearest of its columns, so that it stands on one.
+    let near = columns
+        .iter()
+        .map(|c| middle_m(*c))
+        .min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle)));
+    Form::Post(Post {
+        kind,
+        position_m: near.unwrap_or(middle),
+        yaw_rad: 0.0,
+        height_m: top,
+    })
+}
