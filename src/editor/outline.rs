@@ -28,7 +28,8 @@ pub fn of_stroke(points_m: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
     Some(simple.unwrap_or_else(|| hull(&border)))
 }
 
-/// The longest closed border of cells, through their corners, m.
+/// The longest closed border of cells, through the middles of their sides, m: through their corners it would be a
+/// staircase, and touch itself where cells meet at a corner.
 fn border(cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
     let set: std::collections::BTreeSet<[i64; 2]> =
         cells.iter().map(|[x, y]| [*x as i64, *y as i64]).collect();
@@ -63,7 +64,9 @@ fn border(cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
         let min = DVec2::new(GridSpec::MIN_M[0], GridSpec::MIN_M[1]);
         min + DVec2::new(x as f64, y as f64) * GridSpec::VOXEL_M
     };
-    (longest.len() >= 4).then(|| longest.into_iter().map(corner).collect())
+    let n = longest.len();
+    let middle = |i: usize| (corner(longest[i]) + corner(longest[(i + 1) % n])) / 2.0;
+    (n >= 4).then(|| (0..n).map(middle).collect())
 }
 
 /// Takes out of the sides that begin at a corner the one that turns left most: areas that touch there stay apart.
@@ -151,6 +154,12 @@ mod tests {
             .map(|i| outline[i].perp_dot(outline[(i + 1) % outline.len()]) / 2.0)
             .sum();
         assert!(area > 0.0, "counter-clockwise");
+    }
+
+    #[test]
+    fn a_slanting_stroke_has_straight_sides() {
+        let outline = of_stroke(&[v(0.0, 0.0), v(14.0, 3.0)], 3.0).expect("an area");
+        assert!(outline.len() < 16, "{outline:?}");
     }
 
     #[test]

@@ -84,7 +84,8 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         ui.checkbox(&mut tools.things.snap_kerb, "Kerb")
             .on_hover_text("Moves set things beside the kerb");
     });
-    let any = state.any_chosen();
+    let any = state.selected.is_some();
+    let things = !state.tools.things.chosen.is_empty();
     let mut on = |clicked: bool, command| {
         if clicked {
             commands.push(Command::Tools(command));
@@ -94,12 +95,10 @@ pub fn select(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
         on(
-            button(
-                ui,
-                "To lane",
-                "D: lane centre, heading and ground; things go to the kerb",
-                any,
-            ),
+            match things && !any {
+                true => button(ui, "To kerb", "D: beside the nearest kerb", true),
+                false => button(ui, "To lane", "D: lane centre, heading and ground", any),
+            },
             ToolCommand::ToLane,
         );
         on(button(ui, "To ground", "Shift+D", any), ToolCommand::DropToGround);

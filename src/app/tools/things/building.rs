@@ -176,6 +176,7 @@ mod tests {
             let site = Site {
                 layout: &self.layout,
                 trees_m: &[],
+                houses_m: &[],
                 brush_m: 3.2,
             };
             self.draft.pointer(ThingTool::Building, &p, &site, &self.options)

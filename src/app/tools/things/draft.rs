@@ -46,6 +46,8 @@ pub struct Site<'a> {
     pub layout: &'a BevLayout,
     /// Where trees stand already.
     pub trees_m: &'a [DVec2],
+    /// Outlines of buildings.
+    pub houses_m: &'a [Vec<DVec2>],
     /// Width of the brush, m.
     pub brush_m: f64,
 }

@@ -223,6 +223,7 @@ fn in_hand(tool: ThingTool, frame: &Frame, state: &UiState, at_m: Option<DVec2>,
     let site = Site {
         layout: &frame.layout,
         trees_m: &[],
+        houses_m: &[],
         brush_m: state.brush_m,
     };
     let pointer = |at_m| Pointer {

@@ -59,15 +59,18 @@ impl SceneloomApp {
         };
         let scene = self.document.settled_scene().clone();
         let to_ego = scene.frame().world_from_ego.inverse();
-        let trees_m: Vec<_> = scene
-            .background
-            .iter()
-            .filter(|t| matches!(t.form, Form::Tree(_)))
-            .map(|t| t.form.in_frame(&to_ego).middle_m())
-            .collect();
+        let (mut trees_m, mut houses_m) = (Vec::new(), Vec::new());
+        for thing in scene.background.iter() {
+            match thing.form.in_frame(&to_ego) {
+                Form::Tree(tree) => trees_m.push(tree.position_m),
+                Form::Building(building) => houses_m.push(building.outline_m),
+                _ => {}
+            }
+        }
         let site = Site {
             layout: &scene.frame().layout,
             trees_m: &trees_m,
+            houses_m: &houses_m,
             brush_m: self.state.brush_m,
         };
         let things = &mut self.state.tools.things;

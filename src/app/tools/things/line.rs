@@ -75,6 +75,7 @@ mod tests {
         let site = Site {
             layout: &layout,
             trees_m: &[],
+            houses_m: &[],
             brush_m: 3.2,
         };
         let mut options = ThingState::default();

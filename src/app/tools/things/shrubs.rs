@@ -63,6 +63,7 @@ mod tests {
         let site = Site {
             layout: &Default::default(),
             trees_m: &[],
+            houses_m: &[],
             brush_m: 3.2,
         };
         draft.pointer(&at(Phase::Press, 0.0, 8.0), &site, &options);

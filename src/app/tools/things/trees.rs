@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::editor::choose::is_inside;
 use crate::editor::kerb;
 use crate::scene::Form;
 use crate::scene::background::Tree;
@@ -65,7 +66,7 @@ impl TreeStroke {
         Outcome::Preview(self.placed.iter().cloned().map(Form::Tree).collect())
     }
 
-    /// Puts one beside the way, where there is room and no roadway.
+    /// Puts one beside the way, where there is room, no roadway and no building.
     fn scatter(&mut self, at_m: DVec2, across: DVec2, site: &Site<'_>, options: &ThingState) {
         self.drawn += 1;
         let mut draw = Draw::new(hash(self.drawn), "scattered tree");
@@ -76,7 +77,8 @@ impl TreeStroke {
         let least_m = options.spacing_m * APART;
         let near = |q: &DVec2| q.distance(at_m) < least_m;
         let taken = site.trees_m.iter().any(near) || self.placed.iter().any(|t| near(&t.position_m));
-        if !taken && !kerb::is_roadway(site.layout, at_m) && self.placed.len() < MOST {
+        let built = site.houses_m.iter().any(|outline| is_inside(outline, at_m));
+        if !taken && !built && !kerb::is_roadway(site.layout, at_m) && self.placed.len() < MOST {
             self.place(at_m, draw.range(-0.2, 0.2), options);
         }
     }
@@ -98,10 +100,15 @@ mod tests {
     use crate::scene::{BevLayer, BevLayout, GridSpec};
 
     fn stroke(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2]) -> Vec<Form> {
+        stroke_by(to_m, layout, trees_m, &[])
+    }
+
+    fn stroke_by(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2], houses_m: &[Vec<DVec2>]) -> Vec<Form> {
         let options = ThingState::default();
         let site = Site {
             layout,
             trees_m,
+            houses_m,
             brush_m: 3.2,
         };
         let mut draft = TreeStroke::default();
@@ -146,6 +153,9 @@ mod tests {
                 assert!(apart >= 3.6, "{apart}");
             }
         }
+        let house = [[10.0, -9.0], [50.0, -9.0], [50.0, 9.0], [10.0, 9.0]].map(DVec2::from_array);
+        let before_it = stroke_by(DVec2::X * 36.0, &layout, &[], &[house.to_vec()]);
+        assert!(before_it.len() < row.len() && before_it.iter().all(|f| f.middle_m().x < 10.0));
         // Not where trees stand, and not on the roadway beyond x = 20.
         let taken: Vec<DVec2> = row.iter().skip(1).take(2).map(Form::middle_m).collect();
         assert_eq!(stroke(DVec2::X * 36.0, &layout, &taken).len(), row.len() - 2);
