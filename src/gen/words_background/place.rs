@@ -1,5 +1,6 @@
 //! Ground for new things that words ask for: beside the road, clear of what is there.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use glam::DVec2;
@@ -19,7 +20,7 @@ pub struct Ground {
     pub roads: RoadMap,
     to_paved: Vec<f32>,
     taken: Vec<bool>,
-    own: Vec<DVec2>, // of each column: way along the ego lane, and offset to its left
+    own: OnceCell<Vec<DVec2>>, // of each column: way along the ego lane, and offset to its left; slow, so on demand
 }
 
 impl Ground {
@@ -27,9 +28,8 @@ impl Ground {
     pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, things: &Background) -> Self {
         let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
         let roads = RoadMap::new(layout);
-        let own = (0..GridSpec::COLUMNS).map(|c| roads.along_ego_lane(middle_m(c)));
         let mut out = Self {
-            own: own.collect(),
+            own: OnceCell::new(),
             roads,
             to_paved: distance_cells(|c| layout.cells()[c] & paved != 0),
             taken: vec![false; GridSpec::COLUMNS],
@@ -56,6 +56,11 @@ impl Ground {
             // Other things may grow or stand among shrubs.
             Form::Shrubs(_) => {}
         }
+    }
+
+    fn own(&self) -> &[DVec2] {
+        let all = || (0..GridSpec::COLUMNS).map(|c| self.roads.along_ego_lane(middle_m(c)));
+        self.own.get_or_init(|| all().collect())
     }
 
     /// Distance from paved ground, m.
@@ -108,11 +113,12 @@ impl Ground {
         from_paved_m: f64,
         fits: &dyn Fn(DVec2) -> bool,
     ) -> Option<DVec2> {
+        let all = self.own();
         let mut order: Vec<(f64, usize)> = (0..GridSpec::COLUMNS)
             .filter(|c| !self.taken[*c])
             .filter_map(|c| {
                 let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
-                let own = self.own[c];
+                let own = all[c];
                 // Beside the own road rather than beside one that leads away from it.
                 let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
                 (paved > 0.3 && cost < 60.0).then_some((cost, c))
@@ -134,8 +140,9 @@ impl Ground {
             ..*place
         };
         let mut at: BTreeMap<i64, (f64, DVec2)> = BTreeMap::new();
-        for c in 0..GridSpec::COLUMNS {
-            let (own, p) = (self.own[c], middle_m(c));
+        let all = self.own();
+        for (c, own) in all.iter().enumerate() {
+            let p = middle_m(c);
             let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
             let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
             if wrong_side
