@@ -403,10 +403,10 @@ fn what_is_missing_or_unknown_is_named() {
     assert!(missing.contains("missing field `seed`"), "{missing}");
     let count = json_refusal("manifest.json", "\"frames\":3", "\"frames\":2");
     assert!(count.contains("3 frames, expected 2"), "{count}");
-    let version = json_refusal("manifest.json", "\"version\":1,", "\"version\":2,\"new_key\":0,");
+    let version = json_refusal("manifest.json", "\"version\":2,", "\"version\":3,\"new_key\":0,");
     assert_eq!(
         version,
-        "manifest.json: version is 2, expected 1; open it with the sceneloom that wrote it"
+        "manifest.json: version is 3, expected 2; open it with the sceneloom that wrote it"
     );
     let format = json_refusal("manifest.json", "\"sceneloom\"", "\"krita\"");
     assert_eq!(
@@ -485,4 +485,58 @@ proptest! {
         let bytes = project::to_bytes(&scene).expect("sound");
         assert_same(&project::from_bytes(&bytes).expect("sound"), &scene);
     }
+}
+
+/// Background and relief, of the frame and of its source, come back bit for bit; a file of version 1 opens without either.
+#[test]
+fn background_and_relief_come_back_and_version_1_opens() {
+    use sceneloom::scene::background::{Background, Form, Line, LineKind, Tree, TreeKind};
+    use sceneloom::scene::{Relief, Thing, ThingId};
+    let mut scene = clip();
+    let mut background = Background::default();
+    background.add(Form::Tree(Tree {
+        position_m: DVec2::new(1.0 / 3.0, -7.1),
+        height_m: 6.3,
+        crown_radius_m: 1.7,
+        kind: TreeKind::Conifer,
+    }));
+    let points_m = vec![DVec2::new(-3.0, 9.0), DVec2::new(8.0, 0.1 + 0.2)];
+    background.insert(Thing {
+        id: ThingId(9),
+        form: Form::Line(Line::typical(LineKind::GuardRail, points_m)),
+        look: 77,
+    });
+    scene.background = Arc::new(background);
+    let frame = Arc::make_mut(&mut scene.frames[1]);
+    frame.layout.relief = Relief::from_fn(|p| 0.031 * p.x - 0.4);
+    let frame = Arc::make_mut(&mut scene.frames[2]);
+    Arc::make_mut(&mut frame.source).layout.relief = Relief::from_fn(|p| 0.01 * p.y);
+    let bytes = project::to_bytes(&scene).expect("sound");
+    let back = project::from_bytes(&bytes).expect("its own");
+    assert_eq!(back.background, scene.background);
+    assert_eq!(back.frames, scene.frames);
+    assert_eq!(project::to_bytes(&back).expect("sound"), bytes);
+
+    let mut entries = unpack(&project::to_bytes(&clip()).expect("sound"));
+    let manifest = &mut entries
+        .iter_mut()
+        .find(|e| e.0 == "manifest.json")
+        .expect("there")
+        .1;
+    let text = String::from_utf8(manifest.clone()).expect("JSON");
+    assert!(text.contains("\"version\":2"), "{text}");
+    *manifest = text.replace("\"version\":2", "\"version\":1").into_bytes();
+    let old = project::from_bytes(&pack(&entries)).expect("version 1 opens");
+    assert!(old.background.is_empty() && old.frames[0].layout.relief.is_flat());
+
+    // What is not sound is one line.
+    let with = |change: &dyn Fn(&mut Vec<u8>)| {
+        let mut entries = unpack(&bytes);
+        let relief = entries.iter_mut().find(|e| e.0.ends_with("00001/relief.f32"));
+        change(&mut relief.expect("there").1);
+        text_of(project::from_bytes(&pack(&entries)))
+    };
+    assert!(with(&|b| b.truncate(7)).contains("relief.f32"));
+    assert!(with(&|b| b[..4].copy_from_slice(&f32::NAN.to_le_bytes())).contains("relief: height NaN"));
+    assert!(with(&|b| b[..4].copy_from_slice(&1e6f32.to_le_bytes())).contains("1000000"));
 }

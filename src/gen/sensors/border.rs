@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_world_and_its_voxels_have_the_same_edge() {
-        let world = World::random(4);
+        let world = World::random_level(4);
         let (exact, voxels) = (
             Border::of_world(&world),
             Border::of_grid(&complete(&world, Vertical::Occ3d), 0.6),

@@ -143,7 +143,7 @@ impl<'a> Materials<'a> {
         let threshold = (met.range_m / REACH_M).powi(4);
         let weak = match material.retro {
             true => 0.0,
-            false => 1.0 / (1.0 + (0.62 * signal + 4.7 - threshold).exp()),
+            false => 1.0 / (1.0 + (0.62 * signal + 4.8 - threshold).exp()),
         };
         // Schlick's approximation of Fresnel's law.
         let mirrored = material.mirror * (1.0 - met.cosine).powi(5);

@@ -154,6 +154,14 @@ impl World {
         Self::new(layout, boxes, seed)
     }
 
+    /// The same on level ground, for tests of what needs it.
+    #[cfg(test)]
+    pub(crate) fn random_level(seed: u64) -> Self {
+        let layout = template::any_layout(seed);
+        let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
+        Self::new(layout, boxes, seed)
+    }
+
     /// The solids standing on the ground.
     pub fn solids(&self) -> &[Solid] {
         &self.solids

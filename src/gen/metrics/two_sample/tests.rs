@@ -92,7 +92,7 @@ fn shards_in_worlds_are_found() {
     let nibbled = |seed: u64| -> VoxelGrid {
         let (mut out, mut draw) = (grid(seed), Draw::new(seed, "nibbled"));
         for c in 0..GridSpec::COLUMNS {
-            if draw.chance(0.25) {
+            if draw.chance(0.35) {
                 let column = out.column_mut(c / GridSpec::NY, c % GridSpec::NY);
                 let taken = column.iter_mut().skip(1).filter(|l| **l == Class::Manmade.id());
                 taken.for_each(|l| *l = Class::FREE);
@@ -111,9 +111,9 @@ fn shards_in_worlds_are_found() {
         each.map(|g| cut(occupancy::patches(&occupancy::windows(g))))
             .collect()
     };
-    let worlds = patches((0..8).map(grid).collect());
-    let others = patches((50..58).map(grid).collect());
-    let nibbled = patches((50..58).map(nibbled).collect());
+    let worlds = patches((0..14).map(grid).collect());
+    let others = patches((50..64).map(grid).collect());
+    let nibbled = patches((50..64).map(nibbled).collect());
     let equal = two_sample(&worlds, &others, 1).expect("sound");
     let faulty = two_sample(&worlds, &nibbled, 1).expect("sound");
     println!("{equal:?}\n{faulty:?}");

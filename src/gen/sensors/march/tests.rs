@@ -20,7 +20,7 @@ fn everything() -> [MarchOptions; 4] {
 }
 
 fn of_world(seed: u64, options: &MarchOptions) -> (World, MarchScene) {
-    let world = World::random(seed);
+    let world = World::random_level(seed);
     let grid = complete(&world, Vertical::Occ3d);
     let scene = MarchScene::new(&grid, &world.layout, &world.boxes, options);
     (world, scene)
