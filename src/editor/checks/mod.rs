@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::Edit;
-use crate::scene::draft::ground_class;
+use crate::scene::draft::{ground_bin, ground_class};
 use crate::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox};
 
 /// How bad a finding is.
@@ -225,12 +225,12 @@ fn name_of(b: &SceneBox) -> String {
     format!("{} {}", b.class.label(), b.id.0)
 }
 
-/// Edits that take voxels away; where the lowest bin is emptied, the ground that the layout asks for is laid.
+/// Edits that take voxels away; where the bin of the ground is emptied, the ground that the layout asks for is laid.
 fn removal(frame: &Frame, cells: &[[usize; 3]]) -> Vec<Edit> {
     let mut of_class: BTreeMap<Class, Vec<[usize; 3]>> = BTreeMap::new();
     for &[x, y, z] in cells {
         let class = match z {
-            0 => ground_class(frame.layout.cell(x, y)),
+            z if z == ground_bin(&frame.layout, x, y) => ground_class(frame.layout.cell(x, y)),
             _ => Class::Free,
         };
         of_class.entry(class).or_default().push([x, y, z]);

@@ -5,15 +5,16 @@ use crate::editor::Edit;
 use crate::scene::{GridSpec, SceneBox};
 
 pub const NAME: &str = "out_of_range";
-/// How far a bottom may lie from the ground at height 0, m: roads are not flat, and real boxes follow them.
+/// How far a bottom may lie from the ground, m: it is known by the column, and boxes are level.
 const TOLERANCE_M: f64 = 0.6;
 
 pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     for b in &context.boxes {
-        let Some((severity, problem, may_drop)) = problem(b) else {
+        let ground_m = context.frame.layout.relief.height_m(b.center_m.truncate());
+        let Some((severity, problem, may_drop)) = problem(b, ground_m) else {
             continue;
         };
-        let dropped = b.center_m.truncate().extend(b.size_m.z / 2.0);
+        let dropped = b.center_m.truncate().extend(ground_m + b.size_m.z / 2.0);
         let fixes = may_drop.then(|| Fix {
             label: "Drop to the ground",
             edits: vec![Edit::MoveBox {
@@ -35,17 +36,17 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     }
 }
 
-/// What is wrong with a box's place, and whether putting it on the ground helps.
-fn problem(b: &SceneBox) -> Option<(Severity, String, bool)> {
+/// What is wrong with a box's place on ground of this height, and whether putting it on the ground helps.
+fn problem(b: &SceneBox, ground_m: f64) -> Option<(Severity, String, bool)> {
     let half_m = b.size_m.z / 2.0;
     let (bottom_m, top_m) = (b.center_m.z - half_m, b.center_m.z + half_m);
-    let (roof_m, fits) = (GridSpec::MAX_M[2], b.size_m.z <= GridSpec::MAX_M[2]);
+    let (roof_m, fits) = (GridSpec::MAX_M[2], ground_m + b.size_m.z <= GridSpec::MAX_M[2]);
     let center = b.center_m;
     if GridSpec::column_at(center.x, center.y).is_none() {
         let text = format!("stands outside the map, at {:.1}, {:.1} m", center.x, center.y);
         return Some((Severity::Warning, text, false));
     }
-    if top_m <= 0.0 {
+    if top_m <= ground_m {
         return Some((
             Severity::Error,
             format!("lies under the ground, its top at {top_m:.1} m"),
@@ -63,18 +64,19 @@ fn problem(b: &SceneBox) -> Option<(Severity, String, bool)> {
         return Some((
             Severity::Warning,
             format!("is cut off at {roof_m} m, its top is at {top_m:.1} m"),
-            fits && bottom_m > 0.0,
+            fits && bottom_m > ground_m,
         ));
     }
-    if bottom_m < -TOLERANCE_M {
+    let above_m = bottom_m - ground_m;
+    if above_m < -TOLERANCE_M {
         return Some((
             Severity::Warning,
-            format!("sticks {:.1} m in the ground", -bottom_m),
+            format!("sticks {:.1} m in the ground", -above_m),
             fits,
         ));
     }
-    (bottom_m > TOLERANCE_M).then(|| {
-        let text = format!("hovers {bottom_m:.1} m above the ground");
+    (above_m > TOLERANCE_M).then(|| {
+        let text = format!("hovers {above_m:.1} m above the ground");
         (Severity::Warning, text, fits)
     })
 }

@@ -27,7 +27,7 @@ impl OccupancyStatistics {
         let level = levelled(&labels, relief);
         self.class_mix(&labels);
         self.neighbours(&labels);
-        self.vertical(&level);
+        self.vertical(&in_range(&level, relief));
         self.thickness(&labels);
         self.cars(&labels);
         for (cells, name) in [
@@ -204,6 +204,17 @@ fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
     } else {
         Class::FREE
     }
+}
+
+/// Levelled labels without the columns whose ground lies below the grid's lowest bin: there no height is known.
+fn in_range(level: &[u8], relief: &Relief) -> Vec<u8> {
+    let mut out = level.to_vec();
+    for (c, column) in out.chunks_exact_mut(GridSpec::NZ).enumerate() {
+        if relief.column_m(c / GridSpec::NY, c % GridSpec::NY) < -GridSpec::VOXEL_M / 2.0 {
+            column.fill(Class::FREE);
+        }
+    }
+    out
 }
 
 /// Labels with every column lowered by the bin that its ground lies in.

@@ -38,7 +38,7 @@ impl Shrubs {
         for _ in 0..tries {
             let p = min + DVec2::new(draw.unit(), draw.unit()) * size;
             // Every plant takes the same number of draws, so that a corner moved changes only what it uncovers.
-            let (is_bush, tall, wide) = (draw.chance(0.3), draw.range(0.35, 1.0), draw.unit());
+            let (is_bush, tall, wide) = (draw.chance(0.2), draw.range(0.35, 1.0), draw.unit());
             if !inside(&self.outline_m, p) {
                 continue;
             }

@@ -80,22 +80,35 @@ impl Tree {
                 let radii = DVec3::new(crown, crown, half);
                 out.push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.3));
             }
-            TreeKind::Broadleaf | TreeKind::Bare => {
+            TreeKind::Bare => {
+                // Branches that spread upward from the trunk.
+                let fork = height * draw.range(0.25, 0.4);
+                trunk(height);
+                let mut branches = Solid::frustum(
+                    Class::Vegetation,
+                    base + DVec3::Z * fork,
+                    height - fork,
+                    0.25,
+                    crown,
+                );
+                branches.porosity = 0.6;
+                out.push(branches);
+            }
+            TreeKind::Broadleaf => {
                 // Boughs with gaps between them rather than one ball, all of them on the trunk.
                 let deep = (2.0 * crown).min(height * 0.75);
                 let fork = height - deep;
                 trunk(fork + deep * 0.6);
-                let bare = self.kind == TreeKind::Bare;
-                let porosity = if bare { 0.85 } else { draw.range(0.35, 0.55) };
+                let porosity = draw.range(0.3, 0.45);
                 let boughs = 8 + draw.below(6);
                 let middle = base + DVec3::Z * (fork + deep / 2.0);
-                let core = DVec3::new(crown * 0.35, crown * 0.35, deep * 0.4);
+                let core = DVec3::new(crown * 0.5, crown * 0.5, deep * 0.46);
                 out.push(Solid::ellipsoid(Class::Vegetation, middle, core, porosity));
                 for i in 0..boughs {
                     let angle = (i as f64 + draw.unit()) / boughs as f64 * std::f64::consts::TAU;
-                    let size = draw.range(0.2, 0.42);
-                    let away = crown * (1.0 - size);
-                    let up = draw.range(-0.6, 0.8) * deep / 2.0 * (1.0 - size);
+                    let size = draw.range(0.26, 0.42);
+                    let away = crown * (0.95 - size);
+                    let up = draw.range(-0.5, 0.6) * deep / 2.0 * (1.0 - size);
                     let center = middle + (DVec2::from_angle(angle) * away).extend(up);
                     let radii = DVec3::new(
                         crown * size,

@@ -140,7 +140,7 @@ pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
         let form = Shrubs {
             outline_m,
             height_m: own.range(0.5, 2.4),
-            per_m2: own.range(0.3, 1.1),
+            per_m2: own.range(0.3, 1.2),
         };
         site.put(Form::Shrubs(form), 0.0);
     }
