@@ -80,7 +80,7 @@ struct Canvas {
 impl RoadNetwork {
     /// The 80 x 80 m around `at_m` (file frame), seen by an ego vehicle that looks along `heading_rad`.
     ///
-    /// The relief is that of the roads, relative to the ego's ground; see [`Levels`] for roads above one another.
+    /// The relief is that of the roads, relative to the ego's ground; where roads cross above one another, one of them is a bridge.
     /// Layers in the sense of the nuScenes map: drivable area is everything paved that is connected
     /// to a traffic lane; stop lines, crossings and dividers are also kept as polylines.
     pub fn to_layout(&self, at_m: DVec2, heading_rad: f64) -> LayoutImport {

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 
 use super::Class;
 use super::draw::hash;
+use super::road_map::inside;
 
 /// Geometry of a solid.
 #[derive(Clone, Debug)]
@@ -204,7 +205,7 @@ impl Solid {
         let inside = match &self.shape {
             Shape::Prism { outline, half } => {
                 let q = p - self.center;
-                q.abs().cmple(*half).all() && prism::inside(outline, q.truncate())
+                q.abs().cmple(*half).all() && inside(outline, q.truncate())
             }
             &Shape::Hull { half, top, heading } => {
                 let q = self.local(p, heading);

@@ -2,16 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// True if the point lies in the outline (even-odd rule).
-pub(super) fn inside(outline: &[DVec2], p: DVec2) -> bool {
-    let mut odd = false;
-    for (a, b) in edges(outline) {
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            odd = !odd;
-        }
-    }
-    odd
-}
+use crate::scene::road_map::inside;
 
 fn edges(outline: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     (0..outline.len()).map(|i| (outline[i], outline[(i + 1) % outline.len()]))
