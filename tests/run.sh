@@ -26,5 +26,6 @@ fi
 # The release profile throughout: dependencies build once, and networks run at full speed.
 cargo fmt --check
 cargo clippy --release --all-targets --quiet -- -D warnings
+cargo clippy --release -p sceneloom-worlds --quiet -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --document-private-items --quiet
 cargo test --release
