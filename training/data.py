@@ -86,6 +86,23 @@ def named(grid, bev):
     return [min(1.0, k * float(np.sqrt((s & off_road).sum() / n))) for k, s in zip(SPREAD, shares)] + [float((grid != FREE).any(-1).mean())]
 
 
+STEEPEST = 0.08  # of the planes that `leaned` puts frames on
+LOWERED, RAISED = -1.5, 3.5  # bins
+
+
+def leaned(rng, grid):
+    """The same labels on other ground: whole columns moved up or down to a plane. Worlds have relief of their own, but real
+    vehicles pitch, roll and stand higher or lower than a grid supposes."""
+    nx, ny, height = grid.shape
+    grade = rng.uniform(-STEEPEST, STEEPEST, 2)  # bins per column: voxels are cubes
+    x, y = np.ogrid[:nx, :ny]
+    plane = grade[0] * (x - rng.integers(nx)) + grade[1] * (y - rng.integers(ny)) + rng.uniform(LOWERED, RAISED)
+    source = np.arange(height) - np.rint(plane).astype(np.int64)[..., None]
+    inside = (source >= 0) & (source < height)
+    moved = np.take_along_axis(grid, source.clip(0, height - 1), 2)
+    return np.where(inside, moved, np.uint8(FREE))
+
+
 class Places:
     """Where objects stand, so that crops can be drawn around them as often as around anything else."""
 

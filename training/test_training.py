@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from calibrate import figures, search
-from data import named, turned, turned_heading
+from data import leaned, named, turned, turned_heading
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
@@ -123,6 +123,21 @@ def named_numbers():
     assert named(grid, bev) == [1.0, 0, 0, 0.125]
 
 
+def leaning_moves_whole_columns():
+    grid = np.full((64, 64, 16), 17, np.uint8)
+    grid[..., 4], grid[..., 5] = 11, np.arange(64)[:, None] % 10
+    rng, levels = np.random.default_rng(5), set()
+    for _ in range(20):
+        found = leaned(rng, grid)
+        taken = found != 17
+        assert (taken.sum(2) <= 2).all() and (found[taken] <= 11).all()
+        both = taken.sum(2) == 2  # a column within the grid keeps its labels, one above the other
+        first = taken.argmax(2)
+        assert (np.take_along_axis(found, first[..., None], 2)[both] == 11).all()
+        levels |= set(first[both].tolist())
+    assert len(levels) > 6 and (grid[..., 4] == 11).all()
+
+
 def calibration_undoes_a_bias():
     torch.manual_seed(3)
     truth = torch.randint(2, (4000,)).to(torch.uint8) * 17  # `others` or free
@@ -141,6 +156,6 @@ if __name__ == "__main__":
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
-    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, calibration_undoes_a_bias):
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, calibration_undoes_a_bias):
         test()
         print(test.__name__, "ok")

@@ -10,7 +10,7 @@ from safetensors import safe_open
 from safetensors.torch import load_file
 
 import losses
-from data import Frames, Places, as_tensor, draw_masks, named, prefetch, turned, turned_heading
+from data import Frames, Places, as_tensor, draw_masks, leaned, named, prefetch, turned, turned_heading
 from latents import LatentCache, latent_space
 from loop import Run, pick_device
 from models.occ_dit import NAMED, PATCH, DitConfig, OccDit, cell_headings, unshuffle_layout
@@ -102,7 +102,8 @@ def train_vae(args, device, dtype):
 
     def make():
         kind = [kinds[k] for k in rng.choice(3, args.batch, p=args.mix)]
-        return as_tensor([turned(places.crop(rng, k, args.crop, args.anywhere), rng.integers(8)) for k in kind])
+        crops = [turned(places.crop(rng, k, args.crop, args.anywhere), rng.integers(8)) for k in kind]
+        return as_tensor([leaned(rng, c) if rng.random() < args.leaned else c for c in crops])
 
     meta = {"kind": "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
     if args.decoder_of:
@@ -273,6 +274,7 @@ def main():
     p.add_argument("--batch", type=int, help="crops (vae, 16) or frames (dit, 8) per step")
     p.add_argument("--crop", type=int, default=64, help="voxels along a side of a crop (vae only)")
     p.add_argument("--anywhere", type=float, default=0.35, help="share of crops that are not drawn around objects (vae only)")
+    p.add_argument("--leaned", type=float, default=0.25, help="share of crops that are put on other ground (vae only)")
     p.add_argument("--lr", type=float)
     p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
     p.add_argument("--width", type=int, help="channels of a token (dit only)")

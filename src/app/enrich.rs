@@ -184,7 +184,7 @@ fn fill(d: &mut Description, filled: Filled) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{Read, Write};
+    use std::io::{BufRead, Read, Write};
     use std::net::TcpListener;
 
     use super::*;
@@ -198,8 +198,7 @@ mod tests {
             let Ok((mut stream, _)) = listener.accept() else {
                 return;
             };
-            let mut request = vec![0; 1 << 16];
-            let _ = stream.read(&mut request);
+            read_request(&mut stream);
             match body {
                 Some(body) => {
                     let head = format!(
@@ -215,6 +214,22 @@ mod tests {
         url
     }
 
+    /// Reads a request whole: a socket that is closed with bytes unread resets the connection, and the answer is lost.
+    fn read_request(stream: &mut std::net::TcpStream) {
+        let mut reader = std::io::BufReader::new(stream);
+        let mut length = 0;
+        let mut line = String::new();
+        while reader.read_line(&mut line).is_ok_and(|n| n > 2) {
+            if let Some((key, value)) = line.split_once(':')
+                && key.eq_ignore_ascii_case("content-length")
+            {
+                length = value.trim().parse().expect("a length");
+            }
+            line.clear();
+        }
+        let _ = reader.read_exact(&mut vec![0; length]);
+    }
+
     fn says(content: &str) -> Option<String> {
         Some(json!({ "choices": [{ "message": { "content": content } }] }).to_string())
     }
@@ -227,7 +242,7 @@ mod tests {
 
     #[test]
     fn fills_what_is_open_and_keeps_what_was_said() {
-        let long = Duration::from_secs(10);
+        let long = Duration::from_secs(60);
         let url = server(
             "200 OK",
             says(
@@ -244,7 +259,7 @@ mod tests {
 
     #[test]
     fn bad_answers_are_named_and_change_nothing() {
-        let long = Duration::from_secs(10);
+        let long = Duration::from_secs(60);
         let before = read("a bus").description;
         let cases = [
             (server("200 OK", says(r#"{"mood": "gloomy"}"#)), "schema"),

@@ -262,9 +262,7 @@ impl Document {
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
         let mut scene = Scene::clone(self.settled_scene());
-        for edit in edits {
-            edit.apply(&mut scene)?;
-        }
+        Edit::apply_all(edits, &mut scene)?;
         Ok(scene)
     }
 

@@ -312,6 +312,25 @@ impl Edit {
         Ok(())
     }
 
+    /// Applies edits in order; an error stops there. Things that are changed one after another are drawn once, at the end.
+    pub fn apply_all(edits: &[Self], scene: &mut Scene) -> Result<(), EditError> {
+        for run in edits.chunk_by(|a, b| a.is_of_things() && b.is_of_things()) {
+            if !run[0].is_of_things() {
+                run.iter().try_for_each(|edit| edit.apply(scene))?;
+                continue;
+            }
+            let mut background = None;
+            for edit in run {
+                let before = background.as_ref().unwrap_or(&*scene.background);
+                background = things::changed(edit, before)?.or(background);
+            }
+            if let Some(background) = background {
+                things::replace_background(scene, background);
+            }
+        }
+        Ok(())
+    }
+
     /// True if it changes things of the background.
     pub fn is_of_things(&self) -> bool {
         matches!(

@@ -23,3 +23,4 @@ pub mod voxel_ops;
 pub use document::{Document, Stale};
 pub use edit::{Edit, EditError};
 pub use shape::Shape;
+pub use things::columns_between;

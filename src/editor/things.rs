@@ -125,28 +125,16 @@ fn raise(form: &mut Form, by_m: f64) {
 pub(super) fn replace_background(scene: &mut Scene, after: Background) {
     let before = std::mem::replace(&mut scene.background, Arc::new(after));
     let after = scene.background.clone();
-    let differs = |a: &Background, b: &Background| -> Vec<Thing> {
-        let gone = a.iter().filter(|t| b.get(t.id) != Some(t));
-        gone.cloned().collect()
-    };
-    let (gone, come) = (differs(&before, &after), differs(&after, &before));
+    let (gone, come) = (only_in(&before, &after), only_in(&after, &before));
     scene.rev = SceneRev::fresh();
     for frame in &mut scene.frames {
         let frame = Arc::make_mut(frame);
-        let to_ego = frame.world_from_ego.inverse();
-        let here = |list: &[Thing]| -> Vec<Thing> {
-            let moved = list.iter().map(|t| Thing {
-                form: t.form.in_frame(&to_ego),
-                ..t.clone()
-            });
-            moved.filter(in_grid).collect()
-        };
-        let (gone, come) = (here(&gone), here(&come));
+        let (gone, come) = (seen_from(frame, &gone), seen_from(frame, &come));
         if gone.is_empty() && come.is_empty() {
             continue;
         }
         let kept: Vec<Thing> = after.iter().cloned().collect();
-        let kept = here(&kept);
+        let kept = seen_from(frame, &kept);
         let Frame {
             layout,
             occupancy,
@@ -168,6 +156,34 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             guessed,
         );
     }
+}
+
+/// Columns of a frame, `[x * NY + y]`, whose voxels an edit of the background from `before` to `after` may change.
+pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -> Vec<bool> {
+    let mut out = vec![false; GridSpec::COLUMNS];
+    let changed = [only_in(before, after), only_in(after, before)].concat();
+    for thing in seen_from(frame, &changed) {
+        let own = columns_of(&thing, &frame.layout);
+        for [x, y] in with_margin(&own).into_iter().chain(grown_over(&thing)) {
+            out[x * GridSpec::NY + y] = true;
+        }
+    }
+    out
+}
+
+/// Things of `a` that `b` lacks or has in another form.
+fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
+    a.iter().filter(|t| b.get(t.id) != Some(t)).cloned().collect()
+}
+
+/// Things in the ego frame, as far as they reach into the grid.
+fn seen_from(frame: &Frame, things: &[Thing]) -> Vec<Thing> {
+    let to_ego = frame.world_from_ego.inverse();
+    let moved = things.iter().map(|t| Thing {
+        form: t.form.in_frame(&to_ego),
+        ..t.clone()
+    });
+    moved.filter(in_grid).collect()
 }
 
 fn in_grid(thing: &Thing) -> bool {
@@ -248,28 +264,18 @@ fn clear(
     cleared: &mut BTreeMap<[usize; 3], u8>,
 ) {
     let own = columns_of(thing, layout);
-    let mut around: BTreeSet<[usize; 2]> = own
-        .keys()
-        .flat_map(|[x, y]| {
-            let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
-            let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(GridSpec::NX - 1);
-            xs.flat_map(move |x| ys.clone().map(move |y| [x, y]))
-        })
-        .collect();
+    let mut around = with_margin(&own);
     let class = thing.form.class().id();
     let top = own
         .values()
         .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
         .max();
     let mut top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
-    if let Form::Shrubs(shrubs) = &thing.form {
-        // What grows there is the area's, whether one of the plants drawn for it stands in the column or not.
-        polygon_cells(&shrubs.outline_m, |x, y| {
-            let height_m = layout.relief.column_m(x, y) + shrubs.height_m;
-            let bin = GridSpec::to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
-            top = top.max((bin + MARGIN).min(GridSpec::NZ - 1));
-            around.insert([x, y]);
-        });
+    for [x, y] in grown_over(thing) {
+        let height_m = layout.relief.column_m(x, y) + thing.form.height_m();
+        let bin = GridSpec::to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
+        top = top.max((bin + MARGIN).min(GridSpec::NZ - 1));
+        around.insert([x, y]);
     }
     for [x, y] in around {
         let locked = *painted.column(x, y);
@@ -289,6 +295,24 @@ fn clear(
             *grid.column_mut(x, y) = column;
         }
     }
+}
+
+fn with_margin(own: &Columns) -> BTreeSet<[usize; 2]> {
+    let around = own.keys().flat_map(|[x, y]| {
+        let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
+        let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(GridSpec::NX - 1);
+        xs.flat_map(move |x| ys.clone().map(move |y| [x, y]))
+    });
+    around.collect()
+}
+
+/// Columns of an area of shrubs: what grows there is the area's, whether one of the plants drawn for it stands there or not.
+fn grown_over(thing: &Thing) -> Vec<[usize; 2]> {
+    let mut out = Vec::new();
+    if let Form::Shrubs(shrubs) = &thing.form {
+        polygon_cells(&shrubs.outline_m, |x, y| out.push([x, y]));
+    }
+    out
 }
 
 fn stamp(

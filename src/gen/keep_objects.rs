@@ -1,13 +1,20 @@
 //! The user's word on objects and ground: a box that was placed does not vanish, one that was taken away does not
 //! come back, painted ground stays, whatever the networks made of it. Counted, so that reports show when it was needed.
 
+use glam::DVec3;
+
+use super::region::Region;
+use crate::scene::draft::{ground_bin, ground_class};
 use crate::scene::raster::box_cells;
 use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
 
-use super::region::Region;
-
-/// A placed box counts as there if at least this share of its columns holds its class.
+/// A placed box counts as there if at least this share of its columns holds its class, of the share that boxes of the
+/// frame usually have: labels with holes hold less than complete worlds.
 const THERE: f64 = 0.5;
+/// A box of the source whose class fills less of its columns was not seen, and says nothing of a box that moved.
+const SEEN: f64 = 0.05;
+/// A box that kept its size to this much keeps its voxels when it moves, m.
+const SAME_SIZE_M: f64 = 0.05;
 /// Voxels this far outside a removed box still belong to it, m.
 const OVERHANG_M: f64 = 0.3;
 
@@ -17,7 +24,7 @@ const OVERHANG_M: f64 = 0.3;
 pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut VoxelGrid) -> usize {
     let old = &frame.source.boxes;
     let changed = |id: &BoxId, b: &SceneBox| old.get(id) != Some(b);
-    let mut corrected = 0;
+    let (mut corrected, least) = (0, THERE * usual_fill(frame));
     for (id, b) in old {
         if frame.boxes.get(id) != Some(b) {
             corrected += usize::from(clear(frame, region, b, generated));
@@ -25,10 +32,33 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     }
     for (id, b) in &frame.boxes {
         if all || changed(id, b) {
-            corrected += usize::from(put_in(region, b, generated));
+            corrected += usize::from(put_in(frame, region, b, least, generated));
         }
     }
     corrected
+}
+
+/// Share of its columns that a box of the source usually fills, as a median over boxes that were seen at all; without any,
+/// the share of all columns that hold something.
+fn usual_fill(frame: &Frame) -> f64 {
+    let source = &frame.source;
+    let seen = source.boxes.values().map(|b| filled(&source.occupancy, b));
+    let mut seen: Vec<f64> = seen.filter(|fill| *fill >= SEEN).collect();
+    seen.sort_by(f64::total_cmp);
+    let columns =
+        || (0..GridSpec::COLUMNS).map(|c| source.occupancy.column(c / GridSpec::NY, c % GridSpec::NY));
+    let any = || columns().filter(|c| c.iter().any(|l| *l != Class::FREE)).count();
+    let middle = seen.get(seen.len() / 2).copied();
+    middle.unwrap_or_else(|| any() as f64 / GridSpec::COLUMNS as f64)
+}
+
+/// Share of a box's columns that hold its class, 0 to 1.
+fn filled(grid: &VoxelGrid, b: &SceneBox) -> f64 {
+    let columns = draft::box_columns(b);
+    let there = columns
+        .iter()
+        .filter(|(x, y, _)| grid.column(*x, *y).contains(&b.class.id()));
+    there.count() as f64 / columns.len().max(1) as f64
 }
 
 /// Columns of the region whose ground the user has just painted: where the networks left the old ground, or none where
@@ -37,11 +67,12 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
     let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
     let mut corrected = 0;
     for (i, (now, before)) in layouts.enumerate() {
-        let wanted = draft::ground_class(*now);
-        if !region.columns[i] || wanted == draft::ground_class(*before) {
+        let wanted = ground_class(*now);
+        if !region.columns[i] || wanted == ground_class(*before) {
             continue;
         }
         let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let bin = ground_bin(&frame.layout, x, y);
         let is_old = |l: &u8| *l != wanted.id() && Class::from_id(*l).is_some_and(Class::is_ground);
         let found = generated.column(x, y);
         let is_object = |l: &u8| Class::from_id(*l).is_some_and(|c| c.is_object());
@@ -51,20 +82,20 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
                 .iter_mut()
                 .filter(|l| is_old(l))
                 .for_each(|l| *l = Class::FREE);
-            if column[0] == Class::FREE {
-                column[0] = wanted.id();
+            if column[bin] == Class::FREE {
+                column[bin] = wanted.id();
             }
             corrected += 1;
         } else if !found.contains(&wanted.id())
             && !found.iter().any(is_object)
-            && held_ground(frame.source.occupancy.column(x, y))
+            && held_ground(frame.source.occupancy.column(x, y), bin)
         {
             // A hedge or a wall goes to its top, a hole is closed unless it was there before, as in frames of real labels;
             // a crown above a gap may hang over the road.
             let column = generated.column_mut(x, y);
-            let rooted = column.iter_mut().take_while(|l| **l != Class::FREE);
+            let rooted = column[bin..].iter_mut().take_while(|l| **l != Class::FREE);
             rooted.for_each(|l| *l = Class::FREE);
-            column[0] = wanted.id();
+            column[bin] = wanted.id();
             corrected += 1;
         }
     }
@@ -72,27 +103,70 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
 }
 
 /// True unless a column has a hole in its ground: a sidewalk lies a bin above the road.
-fn held_ground(column: &[u8; GridSpec::NZ]) -> bool {
-    column[0] != Class::FREE
+fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
+    column[bin] != Class::FREE
         || column
             .iter()
             .any(|l| Class::from_id(*l).is_some_and(Class::is_ground))
 }
 
-fn put_in(region: &Region, b: &SceneBox, generated: &mut VoxelGrid) -> bool {
+/// Puts a box in if less than `least` of its columns hold it: with its own voxels if it moved, else as its draft.
+fn put_in(frame: &Frame, region: &Region, b: &SceneBox, least: f64, generated: &mut VoxelGrid) -> bool {
     let mut columns = draft::box_columns(b);
     columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
     let there = columns
         .iter()
         .filter(|(x, y, _)| generated.column(*x, *y).contains(&b.class.id()))
         .count();
-    if there as f64 >= THERE * columns.len() as f64 {
+    if there as f64 >= least * columns.len() as f64 {
         return false;
     }
+    let moved = frame.source.boxes.get(&b.id).filter(|old| {
+        let kept = old.class == b.class && old.size_m.abs_diff_eq(b.size_m, SAME_SIZE_M);
+        kept && filled(&frame.source.occupancy, old) >= SEEN
+    });
+    if let Some(old) = moved {
+        carry(frame, region, old, b, generated);
+        return true;
+    }
     for (x, y, layers) in columns {
-        generated.column_mut(x, y)[..layers].fill(b.class.id());
+        let ground = ground_bin(&frame.layout, x, y).min(layers - 1);
+        generated.column_mut(x, y)[ground..layers].fill(b.class.id());
     }
     true
+}
+
+/// Voxels of a box of the source, where it stands now: each voxel of the new box takes what lies at the same place of the
+/// old one. What the networks made of it goes.
+fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generated: &mut VoxelGrid) {
+    let (source, class) = (&frame.source.occupancy, new.class.id());
+    // Labels reach down to the ground below the box.
+    let rise_m = new.center_m.z - old.center_m.z;
+    box_cells(new, 0.0, |x, y| {
+        if !region.columns[x * GridSpec::NY + y] {
+            return;
+        }
+        let center = GridSpec::center(x, y, 0);
+        let there = old.to_ego(new.to_local(center.truncate().extend(new.center_m.z)));
+        let from = GridSpec::column_at(there.x, there.y).map(|[x, y]| *source.column(x, y));
+        let column = generated.column_mut(x, y);
+        column
+            .iter_mut()
+            .filter(|l| **l == class)
+            .for_each(|l| *l = Class::FREE);
+        for (z, cell) in column.iter_mut().enumerate() {
+            let level = GridSpec::to_voxel_units(GridSpec::center(x, y, z) - DVec3::Z * rise_m).z;
+            let is_own =
+                |column: &[u8; GridSpec::NZ]| level >= 0.0 && column.get(level as usize) == Some(&class);
+            if from.as_ref().is_some_and(is_own) {
+                *cell = class;
+            }
+        }
+        let bin = ground_bin(&frame.layout, x, y);
+        if column[bin] == Class::FREE {
+            column[bin] = ground_class(frame.layout.cell(x, y)).id();
+        }
+    });
 }
 
 fn clear(frame: &Frame, region: &Region, removed: &SceneBox, generated: &mut VoxelGrid) -> bool {
@@ -111,8 +185,9 @@ fn clear(frame: &Frame, region: &Region, removed: &SceneBox, generated: &mut Vox
             .iter_mut()
             .filter(|v| **v == removed.class.id())
             .for_each(|v| *v = Class::FREE);
-        if column[0] == Class::FREE {
-            column[0] = draft::ground_class(frame.layout.cell(x, y)).id();
+        let bin = ground_bin(&frame.layout, x, y);
+        if column[bin] == Class::FREE {
+            column[bin] = ground_class(frame.layout.cell(x, y)).id();
         }
         cleared = true;
     });
@@ -213,5 +288,81 @@ mod tests {
         let mut outside = before.clone();
         assert_eq!(keep_objects(&frame, &Region::empty(), false, &mut outside), 0);
         assert_eq!(outside, before);
+    }
+
+    #[test]
+    fn a_moved_box_of_sparse_labels_keeps_its_own_voxels() {
+        let (before, mut after) = (car(1, -15.0), car(1, -15.0));
+        let layout = BevLayout::default();
+        let mut labels = draft::draft(&layout, [].into_iter());
+        // One side of the car was seen.
+        for (x, y, layers) in draft::box_columns(&before) {
+            if GridSpec::center(x, y, 0).y > 0.0 {
+                (0..layers).for_each(|z| labels.set(x, y, z, Class::Car.id()));
+            }
+        }
+        let count = |g: &VoxelGrid| g.class_counts()[Class::Car as usize];
+        let own = count(&labels);
+        let mut frame = Frame::new(
+            layout,
+            [(before.id, before)].into_iter().collect(),
+            labels.clone(),
+        );
+        after.center_m.x += 18.0;
+        after.yaw_rad = std::f64::consts::PI;
+        frame.boxes.insert(after.id, after);
+        let region = Region::of_edit(&frame, 2);
+        let mut generated = labels.clone();
+        assert_eq!(keep_objects(&frame, &region, false, &mut generated), 1 + 1);
+        assert!(
+            count(&generated).abs_diff(own) * 8 <= own,
+            "{} {own}",
+            count(&generated)
+        );
+        // It turned round, and the side that was seen with it.
+        let ys = generated
+            .iter_set()
+            .filter(|v| v.3 == Class::Car.id())
+            .map(|v| GridSpec::center(v.0, v.1, 0).y);
+        assert!(ys.clone().count() > 0 && ys.filter(|y| *y > 0.3).count() == 0);
+        // A third of the columns is what labels usually hold, and enough.
+        let mut sparse = draft::draft(&frame.layout, [].into_iter());
+        for (x, y, _) in draft::box_columns(&after).into_iter().step_by(3) {
+            sparse.set(x, y, 2, Class::Car.id());
+        }
+        let same = sparse.clone();
+        assert_eq!(keep_objects(&frame, &region, false, &mut sparse), 0);
+        assert_eq!(sparse, same);
+    }
+
+    #[test]
+    fn on_a_slope_nothing_is_put_below_the_ground() {
+        let layout = BevLayout {
+            relief: crate::scene::Relief::from_fn(|p| 2.0 + 0.04 * p.x),
+            ..BevLayout::default()
+        };
+        let mut new = car(1, 10.0);
+        new.center_m.z += 2.4;
+        let empty = draft::draft(&layout, [].into_iter());
+        let mut frame = Frame::new(layout, std::collections::BTreeMap::new(), empty.clone());
+        frame.boxes.insert(new.id, new);
+        frame.layout.set(BevLayer::DrivableArea, 50, 80, true);
+        let region = Region::of_edit(&frame, 2);
+        let mut generated = empty.clone();
+        assert_eq!(keep_objects(&frame, &region, false, &mut generated), 1);
+        assert_eq!(keep_ground(&frame, &region, &mut generated), 1);
+        for (x, y, z, label) in generated.iter_set() {
+            assert!(z >= ground_bin(&frame.layout, x, y), "{x} {y} {z} {label}");
+        }
+        assert!(generated.class_counts()[Class::Car as usize] > 200);
+        // Taken away again, the ground is where it was.
+        let mut source = (*frame.source).clone();
+        source.boxes.insert(new.id, new);
+        frame.boxes.clear();
+        frame.source = std::sync::Arc::new(source);
+        frame.layout = (*frame.source).layout.clone();
+        assert_eq!(keep_objects(&frame, &region, false, &mut generated), 1);
+        generated.set(50, 80, ground_bin(&frame.layout, 50, 80), Class::Terrain.id());
+        assert_eq!(generated, empty);
     }
 }

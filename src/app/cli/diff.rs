@@ -1,4 +1,4 @@
-//! `sceneloom diff`: what differs between two scenes: boxes, layout cells, voxels by class, LiDAR.
+//! `sceneloom diff`: what differs between two scenes: boxes, things beside the road, layout cells, voxels by class, LiDAR.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,10 +8,13 @@ use serde_json::{Map, Value, json};
 use super::{Common, Outcome, output};
 use crate::app::open;
 use crate::app::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use crate::editor::columns_between;
 use crate::generation::job::GenParams;
 use crate::generation::region::Region;
 use crate::generation::sensors::lidar;
-use crate::scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame};
+use crate::scene::{
+    Background, BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame, Thing,
+};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -39,16 +42,25 @@ impl Diff {
         let mut report = Map::new();
         report.insert("boxes".into(), boxes(before, after));
         report.insert("layout".into(), layout(before, after));
-        // What an edit from A to B would redraw: where B's voxels may differ.
+        report.insert("things".into(), things(&a.background, &b.background));
+        // Where B's voxels may differ: what an edit from A to B would redraw, and around things that differ.
+        let of_things = columns_between(&a.background, &b.background, after);
         let region = Region::of_edit(&edited(before, after), GenParams::default().halo_columns as usize);
         let changed = changed_voxels(before, after);
-        let inside = |(x, y, _): &(usize, usize, usize)| region.columns[x * GridSpec::NY + y];
+        let inside = |(x, y, _): &(usize, usize, usize)| {
+            let column = x * GridSpec::NY + y;
+            region.columns[column] || of_things[column]
+        };
         let changed_inside = changed.iter().filter(|v| inside(v)).count();
         report.insert("voxels_changed".into(), changed.len().into());
         report.insert("voxels".into(), voxels(before, after, &changed));
         report.insert(
             "region".into(),
-            json!({ "columns": region.column_count(), "share": region.share() }),
+            json!({
+                "columns": region.column_count(),
+                "share": region.share(),
+                "columns_of_things": of_things.iter().filter(|c| **c).count(),
+            }),
         );
         report.insert("changed_inside_region".into(), changed_inside.into());
         report.insert(
@@ -92,15 +104,14 @@ impl Diff {
 
 /// The report for a person.
 fn text(report: &Value) -> String {
-    let boxes = &report["boxes"];
-    let count = |key: &str| boxes[key].as_array().map_or(0, Vec::len);
+    let changes = |of: &str| {
+        let count = |key: &str| report[of][key].as_array().map_or(0, Vec::len);
+        let (added, removed, changed) = (count("added"), count("removed"), count("changed"));
+        format!("{of}: {added} added, {removed} removed, {changed} changed")
+    };
     let mut lines = vec![
-        format!(
-            "boxes: {} added, {} removed, {} changed",
-            count("added"),
-            count("removed"),
-            count("changed")
-        ),
+        changes("boxes"),
+        changes("things"),
         format!("layout cells changed: {}", report["layout"]["cells_changed"]),
         format!(
             "voxels changed: {} ({} inside the region of the edit, {} outside)",
@@ -128,6 +139,19 @@ fn edited(before: &Frame, after: &Frame) -> Frame {
         }),
         ..after.clone()
     }
+}
+
+fn things(before: &Background, after: &Background) -> Value {
+    let of = |t: &Thing| json!({ "id": t.id, "name": t.form.name(), "middle_m": t.form.middle_m() });
+    let only = |here: &Background, there: &Background| -> Vec<Value> {
+        here.iter()
+            .filter(|t| there.get(t.id).is_none())
+            .map(of)
+            .collect()
+    };
+    let differs = |t: &&Thing| before.get(t.id).is_some_and(|was| was != *t);
+    let changed: Vec<Value> = after.iter().filter(differs).map(of).collect();
+    json!({ "added": only(after, before), "removed": only(before, after), "changed": changed })
 }
 
 fn boxes(before: &Frame, after: &Frame) -> Value {

@@ -25,12 +25,14 @@ pub enum Terrain {
     Embankment,
     /// The road runs below its surroundings, between slopes.
     Cutting,
-    /// The ground beside the road rises in a step, held by walls.
+    /// The ground beside the road rises in a step, held by walls, with stairs here and there.
     Terrace,
+    /// The road crosses a valley on a bridge.
+    Viaduct,
 }
 
 impl Terrain {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Flat,
         Self::Grade,
         Self::Crest,
@@ -39,12 +41,13 @@ impl Terrain {
         Self::Embankment,
         Self::Cutting,
         Self::Terrace,
+        Self::Viaduct,
     ];
 
     /// One at random: two fifths of the places are flat.
     pub fn drawn(seed: u64) -> Self {
         let mut draw = Draw::new(seed, "terrain");
-        Self::ALL[draw.weighted(&[0.4, 0.2, 0.07, 0.07, 0.12, 0.05, 0.05, 0.04])]
+        Self::ALL[draw.weighted(&[0.4, 0.2, 0.07, 0.07, 0.09, 0.05, 0.05, 0.04, 0.03])]
     }
 
     /// Heights for a layout; 0 under the ego vehicle.
@@ -75,6 +78,7 @@ impl Terrain {
             Self::Embankment => (-draw.range(0.6, 1.6), draw.range(1.0, 2.5), draw.range(2.0, 5.0)),
             Self::Cutting => (draw.range(1.0, 3.2), draw.range(1.0, 2.5), draw.range(3.0, 7.0)),
             Self::Terrace => (draw.range(0.9, 2.2), draw.range(1.2, 2.2), 0.9),
+            Self::Viaduct => (-draw.range(4.0, 6.0), 0.8, 0.6),
             Self::Hills => (draw.range(-0.6, 1.6), 1.0, draw.range(6.0, 14.0)),
             _ => (draw.range(-0.3, 0.6), 1.0, 8.0),
         };
@@ -88,17 +92,59 @@ impl Terrain {
             grade.dot(p) + curve + wave * noise(seed ^ 0x9177, p.x / 45.0, p.y / 45.0)
         };
         let at_ego = road(DVec2::ZERO);
+        let stairs = Stairs::drawn(&mut draw, &to_paved);
+        let valley = draw.range(12.0, 26.0);
         Relief::from_fn(|p| {
             let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
                 return 0.0;
             };
             let away_m = f64::from(to_paved[x * GridSpec::NY + y]) * GridSpec::VOXEL_M;
+            let width = match self {
+                Self::Terrace if stairs.are_at([x, y], p) => STAIRS_M,
+                _ => width,
+            };
             let t = ((away_m - from) / width).clamp(0.0, 1.0);
-            let rise = t * t * (3.0 - 2.0 * t);
+            let mut rise = t * t * (3.0 - 2.0 * t);
+            if self == Self::Viaduct {
+                // The valley ends in slopes ahead and behind.
+                rise *= ((valley - p.x.abs()) / 8.0 + 1.0).clamp(0.0, 1.0);
+            }
             let uneven = 0.75 + 0.25 * noise(seed ^ 0xba2c, p.x / 12.0, p.y / 12.0);
             let rough = wave * (away_m / 8.0).min(1.0) * 0.6 * noise(seed ^ 0x4011, p.x / 13.0, p.y / 13.0);
             road(p) - at_ego + bank * rise * uneven + rough
         })
+    }
+}
+
+/// Length of a flight of stairs seen from above, m: steps of 0.3 m, lower than a voxel each.
+const STAIRS_M: f64 = 3.6;
+
+/// Where flights of stairs lead up a terrace: stripes across the road, so many metres apart.
+struct Stairs<'a> {
+    first_m: f64,
+    apart_m: f64,
+    to_paved: &'a [f32],
+}
+
+impl<'a> Stairs<'a> {
+    fn drawn(draw: &mut Draw, to_paved: &'a [f32]) -> Self {
+        let apart_m = draw.range(13.0, 26.0);
+        Self {
+            first_m: draw.range(0.0, apart_m),
+            apart_m,
+            to_paved,
+        }
+    }
+
+    fn are_at(&self, [x, y]: [usize; 2], p: DVec2) -> bool {
+        let at = |x: usize, y: usize| {
+            self.to_paved[x.min(GridSpec::NX - 1) * GridSpec::NY + y.min(GridSpec::NY - 1)]
+        };
+        let along_x = (at(x + 1, y) - at(x.saturating_sub(1), y)).abs();
+        let along_y = (at(x, y + 1) - at(x, y.saturating_sub(1))).abs();
+        // Across the way up.
+        let along = if along_y > along_x { p.x } else { p.y };
+        (along - self.first_m).rem_euclid(self.apart_m) < 2.2
     }
 }
 
@@ -122,5 +168,28 @@ mod tests {
         assert!(far(Terrain::Dip, DVec2::X * 38.0) > far(Terrain::Crest, DVec2::X * 38.0) + 1.0);
         let verge = DVec2::new(0.0, 38.0);
         assert!(far(Terrain::Cutting, verge) > far(Terrain::Embankment, verge) + 1.2);
+        let valley = DVec2::new(0.0, 14.0);
+        assert!(far(Terrain::Viaduct, valley) < far(Terrain::Viaduct, DVec2::new(39.0, 14.0)) - 1.2);
+    }
+
+    /// Along a terrace the ground rises at once in most places, and slowly where stairs lead up.
+    #[test]
+    fn terraces_have_steps_and_stairs() {
+        let straight = template::layout("straight", 3).expect("listed");
+        let relief = Terrain::Terrace.relief(&straight, 3);
+        let edge = (0..GridSpec::NY)
+            .rev()
+            .find(|y| straight.cell(100, *y) & BevLayer::Walkway.bit() != 0);
+        let edge_m = GridSpec::center(100, edge.expect("a sidewalk"), 0).y;
+        let rise = |x: f64| {
+            relief.height_m(DVec2::new(x, edge_m + 3.6)) - relief.height_m(DVec2::new(x, edge_m + 0.6))
+        };
+        let rises: Vec<f64> = (-36..36).map(|x| rise(f64::from(x))).collect();
+        let steep = rises.iter().filter(|r| **r > 0.6).count();
+        let gentle = rises
+            .iter()
+            .filter(|r| **r < 0.75 * rises.iter().copied().fold(0.0, f64::max))
+            .count();
+        assert!(steep > 40 && gentle >= 4, "{steep} {gentle} {rises:?}");
     }
 }

@@ -9,6 +9,7 @@ mod layout_placers;
 mod lidar;
 mod splat;
 mod vae;
+mod vae_slopes;
 mod world;
 mod world_complete;
 mod world_lidar;

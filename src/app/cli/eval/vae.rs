@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::Context;
 use serde_json::{Value, json};
 
+use super::vae_slopes::Slopes;
 use super::{Bar, Eval, TEST_SEED, scene, with_interval};
 use crate::app::cli::progress::Progress;
 use crate::app::open;
@@ -93,9 +94,10 @@ impl Eval {
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let (vae, fine) = (&pipeline.models().vae, fine_vae()?);
         let [mut complete, mut labels] = <[[Kept; 3]; 2]>::default();
-        let mut agreement = AgreementCount::default();
+        let (mut agreement, mut slopes) = (AgreementCount::default(), Slopes::default());
         for i in 0..self.frames {
             progress.at("vae", i, self.frames);
+            slopes.add_world(vae, TEST_SEED, i as u64)?;
             let world = occupancy_frame(TEST_SEED, i as u64, |_| None);
             let found = try_all(vae, &fine, &world.dense, i as u64, &mut complete)?;
             agreement.add(scene(i as u64).frame(), &found);
@@ -108,8 +110,9 @@ impl Eval {
             ("labels iou", labels[0].iou(), 0.83),
             ("labels miou, fine", labels[2].miou(), 0.95),
             ("labels iou, fine", labels[2].iou(), 0.92),
+            ("labels miou kept on slopes", 1.0 - slopes.worst_loss(), 0.95),
         ];
-        let mut report = json!({ "complete": report(&complete), "labels": report(&labels) });
+        let mut report = json!({ "complete": report(&complete), "labels": report(&labels), "labels_on_slopes": slopes.report() });
         report["complete"]["layout_agreement_of_reconstructions"] = json!(agreement.iou());
         Ok((report, bars))
     }
@@ -122,7 +125,7 @@ impl Eval {
         progress: &Progress,
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let (vae, fine) = (&pipeline.models().vae, fine_vae()?);
-        let mut kept = <[Kept; 3]>::default();
+        let (mut kept, mut slopes) = (<[Kept; 3]>::default(), Slopes::default());
         let files = open::files_below(dir, "npz", "Occ3D frames")?;
         let used = &files[..files.len().min(self.frames)];
         for (i, path) in used.iter().enumerate() {
@@ -131,8 +134,9 @@ impl Eval {
                 .with_context(|| path.display().to_string())?
                 .labels;
             try_all(vae, &fine, &truth, i as u64, &mut kept)?;
+            slopes.add_tilted(vae, &truth, i as u64)?;
         }
-        let report = json!({ "data": dir, "files": used.len(), "labels": report(&kept) });
+        let report = json!({ "data": dir, "files": used.len(), "labels": report(&kept), "labels_tilted": slopes.report() });
         Ok((report, Vec::new()))
     }
 }

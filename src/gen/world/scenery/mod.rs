@@ -5,6 +5,7 @@ mod lines;
 mod plants;
 mod setting;
 mod site;
+mod structures;
 mod walk;
 
 use std::collections::BTreeMap;
@@ -30,6 +31,8 @@ pub fn background_of(
 ) -> Background {
     let mut site = Site::new(layout, boxes, style, seed);
     // Largest first: each keeps clear of what is there.
+    structures::walls(&mut site);
+    structures::bridges(&mut site, &mut Draw::new(seed, "bridges"));
     frontage::buildings(&mut site);
     lines::lines(&mut site);
     lines::posts(&mut site, &mut Draw::new(seed, "posts"));

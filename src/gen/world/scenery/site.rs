@@ -45,6 +45,7 @@ pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
 /// A layout with room for scenery.
 pub(super) struct Site<'a> {
     pub seed: u64,
+    pub layout: &'a BevLayout,
     style: &'a Style,
     roads: RoadMap,
     to_paved: Vec<f32>, // cells to the nearest road, car park or sidewalk
@@ -55,7 +56,12 @@ pub(super) struct Site<'a> {
 }
 
 impl<'a> Site<'a> {
-    pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, style: &'a Style, seed: u64) -> Self {
+    pub fn new(
+        layout: &'a BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        style: &'a Style,
+        seed: u64,
+    ) -> Self {
         let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let paved = road | BevLayer::Walkway.bit();
         let mut box_cell = vec![false; GridSpec::COLUMNS];
@@ -65,6 +71,7 @@ impl<'a> Site<'a> {
         let cells = layout.cells();
         Self {
             seed,
+            layout,
             style,
             roads: RoadMap::new(layout),
             to_paved: distance_cells(|c| cells[c] & paved != 0),

@@ -79,3 +79,44 @@ fn buildings_face_the_road() {
     }
     assert!(aligned * 10 > all * 8, "{aligned} of {all}");
 }
+
+#[test]
+fn steps_are_held_by_walls_and_bridges_span_the_road() {
+    use crate::generation::world::terrain::Terrain;
+    use crate::scene::background::LineKind;
+    let count = |all: &Background, kind: LineKind| {
+        let lines = all.iter().filter_map(|t| match &t.form {
+            Form::Line(l) if l.kind == kind => Some(super::walk::length_m(&l.points_m)),
+            _ => None,
+        });
+        lines.sum::<f64>()
+    };
+    let mut bridges = 0;
+    for seed in 0..60 {
+        let mut layout = template::layout("straight", seed).expect("listed");
+        let nothing = BTreeMap::new();
+        layout.relief = Terrain::Terrace.relief(&layout, seed);
+        let side = Side::usual(Setting::Motorway);
+        let held = background_of(&layout, &nothing, &Style::both(side), seed);
+        assert!(count(&held, LineKind::RetainingWall) > 40.0, "seed {seed}");
+        layout.relief = Terrain::Viaduct.relief(&layout, seed);
+        let carried = background_of(&layout, &nothing, &Style::both(side), seed);
+        assert!(count(&carried, LineKind::Wall) > 20.0, "seed {seed}");
+        layout.relief = crate::scene::Relief::FLAT;
+        let level = background_of(&layout, &nothing, &Style::both(side), seed);
+        assert_eq!(count(&level, LineKind::RetainingWall), 0.0);
+        let decks = level.iter().filter(|t| matches!(t.form, Form::Bridge(_)));
+        for deck in decks {
+            bridges += 1;
+            // Nothing of it stands on the road, and a lorry passes below.
+            let mut solids = Vec::new();
+            deck.solids(&|_| 0.0, &mut solids);
+            for s in solids.iter().filter(|s| s.center.z - s.reach().z < 4.4) {
+                let cell = GridSpec::column_at(s.center.x, s.center.y);
+                let road = |[x, y]: [usize; 2]| layout.cell(x, y) & BevLayer::DrivableArea.bit() != 0;
+                assert!(!cell.is_some_and(road), "seed {seed}: a pier on the road");
+            }
+        }
+    }
+    assert!((2..20).contains(&bridges), "{bridges}");
+}
