@@ -13,7 +13,7 @@ use sceneloom::app::open;
 use sceneloom::editor::Edit;
 use sceneloom::formats::project;
 use sceneloom::generation::sensors::lidar;
-use sceneloom::scene::{BoxId, Class, GridSpec, Scene};
+use sceneloom::scene::{BoxId, Class, Form, GridSpec, Scene};
 
 fn sceneloom(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sceneloom"))
@@ -377,6 +377,23 @@ fn differences_are_counted() {
         .read_to_string(&mut text)
         .expect("text");
     assert!(text.contains("boxes: 0 added, 1 removed, 0 changed"), "{text}");
+    // Things beside the road are listed, and their voxels belong to the edit.
+    let mut c = a.clone();
+    let ids: Vec<_> = c.background.iter().map(|t| t.id).collect();
+    let house = c.background.iter().find(|t| matches!(t.form, Form::Building(_)));
+    let by_m = 3.0;
+    let raise = house.map(|t| Edit::RaiseThings {
+        ids: vec![t.id],
+        by_m,
+    });
+    let ids = vec![ids[ids.len() - 1]];
+    apply(&mut c, Edit::RemoveThings { ids });
+    raise.into_iter().for_each(|edit| apply(&mut c, edit));
+    let pc = dir.save("c.loom", &c);
+    let (report, _) = run(&["diff", &pa, &pc]);
+    assert_eq!(report["things"]["removed"].as_array().map(Vec::len), Some(1));
+    assert_eq!(report["changed_outside_region"], 0);
+    assert!(report["voxels_changed"].as_u64() > Some(0));
 }
 
 /// Two settings on one world against a tiny reference: points, front, stops and the promise about untouched voxels.

@@ -9,10 +9,10 @@ use glam::{DVec2, DVec3};
 use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
 use super::shape::at_least;
+use crate::scene::background::Columns;
 use crate::scene::draft::ground_bin;
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::polygon_cells;
-use crate::scene::solid::fill::{fill, smear_down};
 use crate::scene::{
     Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
     VoxelPaint,
@@ -163,7 +163,7 @@ pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -
     let mut out = vec![false; GridSpec::COLUMNS];
     let changed = [only_in(before, after), only_in(after, before)].concat();
     for thing in seen_from(frame, &changed) {
-        let own = columns_of(&thing, &frame.layout);
+        let own = thing.columns(&frame.layout);
         for [x, y] in with_margin(&own).into_iter().chain(grown_over(&thing)) {
             out[x * GridSpec::NY + y] = true;
         }
@@ -189,30 +189,6 @@ fn seen_from(frame: &Frame, things: &[Thing]) -> Vec<Thing> {
 fn in_grid(thing: &Thing) -> bool {
     let (lo, hi) = thing.form.bounds_m();
     lo.max_element() < 40.0 && hi.min_element() > -40.0
-}
-
-type Columns = BTreeMap<[usize; 2], [u8; GridSpec::NZ]>;
-
-/// Voxels of a thing in the Occ3D convention, from the bin of the ground upward.
-fn columns_of(thing: &Thing, layout: &BevLayout) -> Columns {
-    let mut solids = Vec::new();
-    thing.solids(&|p| layout.relief.height_m(p), &mut solids);
-    let mut columns = Columns::new();
-    for solid in &solids {
-        fill(
-            solid,
-            |_, _| true,
-            |x, y, z, _| {
-                let column = columns.entry([x, y]).or_insert([Class::FREE; GridSpec::NZ]);
-                column[z] = solid.class.id();
-            },
-        );
-    }
-    for ([x, y], column) in &mut columns {
-        smear_down(column);
-        column[..ground_bin(layout, *x, *y)].fill(Class::FREE);
-    }
-    columns
 }
 
 /// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out. Where the
@@ -263,7 +239,7 @@ fn clear(
     layout: &BevLayout,
     cleared: &mut BTreeMap<[usize; 3], u8>,
 ) {
-    let own = columns_of(thing, layout);
+    let own = thing.columns(layout);
     let mut around = with_margin(&own);
     let class = thing.form.class().id();
     let top = own
@@ -322,7 +298,7 @@ fn stamp(
     thing: &Thing,
     wanted: impl Fn([usize; 3]) -> bool,
 ) {
-    for ([x, y], voxels) in columns_of(thing, layout) {
+    for ([x, y], voxels) in thing.columns(layout) {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);
         for z in 0..GridSpec::NZ {

@@ -320,11 +320,9 @@ mod tests {
             count(&generated)
         );
         // It turned round, and the side that was seen with it.
-        let ys = generated
-            .iter_set()
-            .filter(|v| v.3 == Class::Car.id())
-            .map(|v| GridSpec::center(v.0, v.1, 0).y);
-        assert!(ys.clone().count() > 0 && ys.filter(|y| *y > 0.3).count() == 0);
+        let cars = generated.iter_set().filter(|v| v.3 == Class::Car.id());
+        let ys: Vec<f64> = cars.map(|v| GridSpec::center(v.0, v.1, 0).y).collect();
+        assert!(!ys.is_empty() && ys.iter().all(|y| *y <= 0.3));
         // A third of the columns is what labels usually hold, and enough.
         let mut sparse = draft::draft(&frame.layout, [].into_iter());
         for (x, y, _) in draft::box_columns(&after).into_iter().step_by(3) {
@@ -337,10 +335,8 @@ mod tests {
 
     #[test]
     fn on_a_slope_nothing_is_put_below_the_ground() {
-        let layout = BevLayout {
-            relief: crate::scene::Relief::from_fn(|p| 2.0 + 0.04 * p.x),
-            ..BevLayout::default()
-        };
+        let mut layout = BevLayout::default();
+        layout.relief = crate::scene::Relief::from_fn(|p| 2.0 + 0.04 * p.x);
         let mut new = car(1, 10.0);
         new.center_m.z += 2.4;
         let empty = draft::draft(&layout, [].into_iter());
@@ -360,7 +356,7 @@ mod tests {
         source.boxes.insert(new.id, new);
         frame.boxes.clear();
         frame.source = std::sync::Arc::new(source);
-        frame.layout = (*frame.source).layout.clone();
+        frame.layout = frame.source.layout.clone();
         assert_eq!(keep_objects(&frame, &region, false, &mut generated), 1);
         generated.set(50, 80, ground_bin(&frame.layout, 50, 80), Class::Terrain.id());
         assert_eq!(generated, empty);

@@ -140,3 +140,20 @@ fn a_part_that_only_leans_is_found() {
     );
     assert_eq!(run_checks(&scene, None), []);
 }
+
+#[test]
+fn a_bush_on_a_hill_stands_in_its_ground() {
+    let mut scene = street(&[]);
+    let columns = || (0..900).map(|i| [20 + i % 30, 20 + i / 30]);
+    let cells = |z: usize| columns().map(|[x, y]| [x, y, z]).collect::<Vec<_>>();
+    (0..3).for_each(|z| paint(&mut scene, Class::Free, cells(z)));
+    paint(&mut scene, Class::Terrain, cells(4));
+    let bush = |from: usize| {
+        (0..48)
+            .map(move |i| [30 + i % 4, 30 + i / 4 % 4, from + i / 16])
+            .collect::<Vec<_>>()
+    };
+    paint(&mut scene, Class::Vegetation, bush(4));
+    let found = run_checks(&scene, None);
+    assert!(!checks(&found).contains(&"unsupported_parts"), "{found:?}");
+}

@@ -1,7 +1,7 @@
 //! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
 //! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
 
-use super::components::{bins_set, groups, reached};
+use super::components::{bins_set, ground, groups, neighbours, reached};
 use super::floating_voxels::{CROWN, is_known_to_float, lowest_m, stem};
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
@@ -17,14 +17,19 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
     let frame = context.frame;
     let bits = context.bits();
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
+    // What stands takes the place of the ground's own voxel, in whatever bin the ground lies beside it.
+    let ground = ground(&bits.by_class);
+    let beside: Vec<u16> = (0..GridSpec::COLUMNS)
+        .map(|c| neighbours(c).fold(0, |word, n| word | ground[n]))
+        .collect();
     let standing = |c: &&Class| **c != Class::Free && !c.is_ground();
     for class in Class::ALL.iter().filter(standing) {
         let own = &bits.by_class[usize::from(class.id())];
         if own.is_empty() {
             continue;
         }
-        // Held from below: on the ground's bins, or on a voxel of another class.
-        let rests = reached(own, |c| (bits.occupied[c] & !own[c]) << 1);
+        // Held from below: in the ground, or on a voxel of another class.
+        let rests = reached(own, |c| beside[c] | (bits.occupied[c] & !own[c]) << 1);
         let mut cells = Vec::new();
         for c in 0..GridSpec::COLUMNS {
             cells.extend(bins_set(c, own[c] & !rests[c] & bits.supported[c]));

@@ -3,6 +3,7 @@
 
 mod bridge;
 mod building;
+mod columns;
 mod line;
 mod post;
 mod problem;
@@ -19,6 +20,7 @@ use super::{Class, Pose};
 
 pub use bridge::Bridge;
 pub use building::{Building, Facade, Roof, STOREY_M};
+pub use columns::Columns;
 pub use line::{Line, LineKind};
 pub use post::{Post, PostKind};
 pub use problem::crossing_edges;

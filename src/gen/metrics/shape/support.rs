@@ -1,7 +1,7 @@
 //! What rests on nothing: crowns without a trunk, and voxels of any class that nothing connects to the ground.
 
 use super::{ShapeFigures, share};
-use crate::generation::metrics::components::{components, flat, place, spread};
+use crate::generation::metrics::components::{around, components, flat, place, spread};
 use crate::scene::{Class, GridSpec, VoxelGrid};
 
 /// Groups of vegetation (26 neighbours, [`SMALLEST_CROWN`] voxels or more) none of whose voxels stands on anything else.
@@ -27,7 +27,13 @@ fn at_side(group: &[usize]) -> bool {
 pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let labels = flat(grid);
     let leaf = Class::Vegetation.id();
-    let rests = |at: usize| at.is_multiple_of(GridSpec::NZ) || ![leaf, Class::FREE].contains(&labels[at - 1]);
+    let is_ground = |l: u8| Class::from_id(l).is_some_and(Class::is_ground);
+    // A plant takes the place of the ground's own voxel, in whatever bin the ground lies.
+    let in_ground =
+        |at: usize| around(at).any(|near| place(near)[2] == place(at)[2] && is_ground(labels[near]));
+    let rests = |at: usize| {
+        at.is_multiple_of(GridSpec::NZ) || ![leaf, Class::FREE].contains(&labels[at - 1]) || in_ground(at)
+    };
     let (mut crowns, mut loose, mut leaves) = (0, 0, 0);
     for group in components(labels.iter().map(|l| *l == leaf).collect()) {
         leaves += group.len();
@@ -39,7 +45,6 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     out.insert(CROWNS, f64::from(crowns));
     share(out, CROWN_SHARE, loose, leaves);
 
-    let is_ground = |l: u8| Class::from_id(l).is_some_and(Class::is_ground);
     let occupied = |at: &usize| labels[*at] != Class::FREE;
     let ground = |at: &usize| at.is_multiple_of(GridSpec::NZ) || is_ground(labels[*at]);
     let start = (0..labels.len()).filter(occupied).filter(ground).collect();

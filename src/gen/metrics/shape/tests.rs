@@ -103,6 +103,11 @@ fn a_lifted_crown_and_a_tree_in_the_air() {
         (planted["crowns_without_trunk"], planted["unsupported_parts"]),
         (1.0, 1.0)
     );
+    // A bush on a hill takes the place of the ground there.
+    let mut raised = VoxelGrid::new();
+    fill(&mut raised, [0, 200], [0, 200], [5, 6], ROAD);
+    fill(&mut raised, [20, 24], [100, 103], [5, 8], Class::Vegetation.id());
+    assert_eq!(shape(&raised)["crowns_without_trunk"], 0.0);
     // Its trunk on the road, it stands; at the side of the grid nobody knows.
     fill(&mut grid, [100, 101], [100, 101], [1, 3], Class::Vegetation.id());
     fill(&mut grid, [0, 3], [30, 33], [8, 12], Class::Vegetation.id());

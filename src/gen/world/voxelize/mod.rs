@@ -47,13 +47,39 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
             for (z, (_, class)) in best[at..at + GridSpec::NZ].iter().enumerate() {
                 column[z] = *class;
             }
-            let height = world.ground_height(GridSpec::center(x, y, 0).truncate());
-            let ground = (Relief::physical_bin(height), world.ground_class(x, y).id());
+            let ground = (ground_bin(world, x, y), world.ground_class(x, y).id());
             finish_column(&mut column, Some(ground), vertical);
+            close_step(&mut column, world, [x, y], vertical);
             grid.column_mut(x, y).copy_from_slice(&column);
         }
     }
     grid
+}
+
+/// Bin of the ground in a column, as measured.
+fn ground_bin(world: &World, x: usize, y: usize) -> usize {
+    Relief::physical_bin(world.ground_height(GridSpec::center(x, y, 0).truncate()))
+}
+
+/// Where the ground steps down to a neighbour by more than a bin, its side is ground too: one could look under it else.
+fn close_step(column: &mut [u8; GridSpec::NZ], world: &World, [x, y]: [usize; 2], vertical: Vertical) {
+    if world.layout.relief.is_flat() {
+        return;
+    }
+    let beside = [
+        (x.wrapping_sub(1), y),
+        (x + 1, y),
+        (x, y.wrapping_sub(1)),
+        (x, y + 1),
+    ];
+    let inside = beside
+        .into_iter()
+        .filter(|(x, y)| *x < GridSpec::NX && *y < GridSpec::NY);
+    let lowest = inside.map(|(x, y)| ground_bin(world, x, y)).min().unwrap_or(0);
+    let shift = if vertical == Vertical::Occ3d { SMEAR } else { 0 };
+    let own = ground_bin(world, x, y).saturating_sub(shift);
+    let from = (lowest + 1).saturating_sub(shift).min(own);
+    column[from..own].fill(world.ground_class(x, y).id());
 }
 
 /// Puts the ground below what stands on it and applies the vertical convention.

@@ -1,0 +1,35 @@
+//! The voxels of a thing, as labels have them.
+
+use std::collections::BTreeMap;
+
+use super::Thing;
+use crate::scene::draft::ground_bin;
+use crate::scene::solid::fill::{fill, smear_down};
+use crate::scene::{BevLayout, Class, GridSpec};
+
+/// Labels by column `[x, y]`; free where a thing leaves a bin alone.
+pub type Columns = BTreeMap<[usize; 2], [u8; GridSpec::NZ]>;
+
+impl Thing {
+    /// Its voxels in the Occ3D convention, from the bin of the ground upward, on the relief of a layout of the same frame.
+    pub fn columns(&self, layout: &BevLayout) -> Columns {
+        let mut solids = Vec::new();
+        self.solids(&|p| layout.relief.height_m(p), &mut solids);
+        let mut columns = Columns::new();
+        for solid in &solids {
+            fill(
+                solid,
+                |_, _| true,
+                |x, y, z, _| {
+                    let column = columns.entry([x, y]).or_insert([Class::FREE; GridSpec::NZ]);
+                    column[z] = solid.class.id();
+                },
+            );
+        }
+        for ([x, y], column) in &mut columns {
+            smear_down(column);
+            column[..ground_bin(layout, *x, *y)].fill(Class::FREE);
+        }
+        columns
+    }
+}
