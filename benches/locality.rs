@@ -21,6 +21,7 @@ fn main() {
         heading: frame.heading,
         named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
+        given: vec![0.0; CELLS],
         mask: vec![1.0; CELLS],
         context: vec![0.0; latent.len()],
     };

@@ -72,6 +72,7 @@ fn main() {
         heading: frame.heading,
         named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
+        given: vec![0.0; 2500],
         mask: vec![1.0; 2500],
         context: vec![0.0; 20_000],
     };

@@ -28,6 +28,7 @@ fn dit_agrees_with_candle() {
         heading: (0..40_000u32).map(|i| (i * 7 % 961 / 4) as u8).collect(),
         named: [Some(0.5), None, Some(0.1), Some(1.0)],
         draft_latent: numbers(20_000, 1),
+        given: (0..2500).map(|i| f32::from(u8::from(i % 7 < 4))).collect(),
         context: numbers(20_000, 2)
             .iter()
             .enumerate()

@@ -114,6 +114,9 @@ fn condition() -> DitCondition {
         heading: (0..40_000).map(|c| heading(c / 200, c % 200)).collect(),
         named: [Some(0.25), None, Some(0.75), Some(0.5)],
         draft_latent: uniform(LATENT, 3),
+        given: (0..2500)
+            .map(|c| f32::from(u8::from(c / 50 >= 20 && (5..33).contains(&(c % 50)))))
+            .collect(),
         context: context.collect(),
         mask,
     }
@@ -387,6 +390,10 @@ fn conditions_are_checked() {
     assert_eq!(
         refusal(&|c| c.mask.push(0.0)),
         "mask has 2501 values, expected 2500"
+    );
+    assert_eq!(
+        refusal(&|c| c.given.clear()),
+        "given background has 0 values, expected 2500"
     );
     assert!(refusal(&|c| c.context[5] = f32::NAN).starts_with("context: value 5 is NaN"));
     let prepared = models.dit.prepare(&good).expect("a condition");

@@ -1,7 +1,10 @@
 """Shards written by `sceneloom dataset occupancy`: shard_NNNNN.safetensors with u8 dense, labels, draft
-[N,200,200,16], i32 bev and u8 heading [N,200,200]. Memory-mapped; one frame is read at a time."""
+[N,200,200,16], i32 bev and u8 heading [N,200,200]. Memory-mapped; one frame is read at a time. Or the newest of what
+`sceneloom-worlds --stream` writes, which never touch a disk."""
 import json
 import queue
+import shlex
+import subprocess
 import threading
 from pathlib import Path
 
@@ -13,44 +16,138 @@ GRIDS = {"dense": (200, 200, 16), "labels": (200, 200, 16), "draft": (200, 200, 
 DTYPES = {"U8": np.uint8, "I32": np.int32, "U32": np.uint32}
 
 
+def arrays_of(header, where, array):
+    """The arrays of a shard's header; `array` makes one of dtype, first byte after the header, and shape."""
+    found = {}
+    for name, shape in GRIDS.items():
+        entry = header.get(name)
+        if entry is None or tuple(entry["shape"][1:]) != shape or entry["dtype"] not in DTYPES:
+            raise SystemExit(f"{where}: tensor {name}: expected [N, {shape}], found {entry}")
+        found[name] = array(DTYPES[entry["dtype"]], entry["data_offsets"][0], tuple(entry["shape"]))
+    return found
+
+
 class Shard:
+    """The frames of a file."""
+
     def __init__(self, path):
         self.path = Path(path)
         with open(path, "rb") as f:
             length = int.from_bytes(f.read(8), "little")
             header = json.loads(f.read(length))
-        self.arrays = {}
-        for name, shape in GRIDS.items():
-            entry = header.get(name)
-            if entry is None or tuple(entry["shape"][1:]) != shape or entry["dtype"] not in DTYPES:
-                raise SystemExit(f"{path}: tensor {name}: expected [N, {shape}], found {entry}")
-            self.arrays[name] = np.memmap(path, DTYPES[entry["dtype"]], "r", 8 + length + entry["data_offsets"][0],
-                                          tuple(entry["shape"]))
+        self.arrays = arrays_of(header, path, lambda dtype, at, shape: np.memmap(path, dtype, "r", 8 + length + at, shape))
+        self.frames = len(self.arrays["dense"])
+
+
+class StreamedShard:
+    """The frames of a shard that lies in memory."""
+
+    path = None
+
+    def __init__(self, data):
+        length = int.from_bytes(data[:8], "little")
+
+        def array(dtype, at, shape):
+            return np.frombuffer(data, dtype, int(np.prod(shape)), 8 + length + at).reshape(shape)
+
+        self.arrays = arrays_of(json.loads(data[8 : 8 + length]), "stream", array)
         self.frames = len(self.arrays["dense"])
 
 
 class Frames:
-    """All frames of a folder; `rescan` adds shards that were written since."""
+    """All frames of a folder."""
 
     def __init__(self, folder):
-        self.folder, self.shards, self.index = Path(folder), [], []
+        self.folder, self.known, self.index = Path(folder), set(), []
         self.rescan()
         if not self.index:
             raise SystemExit(f"{folder}: no shard_*.safetensors with frames in it")
 
     def rescan(self):
-        known = {s.path for s in self.shards}
+        """Adds shards that were written since; the numbers of the new frames."""
+        before = len(self.index)
         for path in sorted(self.folder.glob("shard_*.safetensors")):
-            if path not in known:
-                self.shards.append(Shard(path))
-                self.index += [(self.shards[-1], i) for i in range(self.shards[-1].frames)]
+            if path not in self.known:
+                shard = Shard(path)
+                self.known.add(path)
+                self.index += [(shard, i) for i in range(shard.frames)]
+        return range(before, len(self.index))
 
     def __len__(self):
         return len(self.index)
 
+    def at(self, frame):
+        """(shard, place in it) of a frame's number. A pair is handed back: streamed frames change under their numbers, and
+        who reads twice holds on to the pair."""
+        return frame if isinstance(frame, tuple) else self.index[frame]
+
     def read(self, frame, name):
-        shard, i = self.index[frame]
+        """An array of a frame; `given` is the draft with the background in it."""
+        shard, i = self.at(frame)
+        if name == "given":
+            return with_background(shard.arrays["draft"][i], shard.arrays["dense"][i])
         return shard.arrays[name][i]
+
+
+class Streamed(Frames):
+    """The newest `keep` frames of a command that writes shards to its output, each after its length (8 little-endian
+    bytes). It is read ahead by a few shards and waits meanwhile; when it ends, what is there stays."""
+
+    AHEAD = 16  # shards
+
+    def __init__(self, command, keep=768):
+        self.keep, self.index, self.oldest = keep, [], 0
+        self.ready = queue.Queue(self.AHEAD)
+        process = subprocess.Popen(shlex.split(command), stdout=subprocess.PIPE)
+        threading.Thread(target=self._listen, args=(process.stdout,), daemon=True).start()
+        first = self.ready.get()
+        if first is None:
+            raise SystemExit(f"{command}: ended with code {process.wait()} before its first shard")
+        self._take(first)
+
+    def _listen(self, out):
+        try:
+            while len(head := out.read(8)) == 8:
+                data = out.read(length := int.from_bytes(head, "little"))
+                if len(data) < length:
+                    break
+                self.ready.put(StreamedShard(data))
+        finally:
+            self.ready.put(None)
+
+    def _take(self, shard):
+        """Adds the frames of a shard; once there are enough of them, in place of the oldest."""
+        taken = []
+        for i in range(shard.frames):
+            if len(self.index) < self.keep:
+                taken.append(len(self.index))
+                self.index.append((shard, i))
+            else:
+                taken.append(self.oldest)
+                self.index[self.oldest] = (shard, i)
+                self.oldest = (self.oldest + 1) % self.keep
+        return taken
+
+    def rescan(self):
+        """Takes in what has come since; the numbers of the new frames."""
+        taken = []
+        for _ in range(self.ready.qsize()):
+            shard = self.ready.get()
+            if shard is None:
+                self.ready.put(None)  # it has ended, and stays so
+                break
+            taken += self._take(shard)
+        return taken
+
+
+BACKGROUND = (15, 16)  # manmade, vegetation
+FIRST_GROUND = 11  # classes below are objects
+
+
+def with_background(draft, dense):
+    """A draft with what stands beside the road, but for what its objects hide."""
+    stands = ((dense == BACKGROUND[0]) | (dense == BACKGROUND[1])) & (draft >= FIRST_GROUND)
+    return np.where(stands, dense, draft)
 
 
 def turned(grid, symmetry):
@@ -110,22 +207,24 @@ class Places:
     OBJECTS = 11  # `others` and the ten object classes
 
     def __init__(self, frames):
-        self.frames, self.read = frames, 0
+        self.frames = frames
         self.found = [[] for _ in range(self.OBJECTS)]  # per class: (frame, x, y)
-        self.rescan()
+        self.add(range(len(frames)))
 
-    def rescan(self):
-        """Adds frames that were written since."""
-        rng = np.random.default_rng(self.read)
-        for frame in range(self.read, len(self.frames)):
+    def add(self, new):
+        """Looks at frames that are new, or others than before under the same number."""
+        known = set(new)
+        found = [[p for p in places if p[0] not in known] for places in self.found]
+        for frame in new:
+            rng = np.random.default_rng(frame)
             grid = self.frames.read(frame, "dense")
             at = np.flatnonzero(grid < self.OBJECTS)
             label = grid.reshape(-1)[at]
             for c in np.unique(label):
                 columns = np.unique(at[label == c] // 16)
                 for column in rng.choice(columns, min(len(columns), self.PER_FRAME), replace=False):
-                    self.found[c].append((frame, column // 200, column % 200))
-        self.read = len(self.frames)
+                    found[c].append((frame, column // 200, column % 200))
+        self.found = found
 
     def crop(self, rng, kind, side, anywhere):
         """u8 [side,side,16] from a random frame: with probability `anywhere` at a random place, else around a voxel of
@@ -165,11 +264,11 @@ def prefetch(make, depth=3):
         yield batch
 
 
-def draw_masks(rng, batch):
-    """Edit masks [B,50,50]: 40 % all ones, else one to four rectangles, as small as a box or as large as a block."""
+def draw_masks(rng, batch, whole=0.4):
+    """Edit masks [B,50,50]: a share of them all ones, else one to four rectangles, as small as a box or as large as a block."""
     masks = np.zeros((batch, 50, 50), np.float32)
     for mask in masks:
-        if rng.random() < 0.4:
+        if rng.random() < whole:
             mask[:] = 1
             continue
         for _ in range(rng.integers(1, 5)):
@@ -177,3 +276,17 @@ def draw_masks(rng, batch):
             at = [rng.integers(0, 50 - s + 1) for s in size]
             mask[at[0] : at[0] + size[0], at[1] : at[1] + size[1]] = 1
     return masks
+
+
+def draw_given(rng, batch):
+    """Where the background is given [B,50,50,1]: everywhere in half of the frames, nowhere in a quarter, else in or outside
+    of some rectangles."""
+    flags = np.zeros((batch, 50, 50, 1), np.float32)
+    for flag in flags:
+        u = rng.random()
+        if u < 0.5:
+            flag[:] = 1
+        elif u < 0.75:
+            mask = draw_masks(rng, 1, whole=0)[0][..., None]
+            flag[:] = mask if rng.random() < 0.5 else 1 - mask
+    return flags

@@ -15,7 +15,7 @@ import torch
 from safetensors import safe_open
 from safetensors.torch import load_file
 
-from data import Frames, draw_masks, prefetch
+from data import Frames, draw_given, draw_masks, prefetch
 from latents import LatentCache, latent_space
 from loop import Run, pick_device
 from models.occ_dit import NAMED, DitConfig, OccDit
@@ -97,19 +97,19 @@ def main():
     device, _ = pick_device(args.threads)
     train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
     vae, name = load_vae(args.vae, device), latent_space(args.vae)
-    caches = [LatentCache(f, vae, args.data / f"latents-{name}" / f.folder.name, device) for f in (train, held_out)]
+    caches = [LatentCache(f, vae, args.data / f"latents-{name}", device) for f in (train, held_out)]
     (teacher, meta), (student, _) = load_dit(args.teacher), load_dit(args.teacher)
     teacher, student = teacher.to(device).eval().requires_grad_(False), student.to(device)
     run = Run(student, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.0, ema=0.995, warmup=50)
     meta = {"kind": "occ_dit", "config": meta["config"], "seed": args.seed, "data": args.data, "vae": name,
             "distilled_steps": args.steps, "teacher_steps": args.steps * args.substeps}
 
-    def pass_of(model, frames, cache, picks, drop_names, mask, generator):
-        target, draft = cache.batch(*zip(*picks))
-        layout, heading, given = (x.to(device) for x in conditions(frames, picks))
-        given = given * torch.cat([drop_names, drop_names], 1).to(device)
-        mask = mask.to(device)
-        parts = (target * (1 - mask[..., None]), draft, layout, heading, given)
+    def pass_of(model, frames, cache, picks, drop_names, given, mask, generator):
+        target, draft = cache.batch(*zip(*picks), given)
+        layout, heading, told = (x.to(device) for x in conditions(frames, picks))
+        told = told * torch.cat([drop_names, drop_names], 1).to(device)
+        mask, given = mask.to(device), given.to(device)
+        parts = (target * (1 - mask[..., None]), draft, layout, heading, told, given)
         return distill_loss(model, teacher, target, parts, mask, args.steps, args.substeps, generator)
 
     rng = np.random.default_rng([args.seed, run.step])
@@ -117,7 +117,7 @@ def main():
     def make():
         kinds = np.where(rng.random(args.batch) < 0.2, "labels", "dense")
         picks = [(int(rng.integers(len(train))), int(rng.choice([0, 2])), str(k)) for k in kinds]
-        return picks, torch.from_numpy(rng.random((args.batch, NAMED)) < 0.7), torch.from_numpy(draw_masks(rng, args.batch))
+        return picks, torch.from_numpy(rng.random((args.batch, NAMED)) < 0.7), *(torch.from_numpy(draw(rng, args.batch)) for draw in (draw_given, draw_masks))
 
     @torch.no_grad()
     def note():
@@ -125,16 +125,16 @@ def main():
         fixed = np.random.default_rng(1)
         for first in range(0, args.held_out, 4):
             picks = [(i, 0, "dense") for i in range(first, first + 4)]
-            masks = torch.from_numpy(draw_masks(fixed, 4))
-            errors += [pass_of(run.ema, held_out, caches[1], picks, torch.ones(4, NAMED), masks, generator)[1] for _ in range(3)]
+            given, masks = (torch.from_numpy(draw(fixed, 4)) for draw in (draw_given, draw_masks))
+            errors += [pass_of(run.ema, held_out, caches[1], picks, torch.ones(4, NAMED), given, masks, generator)[1] for _ in range(3)]
         run.note({"held_out_rel": sum(errors) / len(errors), "train_rel": mean})
         run.save(meta)
 
     mean = 0.0
     note()
     noted = time.monotonic()
-    for picks, told, mask in prefetch(make):
-        loss, rel = pass_of(student, train, caches[0], picks, told.float(), mask, None)
+    for picks, told, given, mask in prefetch(make):
+        loss, rel = pass_of(student, train, caches[0], picks, told.float(), given, mask, None)
         run.update(loss, len(picks))
         mean = mean * 0.95 + rel * 0.05 if mean else rel
         if run.step % 25 == 0:

@@ -64,7 +64,7 @@ def vae_golden(vae, frames, side):
 
 
 def golden_condition():
-    """Mask, context, draft, layout bits, headings, named numbers: any language can make them alike."""
+    """Mask, context, draft, layout bits, headings, named numbers, where the background is given: any language can make them alike."""
     mask = torch.zeros(50, 50)
     mask[10:31, 17:40] = 1
     context = uniform(20000, 2).view(50, 50, 8) * (1 - mask[..., None])
@@ -74,13 +74,15 @@ def golden_condition():
         bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
     heading = torch.where((x // 8 + y // 4) % 5 == 0, 1 + (x * 7 + y * 3) % 240, 0)
     named = torch.tensor([[0.25, 0.0, 0.75, 0.5, 1.0, 0.0, 1.0, 1.0]])
-    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], named
+    given = torch.zeros(1, 50, 50, 1)
+    given[:, 20:, 5:33] = 1
+    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], named, given
 
 
 @torch.no_grad()
 def dit_golden(dit):
-    mask, context, draft, bev, heading, named = golden_condition()
-    condition = dit.condition(mask, context, draft, unshuffle_layout(bev), cell_headings(heading), named)
+    mask, context, draft, bev, heading, named, given = golden_condition()
+    condition = dit.condition(mask, context, draft, unshuffle_layout(bev), cell_headings(heading), named, given)
     x = uniform(20000, 1).view(1, 50, 50, 8)
     out = [dit(x, torch.tensor([t]), condition).reshape(-1)[::5] for t in GOLDEN_TIMES]
     return {"t": torch.tensor(GOLDEN_TIMES), "every_fifth_v": torch.stack(out)}

@@ -1,13 +1,16 @@
 """python test_training.py REFERENCE: losses and schedule against reference/metrics.json and closed forms."""
 import json
+import shlex
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import torch
+from safetensors.numpy import save_file
 
 from calibrate import figures, search
-from data import leaned, named, turned, turned_heading
+from data import GRIDS, Places, Streamed, draw_given, leaned, named, turned, turned_heading, with_background
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
@@ -92,10 +95,10 @@ def networks_learn():
     empty = torch.full_like(labels, 17)
     assert torch.isfinite(vae_loss(vae, empty)[0])
 
-    dit = OccDit(DitConfig(width=64, depth=2))
+    dit = OccDit(DitConfig(width=64, depth=2, given=True))
     torch.nn.init.normal_(dit.final.weight)
     zeros = torch.zeros(1, 50, 50, 8)
-    nothing = [torch.zeros(1, 50, 50, 288), torch.zeros(1, 50, 50, 2), torch.zeros(1, 8)]
+    nothing = [torch.zeros(1, 50, 50, 288), torch.zeros(1, 50, 50, 2), torch.zeros(1, 8), torch.ones(1, 50, 50, 1)]
     condition = dit.condition(torch.ones(1, 50, 50), zeros, zeros, *nothing)
     dit(torch.randn(1, 50, 50, 8), torch.tensor([500.0]), condition).sum().backward()
     assert all(torch.isfinite(p.grad).all() for p in dit.parameters() if p.grad is not None)
@@ -138,6 +141,47 @@ def leaning_moves_whole_columns():
     assert len(levels) > 6 and (grid[..., 4] == 11).all()
 
 
+def a_given_background_stands_in_the_draft():
+    dense, draft = np.full((200, 200, 16), 17, np.uint8), np.full((200, 200, 16), 17, np.uint8)
+    draft[..., 0], draft[5, 5, 1] = 11, 4
+    dense[..., 0], dense[:9, :9, 1:4], dense[7, 7, 2] = 13, 15, 16
+    found = with_background(draft, dense)
+    assert (found[..., 0] == 11).all() and found[5, 5, 1] == 4 and found[7, 7, 2] == 16
+    assert (found == 15).sum() == 9 * 9 * 3 - 2 and (found[9:, 9:, 1:] == 17).all()
+    flags = draw_given(np.random.default_rng(2), 400)
+    shares = flags.mean((1, 2, 3))
+    assert 0.4 < (shares == 1).mean() < 0.6 and 0.15 < (shares == 0).mean() < 0.35
+
+
+def a_stream_is_read_in_order():
+    """A command that writes three shards of two frames: the newest four are kept, each under the number of one that went."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for i in range(3):
+            arrays = {n: np.full((2, *s), i, np.int32 if n == "bev" else np.uint8) for n, s in GRIDS.items()}
+            save_file(arrays, path := Path(folder) / f"{i}.safetensors")
+            files.append(str(path))
+        write = ("import sys\nfor f in sys.argv[1:]:\n    data = open(f, 'rb').read()\n"
+                 "    sys.stdout.buffer.write(len(data).to_bytes(8, 'little') + data)")
+        frames, seen = Streamed(shlex.join([sys.executable, "-c", write, *files]), keep=4), [0, 1]
+        held, places = frames.at(0), Places(frames)
+        while len(seen) < 6:
+            new = frames.rescan()
+            places.add(new)
+            seen += new
+        assert seen == [0, 1, 2, 3, 0, 1] and len(frames) == 4
+        assert [int(frames.read(i, "dense")[0, 0, 0]) for i in range(4)] == [2, 2, 1, 1]
+        assert frames.read(held, "bev")[0, 0] == 0  # a pair stays what it was
+        assert sorted({p[0] for p in places.found[2]}) == [0, 1] and not places.found[0]
+        assert frames.rescan() == []
+        try:
+            Streamed(shlex.join([sys.executable, "-c", "raise SystemExit(3)"]))
+        except SystemExit as e:
+            assert "code 3" in str(e), e
+        else:
+            raise AssertionError("a command that fails was not named")
+
+
 def calibration_undoes_a_bias():
     torch.manual_seed(3)
     truth = torch.randint(2, (4000,)).to(torch.uint8) * 17  # `others` or free
@@ -156,6 +200,6 @@ if __name__ == "__main__":
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
-    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, calibration_undoes_a_bias):
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias):
         test()
         print(test.__name__, "ok")

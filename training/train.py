@@ -10,14 +10,14 @@ from safetensors import safe_open
 from safetensors.torch import load_file
 
 import losses
-from data import Frames, Places, as_tensor, draw_masks, leaned, named, prefetch, turned, turned_heading
+from data import Frames, Places, Streamed, as_tensor, draw_given, draw_masks, leaned, named, prefetch, turned, turned_heading
 from latents import LatentCache, latent_space
 from loop import Run, pick_device
 from models.occ_dit import NAMED, PATCH, DitConfig, OccDit, cell_headings, unshuffle_layout
 from models.occ_vae import OccVae, VaeConfig
 from schedule import STEPS, alpha_bar, ddim_sample
 
-ZERO_AT_FIRST = ("conv2.weight", "conv2.bias", "named2.weight", "named2.bias")
+ZERO_AT_FIRST = ("conv2.weight", "conv2.bias", "named2.weight", "named2.bias", "skip_given.weight", "skip_given.bias")
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
 FIRST_OBJECT_LAYER, OBJECT_WEIGHT = 8, 2.0  # the ten object layers follow eight map layers
 
@@ -83,8 +83,13 @@ def vae_figures(vae, frames, device, count):
     return out
 
 
+def frames_of(args):
+    """(training, held out)."""
+    return Streamed(args.stream) if args.stream else Frames(args.data / "train"), Frames(args.data / "val")
+
+
 def train_vae(args, device, dtype):
-    train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
+    train, held_out = frames_of(args)
     config = VaeConfig.fine() if args.fine else VaeConfig()
     if args.kernels:
         config.encoder_kernels, config.decoder_kernels = json.loads(args.kernels)
@@ -116,8 +121,6 @@ def train_vae(args, device, dtype):
         rate = (run.samples - since[0]) / (time.monotonic() - since[1])
         run.note(vae_figures(run.ema, held_out, device, args.held_out) | mean | {"per_s": rate})
         run.save(meta)
-        train.rescan()
-        places.rescan()
 
     for grid in prefetch(make):
         model.train()
@@ -126,6 +129,7 @@ def train_vae(args, device, dtype):
         run.update(loss, len(grid))
         mean = {k: mean.get(k, v) * 0.95 + v * 0.05 for k, v in parts.items()}
         if run.step % 50 == 0:
+            places.add(train.rescan())
             rate = (run.samples - since[0]) / (time.monotonic() - since[1])
             print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s " + " ".join(f"{k} {v:.4f}" for k, v in mean.items()), flush=True)
         if run.done():
@@ -173,37 +177,40 @@ def conditions(frames, picks):
 
 @torch.no_grad()
 def dit_figures(model, vae, abar, cache, frames, device, count, sample):
-    generator, total, count = torch.Generator().manual_seed(1), 0.0, min(count, len(frames))
+    """Held-out v error, and agreement of a few samples with their worlds, without and with the background given."""
+    count = min(count, len(frames))
     masks = torch.from_numpy(draw_masks(np.random.default_rng(1), count))
-    target, draft = cache.batch(range(count), [0] * count, ["dense"] * count)
-    layout, heading, given = (x.to(device) for x in conditions(frames, [(i, 0, "dense") for i in range(count)]))
-    for part in torch.arange(count).split(8):
-        mask = masks[part].to(device)
-        parts = (target[part] * (1 - mask[..., None]), draft[part], layout[part], heading[part], given[part])
-        # Four passes over the noise levels: one has too much noise of its own.
-        total += sum(dit_loss(model, abar, target[part], parts, mask, generator)[1] for _ in range(4)) / 4 * len(part)
-    out = {"held_out_v": total / count, "miou": 0.0, "iou": 0.0, "draft_miou": 0.0}
-    if sample:
-        n = min(sample, count)
-        ones, zeros = torch.ones(n, 50, 50, device=device), torch.zeros_like(target[:n])
-        condition = model.condition(ones, zeros, draft[:n], layout[:n], heading[:n], given[:n])
-        noise = torch.randn(target[:n].shape, generator=generator).to(device)
-        found = vae.decode(ddim_sample(lambda x, t: model(x, t, condition), noise, 20))
-        truth = as_tensor([frames.read(i, "dense") for i in range(n)])
-        made, drafted = losses.Confusion(), losses.Confusion()
-        made.add(truth, found.cpu())
-        drafted.add(truth, as_tensor([frames.read(i, "draft") for i in range(n)]))
-        out |= {"miou": made.miou(), "iou": made.iou(), "draft_miou": drafted.miou()}
-        print("  generated per class " + " ".join(f"{x:.2f}" for x in made.per_class().tolist()), flush=True)
+    layout, heading, told = (x.to(device) for x in conditions(frames, [(i, 0, "dense") for i in range(count)]))
+    out = {}
+    for ending, flag in (("", 0.0), ("_given", 1.0)):
+        given, generator, total = torch.full((count, 50, 50, 1), flag), torch.Generator().manual_seed(1), 0.0
+        target, draft = cache.batch(range(count), [0] * count, ["dense"] * count, given)
+        given = given.to(device)
+        for part in torch.arange(count).split(8):
+            mask = masks[part].to(device)
+            parts = (target[part] * (1 - mask[..., None]), draft[part], layout[part], heading[part], told[part], given[part])
+            # Four passes over the noise levels: one has too much noise of its own.
+            total += sum(dit_loss(model, abar, target[part], parts, mask, generator)[1] for _ in range(4)) / 4 * len(part)
+        out |= {f"held_out_v{ending}": total / count, f"miou{ending}": 0.0, f"iou{ending}": 0.0}
+        if sample:
+            n = min(sample, count)
+            ones, zeros = torch.ones(n, 50, 50, device=device), torch.zeros_like(target[:n])
+            condition = model.condition(ones, zeros, draft[:n], layout[:n], heading[:n], told[:n], given[:n])
+            noise = torch.randn(target[:n].shape, generator=generator).to(device)
+            found = vae.decode(ddim_sample(lambda x, t: model(x, t, condition), noise, 20))
+            truth, made = as_tensor([frames.read(i, "dense") for i in range(n)]), losses.Confusion()
+            made.add(truth, found.cpu())
+            out |= {f"miou{ending}": made.miou(), f"iou{ending}": made.iou()}
+            print(f"  generated{ending} per class " + " ".join(f"{x:.2f}" for x in made.per_class().tolist()), flush=True)
     return out
 
 
 def train_dit(args, device, dtype):
-    train, held_out = Frames(args.data / "train"), Frames(args.data / "val")
+    train, held_out = frames_of(args)
     vae, abar = load_vae(args.vae, device), alpha_bar()
     name = latent_space(args.vae)
-    cache, held_cache = (LatentCache(f, vae, args.data / f"latents-{name}" / f.folder.name, device) for f in (train, held_out))
-    model = OccDit(DitConfig(width=args.width, depth=args.depth)).to(device)
+    cache, held_cache = (LatentCache(f, vae, args.data / f"latents-{name}", device, dtype) for f in (train, held_out))
+    model = OccDit(DitConfig(width=args.width, depth=args.depth, given=True)).to(device)
     if args.init:
         begin_with(model, args.init)
     run = Run(model, args, lr=args.lr or 1e-3, betas=(0.9, 0.98), weight_decay=0.01, ema=0.9995, warmup=100)
@@ -211,13 +218,14 @@ def train_dit(args, device, dtype):
 
     def make():
         kinds = np.where(rng.random(args.batch) < args.labels, "labels", "dense")
-        pick = [(int(rng.integers(len(train))), int(rng.choice(args.symmetries)), str(k)) for k in kinds]
-        layout, heading, given = conditions(train, pick)
+        pick = [(train.at(int(rng.integers(len(train)))), int(rng.choice(args.symmetries)), str(k)) for k in kinds]
+        layout, heading, told = conditions(train, pick)
         # Guidance needs samples without any condition; a designer may name some numbers and not others.
         drop = torch.from_numpy(rng.random(args.batch) < 0.1)
-        told = torch.from_numpy(rng.random((args.batch, NAMED)) < 0.7) & ~drop[:, None]
-        given = given * torch.cat([told, told], 1)
-        return pick, layout, heading, given, torch.from_numpy(draw_masks(rng, args.batch)), drop
+        known = torch.from_numpy(rng.random((args.batch, NAMED)) < 0.7) & ~drop[:, None]
+        told = told * torch.cat([known, known], 1)
+        given = torch.from_numpy(draw_given(rng, args.batch)) * ~drop[:, None, None, None]
+        return pick, layout, heading, told, given, torch.from_numpy(draw_masks(rng, args.batch)), drop
 
     meta = {"kind": "occ_dit", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "vae": name}
     mean, noted, since = 0.0, time.monotonic(), (run.samples, time.monotonic())
@@ -232,16 +240,17 @@ def train_dit(args, device, dtype):
         run.note(figures | {"train_v": mean, "per_s": rate})
         run.save(meta)
 
-    for pick, layout, heading, given, mask, drop in prefetch(make):
-        target, draft = cache.batch(*zip(*pick))
-        layout, heading, given, mask = (x.to(device) for x in (layout, heading, given, mask))
+    for pick, layout, heading, told, given, mask, drop in prefetch(make):
+        target, draft = cache.batch(*zip(*pick), given)
+        layout, heading, told, given, mask = (x.to(device) for x in (layout, heading, told, given, mask))
         keep = (~drop).to(device).float().view(-1, 1, 1, 1)
-        parts = (target * (1 - mask[..., None]), draft * keep, layout * keep, heading * keep, given)
+        parts = (target * (1 - mask[..., None]), draft * keep, layout * keep, heading * keep, told, given)
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
             loss, v = dit_loss(model, abar, target, parts, mask, None)
         run.update(loss, len(pick))
         mean = mean * 0.98 + v * 0.02 if mean else v
         if run.step % 50 == 0:
+            train.rescan()
             rate = (run.samples - since[0]) / (time.monotonic() - since[1])
             print(f"step {run.step} {run.elapsed():.1f} min {rate:.2f}/s v {mean:.4f}", flush=True)
         if run.done():
@@ -258,6 +267,7 @@ def main():
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("kind", choices=["vae", "dit"])
     p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards")
+    p.add_argument("--stream", help="command that writes training frames to its output, such as `sceneloom-worlds --frames 65536 --stream`, instead of DIR/train")
     p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--vae", help="weights of the VAE (dit only)")

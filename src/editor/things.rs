@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
 use super::shape::at_least;
-use crate::scene::background::Columns;
+use crate::scene::background::{Columns, in_grid};
 use crate::scene::draft::ground_bin;
 use crate::scene::grid::NOT_PAINTED;
 use crate::scene::raster::polygon_cells;
@@ -129,12 +129,14 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
     scene.rev = SceneRev::fresh();
     for frame in &mut scene.frames {
         let frame = Arc::make_mut(frame);
-        let (gone, come) = (seen_from(frame, &gone), seen_from(frame, &come));
+        let (gone, come) = (
+            in_grid(&gone, &frame.world_from_ego),
+            in_grid(&come, &frame.world_from_ego),
+        );
         if gone.is_empty() && come.is_empty() {
             continue;
         }
-        let kept: Vec<Thing> = after.iter().cloned().collect();
-        let kept = seen_from(frame, &kept);
+        let kept = after.in_grid(&frame.world_from_ego);
         let Frame {
             layout,
             occupancy,
@@ -162,7 +164,7 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
 pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -> Vec<bool> {
     let mut out = vec![false; GridSpec::COLUMNS];
     let changed = [only_in(before, after), only_in(after, before)].concat();
-    for thing in seen_from(frame, &changed) {
+    for thing in in_grid(&changed, &frame.world_from_ego) {
         let own = thing.columns(&frame.layout);
         for [x, y] in with_margin(&own).into_iter().chain(grown_over(&thing)) {
             out[x * GridSpec::NY + y] = true;
@@ -174,21 +176,6 @@ pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -
 /// Things of `a` that `b` lacks or has in another form.
 fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
     a.iter().filter(|t| b.get(t.id) != Some(t)).cloned().collect()
-}
-
-/// Things in the ego frame, as far as they reach into the grid.
-fn seen_from(frame: &Frame, things: &[Thing]) -> Vec<Thing> {
-    let to_ego = frame.world_from_ego.inverse();
-    let moved = things.iter().map(|t| Thing {
-        form: t.form.in_frame(&to_ego),
-        ..t.clone()
-    });
-    moved.filter(in_grid).collect()
-}
-
-fn in_grid(thing: &Thing) -> bool {
-    let (lo, hi) = thing.form.bounds_m();
-    lo.max_element() < 40.0 && hi.min_element() > -40.0
 }
 
 /// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out. Where the

@@ -2,12 +2,13 @@
 
 Inputs per 50x50 cell: noisy latent 8 | edit mask 1 (1 = generate), clean context latent 8 (0 where the mask is 1),
 draft latent 8 (the VAE's encoding of the layout extruded naively), 18 layout layers of the cell's 4x4 columns (288),
-mean cosine and sine of the headings of its objects (2). Four numbers are given by name beside the timestep, each with a
+mean cosine and sine of the headings of its objects (2), whether its background is given (1): then the draft holds all that
+stands beside the road, and nothing else stands there; where it is not given, the network invents it. Four numbers are given by name beside the timestep, each with a
 flag that says whether it is given: vegetation, building, clutter, completeness (`data.named`).
 A token is 2x2 cells: 625 tokens. Predicts v = alpha eps - sigma x0 (Salimans and Ho, 2202.00512).
 Blocks: adaLN-Zero (Peebles and Xie, 2212.09748). The draft is close to the answer nearly everywhere, and the best linear
 guess of v from the noisy latent and the draft depends on the timestep alone: a gate per channel gives that guess, so the
-blocks only learn what is different.
+blocks only learn what is different. Where the background is given the draft says more, so cells have a second gate there.
 """
 import math
 from dataclasses import asdict, dataclass
@@ -31,6 +32,7 @@ class DitConfig:
     depth: int = 8
     heads: int = 4
     frequencies: int = 256  # of the timestep embedding
+    given: bool = False  # hears whether the background is given
 
     def as_dict(self):
         return asdict(self)
@@ -118,7 +120,7 @@ class OccDit(nn.Module):
         patch = PATCH * PATCH
         self.embed_x = nn.Linear(patch * c.latent, c.width)
         # mask, context, draft, layout, heading: does not depend on x or t, so computed once per job in Rust.
-        self.embed_condition = nn.Linear(patch * (1 + 2 * c.latent + 16 * LAYERS + 2), c.width, bias=False)
+        self.embed_condition = nn.Linear(patch * (1 + 2 * c.latent + 16 * LAYERS + 2 + c.given), c.width, bias=False)
         self.time1 = nn.Linear(c.frequencies, c.width)
         self.time2 = nn.Linear(c.width, c.width)
         self.named1 = nn.Linear(2 * NAMED, c.width)
@@ -127,6 +129,10 @@ class OccDit(nn.Module):
         self.final_ada = nn.Linear(c.width, 2 * c.width)
         self.final = nn.Linear(c.width, patch * c.latent)
         self.skip = nn.Linear(c.width, 2 * c.latent)  # gates of the noisy latent and of the draft
+        if c.given:
+            self.skip_given = nn.Linear(c.width, 2 * c.latent)  # what is added to them where the background is given
+            nn.init.zeros_(self.skip_given.weight)
+            nn.init.zeros_(self.skip_given.bias)
         self.register_buffer("positions", positions(c.width), persistent=False)
         nn.init.normal_(self.embed_x.weight, std=0.1)
         # Sparse 0/1 inputs: many channels, few of them set at once.
@@ -137,15 +143,17 @@ class OccDit(nn.Module):
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
 
-    def condition(self, mask, context, draft, layout, heading, named):
+    def condition(self, mask, context, draft, layout, heading, named, given):
         """mask [B,50,50], context, draft [B,50,50,8], layout [B,50,50,288], heading [B,50,50,2], named [B,8] (values, 0
-        where not given, then flags) -> tokens [B,625,width], the draft, what is added to the embedded time."""
-        tokens = self.embed_condition(patchify(torch.cat([mask[..., None], context, draft, layout, heading], -1)))
-        return tokens + self.positions, draft, self.named2(F.silu(self.named1(named)))
+        where not given, then flags), given [B,50,50,1] (is the background?) -> tokens [B,625,width], the draft, what is
+        added to the embedded time, given."""
+        parts = [mask[..., None], context, draft, layout, heading] + [given] * self.config.given
+        tokens = self.embed_condition(patchify(torch.cat(parts, -1)))
+        return tokens + self.positions, draft, self.named2(F.silu(self.named1(named))), given
 
     def forward(self, x, t, condition):
         """x [B,50,50,8], t [B] in 0..=999, condition from above -> v [B,50,50,8]."""
-        tokens, draft, named = condition
+        tokens, draft, named, given = condition
         time = self.time2(F.silu(self.time1(timestep_embedding(t, self.config.frequencies))))
         c = F.silu(time + named)
         h = self.embed_x(patchify(x)) + tokens
@@ -153,5 +161,8 @@ class OccDit(nn.Module):
             h = block(h, c)
         shift, scale = self.final_ada(c).chunk(2, 1)
         v = unpatchify(self.final(modulate(h, shift, scale)).float(), self.config.latent)
-        of_x, of_draft = self.skip(c).float()[:, None, None].chunk(2, -1)
+        gates = self.skip(c).float()[:, None, None]
+        if self.config.given:
+            gates = gates + given * self.skip_given(c).float()[:, None, None]
+        of_x, of_draft = gates.chunk(2, -1)
         return v + of_x * x + of_draft * draft

@@ -85,6 +85,9 @@ impl CandleDit {
                 }
             }
             features.extend(heading);
+            if self.tensors.contains_key("skip_given.weight") {
+                features.push(c.given[at]);
+            }
             features
         };
         let tokens = patches(cell);
@@ -96,7 +99,7 @@ impl CandleDit {
     /// v [2500 * 8] for the noisy latent `state` at training step `t`; `condition` is what
     /// [`condition`](Self::condition) makes of `c`.
     pub fn forward(&self, state: &[f32], t: f64, c: &DitCondition, condition: &Tensor) -> Result<Vec<f32>> {
-        let draft = &c.draft_latent;
+        let (draft, given) = (&c.draft_latent, &c.given);
         let frequencies = self.tensors["time1.weight"].dim(1)? / 2;
         let angle = |i: usize| t * (-(10000f64.ln()) * i as f64 / frequencies as f64).exp();
         let mut time: Vec<f32> = (0..frequencies).map(|i| angle(i).cos() as f32).collect();
@@ -139,13 +142,18 @@ impl CandleDit {
             .flatten_all()?
             .to_vec1()?;
         let gates: Vec<f32> = self.linear("skip", &c)?.flatten_all()?.to_vec1()?;
+        let added: Vec<f32> = match self.tensors.contains_key("skip_given.weight") {
+            true => self.linear("skip_given", &c)?.flatten_all()?.to_vec1()?,
+            false => vec![0.0; gates.len()],
+        };
         let mut latent = vec![0.0; 2500 * CHANNELS];
         for (k, cell) in out.chunks_exact(CHANNELS).enumerate() {
             let (token, part) = (k / 4, k % 4);
             let (i, j) = (token / 25 * 2 + part / 2, token % 25 * 2 + part % 2);
+            let gate = |number: usize| gates[number] + given[i * 50 + j] * added[number];
             for (channel, value) in cell.iter().enumerate() {
                 let at = (i * 50 + j) * CHANNELS + channel;
-                latent[at] = value + gates[channel] * state[at] + gates[CHANNELS + channel] * draft[at];
+                latent[at] = value + gate(channel) * state[at] + gate(CHANNELS + channel) * draft[at];
             }
         }
         Ok(latent)

@@ -23,7 +23,7 @@ const LAYERS: usize = 18;
 const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 /// Mean cosine and sine of headings in a cell.
 const HEADING: usize = 2;
-/// Mask, context, draft, layout, heading.
+/// Mask, context, draft, layout, heading; then, if the network hears it, whether the background is given.
 const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT + HEADING;
 /// Numbers given by name.
 const NAMED: usize = 4;
@@ -46,9 +46,17 @@ pub struct DitConfig {
     pub heads: usize,
     /// Numbers of the timestep embedding.
     pub frequencies: usize,
+    /// It hears where the background is given.
+    #[serde(default)]
+    pub given: bool,
 }
 
 impl DitConfig {
+    /// Numbers of a cell's condition.
+    fn condition(&self) -> usize {
+        CONDITION + usize::from(self.given)
+    }
+
     fn check(&self) -> Result<(), String> {
         if self.latent != CHANNELS {
             Err(format!("latent: expected {CHANNELS}, found {}", self.latent))
@@ -84,8 +92,10 @@ pub struct DitCondition {
     pub heading: Vec<u8>,
     /// Vegetation, building, clutter, completeness where they are given (`Density`), 0 to 1.
     pub named: [Option<f32>; NAMED],
-    /// Latent of the layout extruded naively, 50x50x8.
+    /// Latent of the layout extruded naively, with the background where it is given, 50x50x8.
     pub draft_latent: Vec<f32>,
+    /// 1 where the draft holds the background and nothing else is to stand there, 0 where the network invents it, 50x50.
+    pub given: Vec<f32>,
     /// 1 where a cell is to be generated, 0 where it is kept, 50x50.
     pub mask: Vec<f32>,
     /// Latent of what is kept, 50x50x8; 0 where the mask is 1.
@@ -101,6 +111,8 @@ pub struct Prepared {
     embedded: Vec<f32>,
     /// Draft latent, 50x50x8.
     draft: Vec<f32>,
+    /// Where the background is given, 50x50.
+    given: Vec<f32>,
     /// What the named numbers add to the embedded time, `[width]`.
     named: Vec<f32>,
 }
@@ -177,6 +189,8 @@ pub struct OccDit {
     last: Linear,
     /// Gates of the noisy latent and of the draft per channel: the linear part of the answer.
     skip: Linear,
+    /// What is added to them where the background is given.
+    skip_given: Option<Linear>,
     positions: Vec<f32>, // [token][width]
 }
 
@@ -202,7 +216,13 @@ impl OccDit {
         };
         let dit = Self {
             embed_x: Linear::new(w, "embed_x", PATCH_CELLS * CHANNELS, width, &[])?,
-            embed_condition: Linear::without_bias(w, "embed_condition", PATCH_CELLS * CONDITION, width, &[])?,
+            embed_condition: Linear::without_bias(
+                w,
+                "embed_condition",
+                PATCH_CELLS * config.condition(),
+                width,
+                &[],
+            )?,
             time1: Linear::new(w, "time1", config.frequencies, width, &[])?,
             time2: Linear::new(w, "time2", width, width, &[])?,
             named1: Linear::new(w, "named1", 2 * NAMED, width, &[])?,
@@ -213,6 +233,10 @@ impl OccDit {
             final_ada: Linear::new(w, "final_ada", width, 2 * width, &[])?,
             last: Linear::new(w, "final", width, PATCH_CELLS * CHANNELS, &[])?,
             skip: Linear::new(w, "skip", width, 2 * CHANNELS, &[])?,
+            skip_given: match config.given {
+                true => Some(Linear::new(w, "skip_given", width, 2 * CHANNELS, &[])?),
+                false => None,
+            },
             positions: positions(TOKENS_PER_SIDE, TOKENS_PER_SIDE, width),
             config,
         };
@@ -232,6 +256,7 @@ impl OccDit {
             heading: vec![0; condition.heading.len()],
             named: [None; NAMED],
             draft_latent: vec![0.0; condition.draft_latent.len()],
+            given: vec![0.0; condition.given.len()],
             ..condition.clone()
         }
     }
@@ -247,19 +272,23 @@ impl OccDit {
         check_length("headings", condition.heading.len(), GridSpec::COLUMNS)?;
         check_finite("named numbers", &condition.named.map(|n| n.unwrap_or(0.0)))?;
         check_length("draft latent", condition.draft_latent.len(), LATENT)?;
+        check_length("given background", condition.given.len(), CELLS)?;
+        check_finite("given background", &condition.given)?;
         check_length("mask", condition.mask.len(), CELLS)?;
         check_length("context", condition.context.len(), LATENT)?;
         check_finite("draft latent", &condition.draft_latent)?;
         check_finite("mask", &condition.mask)?;
         check_finite("context", &condition.context)?;
-        let row = PATCH_CELLS * CONDITION;
+        let per_cell = self.config.condition();
+        let row = PATCH_CELLS * per_cell;
         let mut features = vec![0.0; tokens.len() * row];
         features
             .par_chunks_mut(row)
             .zip(&tokens)
             .for_each(|(values, token)| {
-                for (cell, values) in patch(*token).zip(values.chunks_exact_mut(CONDITION)) {
-                    condition.cell_features(cell, values);
+                for (cell, values) in patch(*token).zip(values.chunks_exact_mut(per_cell)) {
+                    condition.cell_features(cell, &mut values[..CONDITION]);
+                    values[CONDITION..].fill(condition.given[cell]);
                 }
             });
         let mut embedded = self.embed_condition.parallel(&features, piece_of(tokens.len()));
@@ -268,14 +297,15 @@ impl OccDit {
             let position = &self.positions[token * width..][..width];
             row.iter_mut().zip(position).for_each(|(e, p)| *e += p);
         }
-        let given = condition.named.map(|n| f32::from(u8::from(n.is_some())));
+        let told = condition.named.map(|n| f32::from(u8::from(n.is_some())));
         let values = condition.named.map(|n| n.unwrap_or(0.0));
-        let mut named = self.named1.vector(&[values, given].concat());
+        let mut named = self.named1.vector(&[values, told].concat());
         named.iter_mut().for_each(|v| *v = kernels::silu(*v));
         Ok(Prepared {
             tokens,
             embedded,
             draft: condition.draft_latent.clone(),
+            given: condition.given.clone(),
             named: self.named2.vector(&named),
         })
     }
@@ -379,12 +409,14 @@ impl OccDit {
         kernels::norm_rows(&tokens, NORM_EPS, &scale, shift, &mut normed);
         let patches = self.last.parallel(&normed, piece);
         let gates = self.skip.vector(&time);
-        let (of_x, of_draft) = gates.split_at(CHANNELS);
+        let added = self.skip_given.as_ref().map(|g| g.vector(&time));
         let mut out = vec![0.0; LATENT];
         for (cell, values) in cells().zip(patches.chunks_exact(CHANNELS)) {
+            let given = condition.given[cell];
+            let gate = |i: usize| gates[i] + added.as_ref().map_or(0.0, |a| given * a[i]);
             for (c, value) in values.iter().enumerate() {
                 let at = cell * CHANNELS + c;
-                out[at] = value + of_x[c] * x[at] + of_draft[c] * condition.draft[at];
+                out[at] = value + gate(c) * x[at] + gate(CHANNELS + c) * condition.draft[at];
             }
         }
         check_finite("predicted v", &out)?;

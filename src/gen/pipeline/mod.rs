@@ -5,14 +5,15 @@
 mod network;
 mod round_trip;
 mod source;
+mod standing;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use crate::generation::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
-    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode, Stage,
+    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
 use crate::generation::keep_clear::{keep_clear, keep_unobserved};
 use crate::generation::keep_objects::{keep_ground, keep_objects};
@@ -23,9 +24,10 @@ use crate::generation::replay::edit_with_replay;
 use crate::generation::request::Request;
 use crate::generation::rng::{Stream, normal_field};
 use crate::generation::solver::Sampler;
-use crate::scene::{GridSpec, VoxelGrid};
+use crate::scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
 use network::{Condition, Network, density_of_source};
 use source::{Source, stored_for};
+use standing::Standing;
 
 pub use network::Ablation;
 pub use round_trip::RoundTrip;
@@ -41,6 +43,8 @@ pub struct OccPipeline {
     sources: VecDeque<Source>,
     /// The last draft and its latent: the next one differs in a few columns.
     draft: Option<(VoxelGrid, Vec<f32>)>,
+    /// What stood beside the road in the last job.
+    standing: Option<Standing>,
     /// What is hidden from the network, to measure what it is worth.
     ablation: Option<Ablation>,
 }
@@ -52,6 +56,7 @@ impl OccPipeline {
             models,
             sources: VecDeque::new(),
             draft: None,
+            standing: None,
             ablation: None,
         }
     }
@@ -108,6 +113,21 @@ impl OccPipeline {
         Ok(latent)
     }
 
+    /// What a scene's frame is generated from, with this layout and these boxes.
+    fn condition(
+        &mut self,
+        scene: &Scene,
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        named: Named,
+    ) -> Condition {
+        // Networks that do not hear of it invent it.
+        if self.models.dit.config().given {
+            self.standing = Standing::of(scene, layout, self.standing.as_ref());
+        }
+        Condition::new(layout, boxes, self.standing.as_ref(), named, self.ablation)
+    }
+
     /// The network under a condition, for some tokens or (`None`) all.
     fn network(
         &mut self,
@@ -127,6 +147,7 @@ impl OccPipeline {
             heading: condition.heading.clone(),
             named: condition.named.values(),
             draft_latent,
+            given: vec![f32::from(u8::from(condition.given)); CELLS],
             mask,
             context,
         };
@@ -164,14 +185,14 @@ impl OccPipeline {
     /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
-        self.source(job.scene.frame(), &job.params, &mut report, ctx)?;
+        self.source(&job.scene, &job.params, &mut report, ctx)?;
         Ok(report.network_calls)
     }
 
     fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let (frame, params) = (job.scene.frame(), &job.params);
         let mut report = GenReport::default();
-        let condition = Condition::new(&frame.layout, &frame.boxes, params.named, self.ablation);
+        let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, params.named);
         let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
         ctx.progress(Stage::Encode, 0, 1)?;
         let mut network = report.timed(Stage::Encode, |_| {
@@ -259,11 +280,11 @@ impl OccPipeline {
         }
         let anew = params.strength > 0.0;
         let (sampler, source) = match anew {
-            true => self.noised(frame, params, &mut report, ctx)?,
-            false => self.inverted(frame, params, &mut report, ctx)?,
+            true => self.noised(&job.scene, params, &mut report, ctx)?,
+            false => self.inverted(&job.scene, params, &mut report, ctx)?,
         };
         let named = params.named.or(&density_of_source(frame));
-        let condition = Condition::new(&frame.layout, &frame.boxes, named, self.ablation);
+        let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, named);
         let latent = source.trajectory.latent_f32();
         let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent

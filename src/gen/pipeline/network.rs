@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::standing::Standing;
 use crate::generation::job::{GenError, Named};
 use crate::generation::model::{KeysValues, Middle, OccModels, Prepared};
 use crate::generation::params::{DitVariant, Precision};
@@ -19,6 +20,8 @@ pub enum Ablation {
     Layout,
     /// No boxes.
     Boxes,
+    /// No background: the network invents it.
+    Background,
     /// No draft: its latent is shown as zeros, as training shows one frame in ten (there without the layout too).
     Draft,
 }
@@ -31,15 +34,18 @@ pub struct Condition {
     pub heading: Vec<u8>,
     /// Densities and completeness asked for.
     pub named: Named,
-    /// The layout extruded naively.
+    /// The layout extruded naively, with the background if it is given.
     pub draft: VoxelGrid,
+    /// The background is given.
+    pub given: bool,
 }
 
 impl Condition {
-    /// Of a layout and boxes, less what the ablation hides.
+    /// Of a layout, boxes and what stands beside the road, less what the ablation hides.
     pub fn new(
         layout: &BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
+        standing: Option<&Standing>,
         named: Named,
         ablation: Option<Ablation>,
     ) -> Self {
@@ -54,11 +60,17 @@ impl Condition {
         } else {
             boxes
         };
+        let standing = standing.filter(|_| ablation != Some(Ablation::Background));
+        let mut draft = draft::draft(layout, boxes.values());
+        if let Some(standing) = standing {
+            standing.stand_in(&mut draft);
+        }
         Self {
             bev: raster::bev_channels(layout, boxes.values()),
             heading: raster::headings(boxes.values()),
             named,
-            draft: draft::draft(layout, boxes.values()),
+            draft,
+            given: standing.is_some(),
         }
     }
 }

@@ -18,9 +18,8 @@ pub struct RoundTrip {
 impl OccPipeline {
     /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
-        let frame = job.scene.frame();
-        let known = self.source(frame, &job.params, &mut GenReport::default(), ctx)?;
-        let mut network = self.network_of_source(frame, &job.params)?;
+        let known = self.source(&job.scene, &job.params, &mut GenReport::default(), ctx)?;
+        let mut network = self.network_of_source(&job.scene, &job.params)?;
         let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
@@ -34,14 +33,13 @@ impl OccPipeline {
         params: &GenParams,
         ctx: &JobCtx<'_>,
     ) -> Result<RoundTrip, GenError> {
-        let frame = scene.frame();
-        let latent = self.models.vae.encode(&frame.source.occupancy);
+        let latent = self.models.vae.encode(&scene.frame().source.occupancy);
         let clean: Vec<f64> = latent
             .map_err(GenError::failed)?
             .into_iter()
             .map(f64::from)
             .collect();
-        let mut network = self.network_of_source(frame, params)?;
+        let mut network = self.network_of_source(scene, params)?;
         let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {

@@ -13,7 +13,7 @@ use crate::generation::params::{DitVariant, Precision};
 use crate::generation::region::CELLS;
 use crate::generation::solver::{Guidance, Sampler, SolverKind};
 use crate::generation::world::draw::hash;
-use crate::scene::{Frame, VoxelGrid};
+use crate::scene::{Scene, VoxelGrid};
 
 /// Trajectories kept; each is about 2 MB at ten steps.
 const KEPT_TRAJECTORIES: usize = 24;
@@ -68,7 +68,7 @@ impl OccPipeline {
                 .iter()
                 .zip(&condition.heading)
                 .fold(0, |h, (b, yaw)| hash(h ^ u64::from(*b) ^ u64::from(*yaw) << 32)),
-            draft: label_hash(&condition.draft),
+            draft: label_hash(&condition.draft) ^ u64::from(condition.given),
             steps: params.steps,
             iterations: params.inversion_iterations,
             exact: params.solver == SolverKind::OBelm,
@@ -77,11 +77,16 @@ impl OccPipeline {
         }
     }
 
-    pub(super) fn key_of_source(&self, frame: &Frame, params: &GenParams) -> SourceKey {
-        let old = &*frame.source;
+    /// What a frame's source is generated from.
+    fn condition_of_source(&mut self, scene: &Scene) -> Condition {
+        let frame = scene.frame();
         let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::new(&old.layout, &old.boxes, named, self.ablation);
-        self.key(&old.occupancy, &condition, params)
+        self.condition(scene, &frame.source.layout, &frame.source.boxes, named)
+    }
+
+    pub(super) fn key_of_source(&mut self, scene: &Scene, params: &GenParams) -> SourceKey {
+        let condition = self.condition_of_source(scene);
+        self.key(&scene.frame().source.occupancy, &condition, params)
     }
 
     pub(super) fn remember(&mut self, source: Source) {
@@ -109,13 +114,13 @@ impl OccPipeline {
     /// The trajectory of a frame's source: from memory, or inverted now.
     pub(super) fn source(
         &mut self,
-        frame: &Frame,
+        scene: &Scene,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<Source, GenError> {
-        let old = &*frame.source;
-        let key = self.key_of_source(frame, params);
+        let old = &*scene.frame().source;
+        let key = self.key_of_source(scene, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
             self.remember(known.clone()); // used last, forgotten last
             return Ok(known);
@@ -125,7 +130,7 @@ impl OccPipeline {
             .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(frame, params))?;
+        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(scene, params))?;
         network.keys_values = stored(params.steps);
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let mut solver = params.solver;
@@ -166,12 +171,12 @@ impl OccPipeline {
     /// What an edit starts from: the noise that the source comes from.
     pub(super) fn inverted(
         &mut self,
-        frame: &Frame,
+        scene: &Scene,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(Sampler, Source), GenError> {
-        let source = self.source(frame, params, report, ctx)?;
+        let source = self.source(scene, params, report, ctx)?;
         if let Some(inversion) = &source.report {
             report.noise_std = Some(inversion.std);
             report.noise_max_abs = Some(inversion.max_abs);
@@ -189,18 +194,20 @@ impl OccPipeline {
     /// What a region is drawn anew from: its source under fresh noise, from the step on that the strength asks for.
     pub(super) fn noised(
         &mut self,
-        frame: &Frame,
+        scene: &Scene,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(Sampler, Source), GenError> {
-        let key = self.key_of_source(frame, params);
+        let key = self.key_of_source(scene, params);
         let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
             Some(known) => known.trajectory.latent().to_vec(),
             None => {
                 ctx.progress(Stage::Encode, 0, 1)?;
                 let latent = report
-                    .timed(Stage::Encode, |_| self.models.vae.encode(&frame.source.occupancy))
+                    .timed(Stage::Encode, |_| {
+                        self.models.vae.encode(&scene.frame().source.occupancy)
+                    })
                     .map_err(GenError::failed)?;
                 latent.into_iter().map(f64::from).collect()
             }
@@ -227,12 +234,10 @@ impl OccPipeline {
     /// The network under the condition of a frame's source, for all tokens.
     pub(super) fn network_of_source(
         &mut self,
-        frame: &Frame,
+        scene: &Scene,
         params: &GenParams,
     ) -> Result<Network, GenError> {
-        let source = &*frame.source;
-        let named = Named::default().or(&density_of_source(frame));
-        let condition = Condition::new(&source.layout, &source.boxes, named, self.ablation);
+        let condition = self.condition_of_source(scene);
         let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
         let params = GenParams {
             guidance: 1.0,

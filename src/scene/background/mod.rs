@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::solid::Solid;
-use super::{Class, Pose};
+use super::{Class, GridSpec, Pose};
 
 pub use bridge::Bridge;
 pub use building::{Building, Facade, Roof, STOREY_M};
@@ -255,6 +255,11 @@ impl Background {
         self.things.values().map(moved).collect()
     }
 
+    /// Its things in the ego frame of a pose, as far as they reach into the grid.
+    pub fn in_grid(&self, world_from_ego: &Pose) -> Vec<Thing> {
+        in_grid(self.iter(), world_from_ego)
+    }
+
     /// What is wrong with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         if self.len() > Self::MAX_THINGS {
@@ -268,6 +273,20 @@ impl Background {
             .values()
             .find_map(|t| t.form.problem().map(|p| format!("thing {}: {p}", t.id.0)))
     }
+}
+
+/// Things in the ego frame of a pose, as far as they reach into the grid.
+pub fn in_grid<'a>(things: impl IntoIterator<Item = &'a Thing>, world_from_ego: &Pose) -> Vec<Thing> {
+    let to_ego = world_from_ego.inverse();
+    let moved = things.into_iter().map(|t| Thing {
+        form: t.form.in_frame(&to_ego),
+        ..t.clone()
+    });
+    let reaches_in = |t: &Thing| {
+        let (lo, hi) = t.form.bounds_m();
+        lo.max_element() < GridSpec::MAX_M[0] && hi.min_element() > GridSpec::MIN_M[0]
+    };
+    moved.filter(reaches_in).collect()
 }
 
 impl FromIterator<Thing> for Background {

@@ -113,6 +113,14 @@ impl Eval {
             scene: Arc::new(world),
             params,
         };
+        let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
+        let job = Job {
+            scene: Arc::new(Scene {
+                background: Arc::default(),
+                ..(*job.scene).clone()
+            }),
+            params,
+        };
         let mut run = |ablation, job: &Job| {
             pipeline.ablate(ablation);
             let result = pipeline.run(job, &JobCtx::detached());
@@ -153,6 +161,7 @@ impl Eval {
             &truth,
             &decoded,
             &result.occupancy,
+            &given,
             &undrafted,
             &naive,
         ];

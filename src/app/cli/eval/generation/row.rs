@@ -20,11 +20,12 @@ use crate::scene::{Scene, SensorRig, VoxelGrid};
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
-pub const ROWS: [(&str, &str); 6] = [
+pub const ROWS: [(&str, &str); 7] = [
     ("other_worlds", "what every row is compared with"),
     ("worlds", "as many worlds: the floor"),
     ("through_vae", "the worlds, encoded and decoded"),
     ("generated", "from the layouts alone"),
+    ("background_given", "from the layouts and the worlds' background"),
     ("without_draft", "the same, the draft hidden from the network"),
     ("draft_alone", "the drafts of the layouts"),
 ];
