@@ -255,12 +255,30 @@ pub struct JobEvent {
 pub struct JobCtx<'a> {
     stop: &'a (dyn Fn() -> bool + Sync),
     report: &'a (dyn Fn(JobUpdate) + Sync),
+    previews: bool,
 }
 
 impl<'a> JobCtx<'a> {
     /// `stop` is asked between steps, `report` gets every update.
     pub fn new(stop: &'a (dyn Fn() -> bool + Sync), report: &'a (dyn Fn(JobUpdate) + Sync)) -> Self {
-        Self { stop, report }
+        Self {
+            stop,
+            report,
+            previews: false,
+        }
+    }
+
+    /// For somebody who looks on: long jobs show what comes.
+    pub fn with_previews(self) -> Self {
+        Self {
+            previews: true,
+            ..self
+        }
+    }
+
+    /// Somebody looks on.
+    pub fn previews(&self) -> bool {
+        self.previews
     }
 
     /// For a caller that waits: never stopped, tells nobody.
@@ -268,6 +286,7 @@ impl<'a> JobCtx<'a> {
         JobCtx {
             stop: &|| false,
             report: &|_| {},
+            previews: false,
         }
     }
 

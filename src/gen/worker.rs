@@ -138,7 +138,12 @@ fn work<P: Pipeline>(
                     outbox.send(id, update);
                 }
             };
-            run_guarded(&mut pipeline, &mut build, &job, &JobCtx::new(&stop, &report))
+            run_guarded(
+                &mut pipeline,
+                &mut build,
+                &job,
+                &JobCtx::new(&stop, &report).with_previews(),
+            )
         };
         outbox.send(
             id,

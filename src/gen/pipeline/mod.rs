@@ -9,6 +9,7 @@ mod standing;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use crate::generation::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::generation::inversion::Trajectory;
@@ -34,6 +35,27 @@ pub use round_trip::RoundTrip;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
+
+/// When a long job shows what comes: after its first step, then so seldom that looking on costs a fifth of its time.
+#[derive(Default)]
+struct Glimpses {
+    begun: Option<Instant>,
+    next: Option<Instant>,
+}
+
+impl Glimpses {
+    const PAUSE_PER_COST: u32 = 4;
+
+    fn due(&mut self) -> bool {
+        self.begun = Some(Instant::now());
+        self.next.is_none_or(|next| next <= Instant::now())
+    }
+
+    fn shown(&mut self) {
+        let cost = self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
+        self.next = Some(Instant::now() + cost * Self::PAUSE_PER_COST);
+    }
+}
 
 /// Generates occupancy. Clones share what they keep. Keeps the trajectories of recent sources, its own results among them, so
 /// that the next edit of a scene needs no inversion.
@@ -206,9 +228,16 @@ impl OccPipeline {
         })?;
         network.keys_values = stored_for(params);
         let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
-        let states = report.timed(Stage::Denoise, |_| {
+        let region = Region::full();
+        let mut glimpses = Glimpses::default();
+        let states = report.timed(Stage::Denoise, |report| {
             sampler.sample(start, &mut network, |view| {
-                ctx.progress(Stage::Denoise, view.step, view.steps)
+                ctx.progress(Stage::Denoise, view.step, view.steps)?;
+                if ctx.previews() && view.step < view.steps && glimpses.due() {
+                    self.glimpse(job, &view.clean_estimate(), report, ctx)?;
+                    glimpses.shown();
+                }
+                Ok(())
             })
         })?;
         report.network_calls = params.steps as usize * sampler.guidance.calls();
@@ -224,7 +253,6 @@ impl OccPipeline {
         let mut generated = report
             .timed(Stage::Decode, |_| self.models.vae.decode(&latent))
             .map_err(GenError::failed)?;
-        let region = Region::full();
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
         }
@@ -239,6 +267,26 @@ impl OccPipeline {
             keys_values,
         );
         Ok(result)
+    }
+
+    /// Shows what the latent on the way would decode to.
+    fn glimpse(
+        &self,
+        job: &Job,
+        clean: &[f64],
+        report: &GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(), GenError> {
+        let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
+        let grid = self.models.vae.decode(&latent).map_err(GenError::failed)?;
+        let frame = job.scene.frame();
+        ctx.preview(GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy: composite(&frame.source.occupancy, &grid, &Region::full(), &frame.painted),
+            report: report.clone(),
+        });
+        Ok(())
     }
 
     fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {

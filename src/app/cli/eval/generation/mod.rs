@@ -4,6 +4,7 @@
 mod agreement;
 mod distribution;
 mod follow;
+mod given;
 mod redrawn;
 mod row;
 mod table;
@@ -27,6 +28,7 @@ use crate::generation::world::voxelize::{Vertical, complete};
 use crate::scene::{Scene, VoxelGrid, draft};
 use agreement::Agreement;
 use follow::Follow;
+use given::Given;
 use redrawn::Redrawn;
 use row::{ROWS, Row, Seen};
 pub(super) use table::table;
@@ -49,6 +51,7 @@ struct Measured {
     redrawn: Redrawn,
     /// Of generated scenes and of worlds.
     follow: [Follow; 2],
+    given: Given,
 }
 
 impl Eval {
@@ -85,6 +88,7 @@ impl Eval {
             "generated": measured.follow[0].report(),
             "worlds": measured.follow[1].report(),
         });
+        report["background_given"] = measured.given.report();
         report["rows"] = json!({});
         for (row, (name, what)) in measured.rows.iter().zip(ROWS) {
             report["rows"][name] = row.report(&measured.rows[0], params.seed)?;
@@ -114,6 +118,7 @@ impl Eval {
             params,
         };
         let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
+        measured.given.add(&given, &truth);
         let job = Job {
             scene: Arc::new(Scene {
                 background: Arc::default(),
