@@ -446,3 +446,49 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
         refused(&[&["trade", "-o", &out], &bad[..]].concat(), says);
     }
 }
+
+/// A building raised, a row of trees deleted and a hedge drawn, by words and by a file of edits: what changes lies where
+/// those things stand, and both ways lead to one scene.
+#[test]
+fn things_beside_the_road_are_edited_by_words_and_by_edits() {
+    let dir = Folder::new();
+    let [before, worded, edited] = ["a.loom", "words.loom", "edits.loom"].map(|name| dir.path(name));
+    let new = [
+        "new",
+        "--template",
+        "straight",
+        "--setting",
+        "city",
+        "--seed",
+        "5",
+        "-o",
+        &before,
+    ];
+    assert_eq!(run(&new).1, 0);
+    let words = "raise the nearest building on the right by two storeys; delete the tree row; \
+                 add a hedge along the left side";
+    let (report, code) = run(&["prompt", words, "--base", &before, "-o", &worded]);
+    assert_eq!(code, 0, "{report:#}");
+    let edits = report["edits"].as_array().expect("a list");
+    let names = ["raise_things", "remove_things", "add_things"];
+    assert!(
+        edits.len() == 3 && names.iter().zip(edits).all(|(n, e)| e.get(n).is_some()),
+        "{report:#}"
+    );
+    let (changes, code) = run(&["diff", &before, &worded]);
+    assert_eq!((code, changes["changed_outside_region"].as_u64()), (0, Some(0)));
+    assert!(changes["voxels_changed"].as_u64() > Some(500), "{changes:#}");
+    let counts = ["added", "changed"].map(|what| changes["things"][what].as_array().map(Vec::len));
+    assert_eq!(counts, [Some(1), Some(1)]);
+    assert!(changes["things"]["removed"].as_array().map(Vec::len) > Some(2));
+    let file = dir.path("edits.json");
+    std::fs::write(&file, report["edits"].to_string()).expect("written");
+    let (report, code) = run(&["edit", &before, "--edits", &file, "--verify", "-o", &edited]);
+    assert_eq!(
+        (code, report["untouched_voxels_changed"].as_u64()),
+        (0, Some(0)),
+        "{report:#}"
+    );
+    let (changes, _) = run(&["diff", &worded, &edited]);
+    assert_eq!(changes["voxels_changed"], 0, "{changes:#}");
+}

@@ -13,7 +13,7 @@ use crate::generation::words_background::edits::{OpenBackground, ThingEdit};
 use crate::generation::words_background::wishes::scenery;
 use crate::generation::words_background::{self, NearTo, take};
 use crate::generation::world::World;
-use crate::scene::{BevLayer, Polyline, PolylineKind, Scene};
+use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
 
 /// A scene made from a description.
 pub struct Made {
@@ -86,6 +86,13 @@ pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Ma
 
 /// A scene of a layout from words; what its background lacks is added to what the road lacks.
 pub fn made(mut laid: Laid, seed: u64) -> Made {
+    let relief = &laid.road.layout.relief;
+    for b in &mut laid.placement.boxes {
+        // On a road that was kept; boxes that were kept too stand on its ground already.
+        if b.center_m.z == b.size_m.z / 2.0 {
+            b.center_m.z += relief.height_m(b.center_m.truncate());
+        }
+    }
     let boxes: BTreeMap<_, _> = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
     let (things, short) = scenery(&laid.description, &laid.road.layout, &boxes, seed);
     laid.road.missing.extend(short);
@@ -105,9 +112,33 @@ pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> EditReading {
         layout: &frame.layout,
         boxes: &frame.boxes,
     };
-    words_background::edits::read_edit(prompt, &open, seed, |rest| {
+    let mut reading = words_background::edits::read_edit(prompt, &open, seed, |rest| {
         crate::generation::text::edit::read_edit(rest, &open_scene(scene), seed)
-    })
+    });
+    put_on_ground(&mut reading.edits, frame);
+    reading
+}
+
+/// Words place things on level ground: what they add stands on the ground of the frame, what they move keeps its height
+/// above it.
+fn put_on_ground(edits: &mut [TextEdit], frame: &Frame) {
+    let relief = &frame.layout.relief;
+    if relief.is_flat() {
+        return;
+    }
+    let ground_m = |center_m: glam::DVec3| relief.height_m(center_m.truncate());
+    for edit in edits {
+        match edit {
+            TextEdit::Add { object } | TextEdit::Replace { object, .. } => {
+                object.center_m.z = ground_m(object.center_m) + object.size_m.z / 2.0;
+            }
+            TextEdit::Move { id, center_m, .. } => {
+                let was_m = frame.boxes.get(id).map_or(0.0, |b| ground_m(b.center_m));
+                center_m.z += ground_m(*center_m) - was_m;
+            }
+            _ => {}
+        }
+    }
 }
 
 /// All edits of a reading: those of the background after those of boxes and map.
@@ -239,4 +270,45 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
     }
     out.extend(made.road.missing.iter().cloned());
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::editor::Document;
+    use crate::scene::{Relief, SceneBox};
+
+    /// What words add or move on a grade stands on its ground.
+    #[test]
+    fn words_know_the_ground() {
+        let description = read("a parked car 12 m ahead, a bus 25 m ahead")
+            .expect("a scene")
+            .description;
+        let mut scene = make("", &description, 3, &How::default()).scene;
+        let frame = Arc::make_mut(&mut scene.frames[0]);
+        frame.layout.relief = Relief::from_fn(|p| 0.06 * p.x);
+        let above_m = |frame: &Frame, b: &SceneBox| {
+            b.center_m.z - b.size_m.z / 2.0 - frame.layout.relief.height_m(b.center_m.truncate())
+        };
+        for b in frame.boxes.values_mut() {
+            b.center_m.z += 0.06 * b.center_m.x;
+        }
+        let reading = read_edit(
+            "add a truck 18 m ahead; move the bus 5 m back; replace the car with a van",
+            &scene,
+            1,
+        );
+        let edits = all_edits(&reading);
+        assert!(edits.len() >= 3, "{reading:?}");
+        let mut document = Document::new(scene);
+        document.apply_all("Words", &edits).expect("sound edits");
+        let frame = document.scene().frame().clone();
+        assert!(frame.boxes.len() >= 3);
+        for b in frame.boxes.values() {
+            let above_m = above_m(&frame, b);
+            assert!(above_m.abs() < 0.15, "{:?} {above_m} m above the ground", b.class);
+        }
+    }
 }

@@ -114,6 +114,44 @@ impl Relief {
         low * (1.0 - ty) + high * ty
     }
 
+    /// How far along a ray the ground is met, in lengths of `dir`, within `limit` of them; `None` where it is not, where the
+    /// ray begins below it, and for NaN. Outside the grid the ground goes on level.
+    pub fn met_by(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
+        if self.is_flat() {
+            let t = -origin.z / dir.z;
+            return (t >= 0.0 && t <= limit).then_some(t);
+        }
+        let above_m = |t: f64| {
+            let p = origin + dir * t;
+            p.z - self.height_m(p.truncate())
+        };
+        let unit = 1.0 / dir.length();
+        let mut gap_m = above_m(0.0);
+        if !(gap_m >= 0.0 && unit.is_finite() && limit.is_finite()) {
+            return None;
+        }
+        let mut t = 0.0;
+        while t < limit {
+            // Half of the height above the ground: no ground rises more steeply over a voxel than a wall, which is met then.
+            let next = (t + unit * (gap_m / 2.0).max(GridSpec::VOXEL_M / 2.0)).min(limit);
+            gap_m = above_m(next);
+            if gap_m < 0.0 {
+                let (mut near, mut far) = (t, next);
+                for _ in 0..20 {
+                    let middle = (near + far) / 2.0;
+                    if above_m(middle) < 0.0 {
+                        far = middle;
+                    } else {
+                        near = middle;
+                    }
+                }
+                return Some(near);
+            }
+            t = next;
+        }
+        None
+    }
+
     /// Upward unit normal of the ground at a point of the ego frame.
     pub fn normal(&self, p: DVec2) -> DVec3 {
         if self.is_flat() {
@@ -157,6 +195,33 @@ impl Relief {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rays_meet_the_ground_where_it_is() {
+        let origin = DVec3::new(0.0, 0.0, 1.5);
+        let down = DVec3::new(1.0, 0.0, -0.1);
+        assert_eq!(Relief::FLAT.met_by(origin, down, 100.0), Some(15.0));
+        assert_eq!(Relief::FLAT.met_by(origin, down, 10.0), None);
+        assert_eq!(Relief::FLAT.met_by(origin, DVec3::X, 100.0), None);
+        // On a grade of 5 % it is met at 1.5 = (0.1 + 0.05) t.
+        let grade = Relief::from_fn(|p| 0.05 * p.x);
+        let t = grade.met_by(origin, down, 100.0).expect("ground ahead");
+        assert!((t - 10.0).abs() < 1e-3, "{t}");
+        assert_eq!(
+            grade.met_by(DVec3::new(10.0, 0.0, 0.2), down, 100.0),
+            None,
+            "it begins below"
+        );
+        for bad in [f64::NAN, f64::INFINITY, 0.0] {
+            assert_eq!(grade.met_by(origin, DVec3::splat(bad), 100.0), None);
+        }
+        // A wall 3 m high, a column thick, is not jumped over.
+        let wall = Relief::from_fn(|p| if (20.0..20.5).contains(&p.x) { 3.0 } else { 0.01 });
+        let t = wall
+            .met_by(origin, DVec3::new(1.0, 0.0, -0.01), 100.0)
+            .expect("a wall");
+        assert!((19.0..20.6).contains(&t), "{t}");
+    }
 
     #[test]
     fn a_slope_is_read_back_between_and_beyond_the_columns() {

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::scene::{
-    BevLayer, BevLayout, Camera, Class, GridSpec, PerspectiveMap, PolylineKind, Pose, SceneBox,
+    BevLayer, BevLayout, Camera, Class, GridSpec, PerspectiveMap, PolylineKind, Pose, Relief, SceneBox,
 };
 
 /// Width of a painted line on the ground, m.
@@ -54,7 +54,7 @@ const EDGES: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
-/// The maps of one camera at `width` x `height` pixels (0 gives an empty map). The ground lies at z = 0.
+/// The maps of one camera at `width` x `height` pixels (0 gives an empty map). The ground lies at the height of the layout's relief.
 pub fn render<'a>(
     layout: &BevLayout,
     boxes: impl Iterator<Item = &'a SceneBox>,
@@ -66,7 +66,8 @@ pub fn render<'a>(
     canvas.ground(layout);
     for line in layout.polylines.iter() {
         if let Some(channel) = line_channel(line.kind) {
-            canvas.line(&line.points_m, line.kind == PolylineKind::PedCrossing, channel);
+            let closed = line.kind == PolylineKind::PedCrossing;
+            canvas.line(&line.points_m, closed, &layout.relief, channel);
         }
     }
     // Far boxes first, so that edges of near ones end up on top.
@@ -128,11 +129,10 @@ impl Canvas {
         for i in 0..self.channels.len() {
             let (u, v) = ((i % self.width) as f64 + 0.5, (i / self.width) as f64 + 0.5);
             let ray = self.ego_from_camera.rotation * DVec3::new((u - cx) / fx, (v - cy) / fy, 1.0);
-            let depth_m = -origin.z / ray.z;
-            // Written so that NaN fails too.
-            if !(depth_m > NEAR_M && depth_m < FAR_M) {
+            let met = layout.relief.met_by(origin, ray, FAR_M);
+            let Some(depth_m) = met.filter(|depth_m| *depth_m > NEAR_M) else {
                 continue;
-            }
+            };
             let p = origin + ray * depth_m;
             let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
                 continue;
@@ -145,7 +145,7 @@ impl Canvas {
     }
 
     /// A painted line as quads on the ground.
-    fn line(&mut self, points: &[DVec2], closed: bool, channel: u32) {
+    fn line(&mut self, points: &[DVec2], closed: bool, relief: &Relief, channel: u32) {
         let n = points.len();
         let count = if closed && n > 2 { n } else { n.saturating_sub(1) };
         for i in 0..count {
@@ -160,7 +160,7 @@ impl Canvas {
             for piece in 0..pieces {
                 let at = |k: usize| a + along * (k as f64 / pieces as f64);
                 let (p, q) = (at(piece), at(piece + 1));
-                let quad = [p + side, q + side, q - side, p - side].map(|p| p.extend(0.0));
+                let quad = [p + side, q + side, q - side, p - side].map(|p| p.extend(relief.height_m(p)));
                 self.polygon(&quad, channel);
             }
         }
@@ -322,6 +322,29 @@ mod tests {
         assert_eq!((ys.clone().min(), ys.max()), (Some(90), Some(119)));
         assert_eq!(covered.len(), 40 * 30);
         assert!(map.edges.iter().filter(|e| **e > 0).count() > 120);
+    }
+
+    /// On a grade of 10 % a line runs on to where level ground would have ended at the horizon.
+    #[test]
+    fn lines_and_road_follow_the_relief() {
+        let mut layout = BevLayout::default();
+        layout.relief = Relief::from_fn(|p| 0.1 * p.x.max(0.0));
+        for (x, y) in (100..200).flat_map(|x| (95..105).map(move |y| (x, y))) {
+            layout.set(BevLayer::DrivableArea, x, y, true);
+        }
+        layout.polylines = vec![Polyline {
+            kind: PolylineKind::LaneDivider,
+            points_m: vec![DVec2::new(1.0, 0.0), DVec2::new(39.0, 0.0)],
+        }]
+        .into();
+        let map = render(&layout, [].into_iter(), &ahead(), 320, 180);
+        let top =
+            |bit: u32| (0..180).find(|row| (0..320).any(|x| map.channels[row * 320 + x] >> bit & 1 == 1));
+        // At 39 m the ground lies at 3.9 m, 2.4 m above the camera: 12 rows above the horizon, row 90.
+        for bit in [1, DRIVABLE] {
+            let row = top(bit).expect("seen");
+            assert!((76..=79).contains(&row), "bit {bit}: row {row}");
+        }
     }
 
     #[test]

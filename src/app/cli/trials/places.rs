@@ -30,10 +30,11 @@ pub fn on_free_road(frame: &Frame, class: Class, moved: Option<SceneBox>, seed: 
         let lane = lanes.get(draw.below(lanes.len()))?;
         let k = draw.below(lane.points_m.len().saturating_sub(1));
         let (a, b) = (*lane.points_m.get(k)?, *lane.points_m.get(k + 1)?);
+        let ground_m = frame.layout.relief.height_m(a);
         let placed = SceneBox {
             id: moved.map_or(BoxId(0), |b| b.id),
             class,
-            center_m: a.extend(size_m.z / 2.0),
+            center_m: a.extend(ground_m + size_m.z / 2.0),
             size_m,
             yaw_rad: (b - a).to_angle(),
             velocity_mps: glam::DVec2::ZERO,

@@ -11,7 +11,7 @@ use crate::generation::metrics::invented::Invented;
 use crate::generation::pipeline::OccPipeline;
 use crate::generation::redraw;
 use crate::generation::request::{Request, voxels_of};
-use crate::scene::{Class, Scene, SceneBox, VoxelGrid, draft};
+use crate::scene::{BevLayout, Class, Scene, SceneBox, VoxelGrid, draft};
 
 /// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and painted
 /// ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.
@@ -45,7 +45,16 @@ pub struct Brought {
 }
 
 impl Brought {
-    fn of(trial: &Trial, b: &SceneBox, source: &VoxelGrid, states: &[VoxelGrid; 3]) -> Self {
+    fn of(
+        trial: &Trial,
+        b: &SceneBox,
+        layout: &BevLayout,
+        source: &VoxelGrid,
+        states: &[VoxelGrid; 3],
+    ) -> Self {
+        let from_ground = |(x, y, layers): (usize, usize, usize)| {
+            layers - draft::ground_bin(layout, x, y).min(layers.saturating_sub(1))
+        };
         let [networks, _, shown] = states;
         // Voxels of the class in both.
         let mut both = VoxelGrid::new();
@@ -60,7 +69,7 @@ impl Brought {
                 .gone()
                 .filter(|old| old.class == b.class)
                 .map(|old| voxels_of(source, old)),
-            draft: draft::box_columns(b).iter().map(|(.., layers)| layers).sum(),
+            draft: draft::box_columns(b).into_iter().map(from_ground).sum(),
             networks: voxels_of(networks, b),
             shown: voxels_of(shown, b),
             shared: voxels_of(&both, b),
@@ -99,6 +108,8 @@ pub fn try_edit(
     Ok(Tried {
         reached: [0, 1, 2].map(|i| trial.judge(source, &states[i])),
         invented: [0, 1, 2].map(|i| Invented::of_request(&request, &frame, &states[i], &region)),
-        brought: trial.filled().map(|b| Brought::of(trial, b, source, &states)),
+        brought: trial
+            .filled()
+            .map(|b| Brought::of(trial, b, &frame.layout, source, &states)),
     })
 }
