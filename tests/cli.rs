@@ -407,6 +407,19 @@ fn occ3d_frames_are_scenes_and_training_data() {
     assert_eq!(kinds["remove"]["shown"]["invented"]["n"], 1, "{report}");
     assert_eq!(report["files"], 1);
 
+    // Simulated labels as such files, with masks; a second run keeps them.
+    let made = dir.path("made");
+    let args = [
+        "dataset", "occ3d", "--frames", "2", "--seed", "8", "-o", &made, "--json",
+    ];
+    assert_eq!(json(&sceneloom(&args))["frames"], 2);
+    assert_eq!(json(&sceneloom(&args))["bytes"], 0);
+    let frame = occ3d::load(&Path::new(&made).join("00001/labels.npz")).expect("a frame");
+    let [lidar, camera] = [frame.lidar_observed, frame.camera_observed].map(|m| m.expect("a mask"));
+    let count = |mask: &[bool]| mask.iter().filter(|seen| **seen).count();
+    assert!(frame.labels.count_set() > 5000 && count(&camera) > 1000);
+    assert!(count(&lidar) > count(&camera) && camera.iter().zip(&lidar).all(|(c, l)| *l || !*c));
+
     refused(
         &["dataset", "occupancy", "--from", &dir.path("none"), "-o", &shards],
         &["none"],

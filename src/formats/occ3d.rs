@@ -1,6 +1,6 @@
 //! Occ3D-nuScenes labels: `labels.npz` with `semantics`, `mask_lidar`, `mask_camera`, each
 //! [200, 200, 16], index `[x][y][z]`, ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
-//! Written with `semantics` alone. Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
+//! A scene is written with `semantics` alone. Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files).
 
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -125,12 +125,27 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
 
 /// Labels as an npz file with the array `semantics`, compressed; equal labels give equal bytes.
 pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
-    npz::to_bytes(&[npz::Array {
-        name: "semantics",
+    arrays_to_bytes(labels, [None, None])
+}
+
+/// The same with the masks that the frame has.
+pub fn frame_to_bytes(frame: &Occ3dFrame) -> Vec<u8> {
+    let masks = [&frame.lidar_observed, &frame.camera_observed];
+    arrays_to_bytes(&frame.labels, masks.map(Option::as_deref))
+}
+
+fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2]) -> Vec<u8> {
+    let array = |name, bytes| npz::Array {
+        name,
         descr: "|u1",
         shape: &[GridSpec::NX, GridSpec::NY, GridSpec::NZ],
-        bytes: labels.to_dense(),
-    }])
+        bytes,
+    };
+    let mut all = vec![array("semantics", labels.to_dense())];
+    for (name, mask) in ["mask_lidar", "mask_camera"].into_iter().zip(masks) {
+        all.extend(mask.map(|mask| array(name, mask.iter().map(|seen| u8::from(*seen)).collect())));
+    }
+    npz::to_bytes(&all)
 }
 
 /// Values of an array: as they lie in the file if they are bytes, which is the usual case and much faster.
@@ -273,6 +288,14 @@ mod tests {
         let bytes = to_bytes(&labels);
         assert!(is_npz(&bytes) && !is_npz(b"PK") && bytes == to_bytes(&labels));
         assert_eq!(read(&bytes).expect("a frame").labels, labels);
+        let masks = [3, 7].map(|n| Some((0..GridSpec::VOXELS).map(|i| i % n == 0).collect()));
+        let [lidar_observed, camera_observed] = masks;
+        let frame = Occ3dFrame {
+            labels: labels.clone(),
+            lidar_observed,
+            camera_observed,
+        };
+        assert_eq!(read(&frame_to_bytes(&frame)).expect("a frame"), frame);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 
+use super::dataset_occ3d;
 use super::progress::Progress;
 use super::{Common, Outcome, output};
 use crate::app::memory;
@@ -18,8 +19,9 @@ use crate::generation::dataset::{self, DatasetReport, OccupancyFrame, occupancy_
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Dataset {
-    /// What the frames hold; `memory` writes the bank of remembered scenes instead.
-    #[arg(value_parser = ["occupancy", "lidar", "layout", "text", "memory"])]
+    /// What the frames hold, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
+    /// `memory` the bank of remembered scenes.
+    #[arg(value_parser = ["occupancy", "lidar", "layout", "text", "occ3d", "memory"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -96,6 +98,12 @@ impl Dataset {
             "text" => {
                 let make = |i: usize| anyhow::Ok(text_frame(self.seed, i as u64, |seed| roads.layout(seed)));
                 dataset::write(&self.output, frames, make, step)
+            }
+            "occ3d" => {
+                let layouts = |seed| roads.layout(seed);
+                dataset_occ3d::write(&self.output, frames, self.seed, layouts, |done| {
+                    step(done);
+                })
             }
             "memory" => self.memory(frames),
             _ => dataset::write(&self.output, frames, make, step),

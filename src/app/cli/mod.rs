@@ -2,6 +2,7 @@
 
 mod check;
 mod dataset;
+mod dataset_occ3d;
 mod demo;
 mod diff;
 mod doctor;

@@ -5,8 +5,9 @@ use glam::{DVec2, DVec3};
 
 use crate::generation::world::draw::{Draw, hash, noise};
 use crate::generation::world::{Surface, World};
+use crate::scene::background::Facade;
 use crate::scene::solid::{Shape, Solid};
-use crate::scene::{BevLayer, Class, GridSpec};
+use crate::scene::{BevLayer, Class, Form, GridSpec};
 
 /// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.
 pub const DIFFUSE_MOST: f64 = 100.0;
@@ -180,8 +181,9 @@ impl<'a> Materials<'a> {
                 let tall = met
                     .solid
                     .is_some_and(|s| s.reach().z > 1.8 && s.reach().truncate().max_element() > 2.5);
+                let [wide, high] = self.glazed(surface.instance);
                 let [window, pane] = [
-                    (along / 3.0).rem_euclid(1.0) < 0.4 && (p.z / 3.0 - 0.3).rem_euclid(1.0) < 0.45,
+                    (along / 3.0).rem_euclid(1.0) < wide && (p.z / 3.0 - 0.3).rem_euclid(1.0) < high,
                     surface.normal.z.abs() < 0.3,
                 ];
                 if tall && window && pane {
@@ -233,6 +235,18 @@ impl<'a> Materials<'a> {
         }
     }
 
+    /// Shares of a facade's length and of each storey that are windows.
+    fn glazed(&self, instance: u32) -> [f64; 2] {
+        let thing = self
+            .world
+            .zip(World::thing_of(instance))
+            .and_then(|(world, id)| world.background.get(id));
+        match thing.map(|t| &t.form) {
+            Some(Form::Building(b)) if b.facade == Facade::Glass => [0.9, 0.8],
+            _ => [0.4, 0.45],
+        }
+    }
+
     fn is_painted(&self, p: DVec2) -> bool {
         let painted = BevLayer::PedCrossing.bit()
             | BevLayer::LaneDivider.bit()
@@ -267,4 +281,60 @@ pub fn range_sigma_m(class: Class, range_m: f64) -> f64 {
 /// About normal: four uniform numbers; bounded, so that no draw is absurd.
 pub fn gaussian(draw: &mut Draw) -> f64 {
     (draw.unit() + draw.unit() + draw.unit() + draw.unit() - 2.0) * 3f64.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::scene::background::{Building, Roof};
+    use crate::scene::{Background, BevLayout};
+
+    /// Half of what meets a wall of glass is mirrored at a slant, a fifth of what meets one with windows.
+    #[test]
+    fn glass_facades_mirror() {
+        let share = |facade| {
+            let mut background = Background::default();
+            let corners = [[10.0, -8.0], [20.0, -8.0], [20.0, 8.0], [10.0, 8.0]];
+            background.add(Form::Building(Building {
+                outline_m: corners.map(DVec2::from).to_vec(),
+                height_m: 9.0,
+                roof: Roof::Flat,
+                facade,
+            }));
+            let world = World::with_background(BevLayout::default(), BTreeMap::new(), background, 4);
+            let materials = Materials::new(&world);
+            let (mut panes, mut hits) = (0, 0);
+            for i in 0..2000 {
+                let [across, up] = [
+                    f64::from(i % 50) / 50.0 - 0.5,
+                    f64::from(i / 50) / 40.0 * 0.5 + 0.05,
+                ];
+                let dir = DVec3::new(1.0, across, up * 0.8).normalize();
+                let origin = DVec3::new(0.0, 0.0, 1.8);
+                let Some(hit) = world
+                    .cast(origin, dir, 40.0)
+                    .filter(|h| h.class == Class::Manmade)
+                else {
+                    continue;
+                };
+                let at = origin + dir * hit.range_m;
+                let met = Met {
+                    class: hit.class,
+                    surface: &world.surface(&hit, at),
+                    solid: hit.solid.and_then(|i| world.solids().get(i as usize)),
+                    at,
+                    range_m: hit.range_m,
+                    cosine: 0.8,
+                };
+                hits += 1;
+                panes += usize::from(materials.of(&met, 0.5).mirror > 0.5);
+            }
+            assert!(hits > 500, "{hits}");
+            panes as f64 / hits as f64
+        };
+        let [plain, glass] = [Facade::Plain, Facade::Glass].map(share);
+        assert!((0.08..0.35).contains(&plain) && glass > 0.5, "{plain} {glass}");
+    }
 }

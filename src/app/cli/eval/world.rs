@@ -51,6 +51,12 @@ impl Targets {
     }
 }
 
+/// Names of the figures of [`Targets::compare`] that lie outside their range.
+pub(super) fn outside(rows: &[Value]) -> Vec<&Value> {
+    let not_inside = |row: &&Value| row["inside"] == json!(false);
+    rows.iter().filter(not_inside).map(|row| &row["metric"]).collect()
+}
+
 impl Eval {
     /// Statistics of simulated labels; the bar is the share of figures inside their accepted range.
     pub(super) fn world(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
@@ -81,6 +87,7 @@ impl Eval {
         let share = inside as f64 / of as f64;
         let (complete, sound) = self.world_complete(progress);
         let report = json!({
+            "outside": outside(&rows),
             "statistics": rows,
             "lidar": lidar,
             "complete_worlds": complete,

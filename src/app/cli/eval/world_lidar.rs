@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::world::Targets;
+use super::world::{Targets, outside};
 use super::{Eval, TEST_SEED};
 use crate::app::cli::progress::Progress;
 use crate::generation::dataset::world_of;
@@ -46,11 +46,6 @@ impl Eval {
             }
         }
         let (rows, inside) = lidar_rows(&sums)?;
-        let outside: Vec<&Value> = rows
-            .iter()
-            .filter(|row| row["inside"] == json!(false))
-            .map(|row| &row["metric"])
-            .collect();
         let rings: Vec<Value> = (0..pattern.elevations_deg.len())
             .map(|ring| {
                 let [own, none] = sums.ring(ring).map(|v| (v * 1e4).round() / 1e4);
@@ -60,7 +55,7 @@ impl Eval {
         // NaN, with a single world or no lost echo, is null in JSON.
         let auc = sums.loss_auc();
         let report = json!({
-            "outside": outside,
+            "outside": outside(&rows),
             "lost_auc": auc.is_finite().then_some((auc * 1e4).round() / 1e4),
             "statistics": rows,
             "rings": rings,

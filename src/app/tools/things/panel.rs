@@ -27,7 +27,7 @@ pub const FACADES: [(Facade, &str, &str); 5] = [
         "Arcade",
         "a ground floor behind columns; four corners only",
     ),
-    (Facade::Glass, "Glass", ""),
+    (Facade::Glass, "Glass", "mirrors a LiDAR's pulses at a slant"),
 ];
 /// Names of trees.
 pub const TREES: [(TreeKind, &str, &str); 4] = [
