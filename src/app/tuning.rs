@@ -21,7 +21,7 @@ const REMEMBERED: usize = 9;
 /// Tokens of an edit of one vehicle.
 const TYPICAL_TOKENS: f64 = 36.0;
 
-/// One line: what a stop is foretold to take and to miss.
+/// One line: what a stop is foretold to take, to miss and to invent.
 pub fn foretold(stop: &Stop, wall_s: f64) -> String {
     let time = seconds(wall_s);
     if stop.error.high == 0.0 {
@@ -29,7 +29,11 @@ pub fn foretold(stop: &Stop, wall_s: f64) -> String {
     }
     let [low, high] = stop.error_of_one.map(percent);
     let middle = percent(stop.error.median);
-    format!("{time}  ·  {middle} of its voxels differ ({low} to {high})")
+    let invented = stop.invented.map_or(String::new(), |n| match n {
+        n if n < 0.05 => "  ·  invents nothing".into(),
+        n => format!("  ·  invents {n:.1} voxels"),
+    });
+    format!("{time}  ·  {middle} of its voxels differ ({low} to {high}){invented}")
 }
 
 /// What an edit did and cost, beside what was foretold.

@@ -14,6 +14,7 @@ use super::settings::Setting;
 use crate::app::cli::output::peak_rss_mb;
 use crate::generation::composite::label_hash;
 use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
+use crate::generation::metrics::invented::Invented;
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::model::{LATENT, OccModels};
 use crate::generation::pipeline::OccPipeline;
@@ -45,6 +46,9 @@ pub struct Outcome {
     pub miou: f64,
     /// Relative RMS difference of the latents in the region's cells.
     pub latent_error: f64,
+    /// Voxels above the ground that are in neither the source nor the request.
+    #[serde(default)]
+    pub invented: f64,
     /// Share of voxels changed along the inner border of the region.
     pub seam: f64,
     /// Must be 0.
@@ -189,6 +193,10 @@ impl Bench {
             error_of_occupied: differ as f64 / occupied.max(1) as f64,
             miou: confusion.mean_iou().0.unwrap_or(1.0),
             latent_error,
+            invented: match params.region {
+                RegionMode::Full => 0.0, // all of it is new
+                RegionMode::Auto => Invented::count(case.after.frame(), result, &region).total() as f64,
+            },
             seam: report.seam_change_share,
             untouched_voxels_changed: report.untouched_voxels_changed,
             untouched_hash: outside,

@@ -76,6 +76,7 @@ impl Row {
             "error_of_occupied": bootstrap_median(&self.all(|o| o.error_of_occupied), 3),
             "miou": bootstrap_median(&self.all(|o| o.miou), 4),
             "latent_error": bootstrap_median(&self.all(|o| o.latent_error), 5),
+            "invented_voxels": mean(&|o| o.invented),
             "seam_change_share": mean(&|o| o.seam),
             "untouched_voxels_changed": self.outcomes.iter().map(|o| o.untouched_voxels_changed).sum::<usize>(),
             "failed": self.outcomes.iter().filter(|o| o.error.is_infinite()).count(),
@@ -111,8 +112,8 @@ pub(super) fn sensor_json(m: &Measured) -> Value {
 /// The report for a person.
 pub(super) fn table(report: &Value) -> String {
     let mut lines = vec![format!(
-        "{:<44} {:>9} {:>19} {:>9}",
-        "setting", "time", "differs (95 %)", "memory"
+        "{:<44} {:>9} {:>19} {:>9} {:>9}",
+        "setting", "time", "differs (95 %)", "invented", "memory"
     )];
     let points = report["points"].as_array().cloned().unwrap_or_default();
     let mut part = String::new();
@@ -135,10 +136,13 @@ pub(super) fn table(report: &Value) -> String {
         };
         let front = if p["on_front"] == true { "*" } else { " " };
         lines.push(format!(
-            "{front} {:<42} {:>9} {:>19} {:>6.0} MB",
+            "{front} {:<42} {:>9} {:>19} {:>9} {:>6.0} MB",
             p["name"].as_str().unwrap_or(""),
             plot::seconds(number(&p["wall_s"]["median"])),
             error,
+            p["invented_voxels"]
+                .as_f64()
+                .map_or(String::new(), |n| format!("{n:.1}")),
             number(&p["peak_rss_mb"]),
         ));
     }

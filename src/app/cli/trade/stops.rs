@@ -10,7 +10,7 @@ use crate::app::trade::cases;
 use crate::app::trade::edits::Outcome;
 use crate::app::trade::load::{Load, machine};
 use crate::generation::job::GenParams;
-use crate::generation::metrics::stats::{median, quantile};
+use crate::generation::metrics::stats::{mean_ci95, median, quantile};
 use crate::generation::model::OccModels;
 use crate::generation::trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
 
@@ -71,6 +71,7 @@ impl Trade {
                     knobs: StopKnobs::of(&row.setting.params),
                     error: placed.error,
                     error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
+                    invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
                     cost,
                     invert_s: median(&row.all(|o| o.invert_s)),
                     probe: row
@@ -105,6 +106,7 @@ impl Trade {
                 knobs: StopKnobs::of(&reference),
                 error: none,
                 error_of_one: [0.0, 0.0],
+                invented: None,
                 cost: Cost {
                     fixed_s: total + step * (steps - 10.0),
                     per_token_s: 0.0,
