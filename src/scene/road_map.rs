@@ -1,6 +1,8 @@
 //! A layout as a driver reads it: whole lanes and what they are to the ego vehicle, crossings, junctions, distances to
 //! kerbs. Everything that places boxes on a layout, or judges where they stand, asks here.
 
+use std::sync::OnceLock;
+
 use glam::DVec2;
 
 use super::distance::{nearest_source, signed_distance_m};
@@ -67,9 +69,9 @@ pub struct RoadMap {
     /// Where the ego's side of the road ends and the other begins, as an offset from the ego lane (left is positive), m.
     pub middle_m: f64,
     cells: Vec<u32>,
-    distance_m: [Vec<f32>; AREAS.len()],
-    nearest: Option<Vec<u32>>,  // cell with the nearest lane sample
-    sample_of: Vec<(u32, u32)>, // lane and point of a cell's sample
+    distance_m: [OnceLock<Vec<f32>>; AREAS.len()], // when first asked for
+    nearest: Option<Vec<u32>>,                     // cell with the nearest lane sample
+    sample_of: Vec<(u32, u32)>,                    // lane and point of a cell's sample
 }
 
 /// Layers whose borders are measured.
@@ -90,7 +92,6 @@ impl RoadMap {
             None => (-40..=40).map(|x| DVec2::new(f64::from(x), 0.0)).collect(),
         };
         let middle_m = assign_roles(&mut lanes, ego_lane, &axis);
-        let distance_m = AREAS.map(|layer| signed_distance_m(|c| layout.cells()[c] & layer.bit() != 0));
         let mut sample_of = vec![(u32::MAX, 0); GridSpec::COLUMNS];
         for (i, lane) in lanes.iter().enumerate() {
             for (k, p) in lane.points_m.iter().enumerate() {
@@ -122,7 +123,7 @@ impl RoadMap {
             junctions_m,
             middle_m,
             cells: layout.cells().to_vec(),
-            distance_m,
+            distance_m: Default::default(),
             nearest,
             sample_of,
         }
@@ -149,8 +150,12 @@ impl RoadMap {
 
     /// Distance to the border of an area (0 road, 1 car park, 2 walkway, 3 crossing), m: negative inside.
     pub fn from_area_m(&self, area: usize, p: DVec2) -> f64 {
-        let cell = Self::column(p).zip(self.distance_m.get(area));
-        cell.map_or(1000.0, |(c, d)| f64::from(d[c]))
+        let (Some(cell), Some(kept)) = (Self::column(p), self.distance_m.get(area)) else {
+            return 1000.0;
+        };
+        let bit = AREAS[area].bit();
+        let distances = kept.get_or_init(|| signed_distance_m(|c| self.cells[c] & bit != 0));
+        f64::from(distances[cell])
     }
 
     /// The nearest place on any lane, found through the nearest sample: exact to a few decimetres.

@@ -132,10 +132,11 @@ impl Ground {
 
 fn classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
     let has = |cell: u32, layer: BevLayer| cell & layer.bit() != 0;
-    let to_road = scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea));
     let mut draw = Draw::new(seed, "ground");
     // Some verges are paved (plazas, traffic islands): "other flat" in nuScenes.
-    let paved = draw.chance(0.25);
+    let to_road = draw
+        .chance(0.25)
+        .then(|| scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea)));
     let mut out = Vec::with_capacity(GridSpec::COLUMNS);
     for (c, &cell) in layout.cells().iter().enumerate() {
         out.push(
@@ -143,7 +144,7 @@ fn classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
                 Class::DriveableSurface
             } else if has(cell, BevLayer::Walkway) || has(cell, BevLayer::PedCrossing) {
                 Class::Sidewalk
-            } else if paved && to_road[c] < 8.0 {
+            } else if to_road.as_ref().is_some_and(|d| d[c] < 8.0) {
                 Class::OtherFlat
             } else {
                 Class::Terrain

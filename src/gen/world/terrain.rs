@@ -109,6 +109,9 @@ impl Terrain {
                 // The valley ends in slopes ahead and behind.
                 rise *= ((valley - p.x.abs()) / 8.0 + 1.0).clamp(0.0, 1.0);
             }
+            if away_m == 0.0 {
+                return road(p) - at_ego;
+            }
             let uneven = 0.75 + 0.25 * noise(seed ^ 0xba2c, p.x / 12.0, p.y / 12.0);
             let rough = wave * (away_m / 8.0).min(1.0) * 0.6 * noise(seed ^ 0x4011, p.x / 13.0, p.y / 13.0);
             road(p) - at_ego + bank * rise * uneven + rough

@@ -49,19 +49,21 @@ impl Kept {
 
     /// mIoU and IoU over all frames, per frame and per class.
     fn report(&self) -> Value {
-        let per_class: BTreeMap<&str, f64> = Class::ALL[..17]
-            .iter()
-            .filter_map(|c| Some((c.name(), (self.total.class_iou(*c)? * 1e3).round() / 1e3)))
-            .collect();
         json!({
             "miou": self.miou(),
             "iou": self.iou(),
             "classes_present": self.total.mean_iou().1,
             "miou_per_frame": with_interval(&self.miou),
             "iou_per_frame": with_interval(&self.iou),
-            "per_class": per_class,
+            "per_class": per_class(&self.total),
         })
     }
+}
+
+/// IoU of every class that occurs.
+pub(super) fn per_class(total: &Confusion) -> BTreeMap<&'static str, f64> {
+    let iou = |c: &Class| Some((c.name(), (total.class_iou(*c)? * 1e3).round() / 1e3));
+    Class::ALL[..17].iter().filter_map(iou).collect()
 }
 
 fn report(kept: &[Kept; 3]) -> Value {

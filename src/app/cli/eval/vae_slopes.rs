@@ -3,6 +3,7 @@
 use glam::DVec2;
 use serde_json::{Value, json};
 
+use super::vae::per_class;
 use crate::generation::dataset::world_of;
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::model::OccVae;
@@ -77,7 +78,7 @@ impl Slopes {
 
     /// mIoU and IoU of each grade.
     pub(super) fn report(&self) -> Value {
-        let row = |(grade, kept): (f64, &Confusion)| json!({ "grade_percent": grade * 100.0, "miou": kept.mean_iou().0, "iou": kept.occupied_iou() });
+        let row = |(grade, kept): (f64, &Confusion)| json!({ "grade_percent": grade * 100.0, "miou": kept.mean_iou().0, "iou": kept.occupied_iou(), "per_class": per_class(kept) });
         json!({
             "rows": GRADES.into_iter().zip(&self.0).map(row).collect::<Vec<_>>(),
             "worst_loss_of_miou": self.worst_loss(),

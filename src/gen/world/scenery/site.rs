@@ -11,35 +11,46 @@ use crate::scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, Scene
 
 /// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
 pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
-    let (nx, ny) = (GridSpec::NX as i64, GridSpec::NY as i64);
-    let mut d: Vec<f32> = (0..GridSpec::COLUMNS)
-        .map(|c| if set(c) { 0.0 } else { 255.0 })
-        .collect();
-    let mut relax = |x: i64, y: i64, steps: [(i64, i64, f32); 4]| {
-        let mut best = d[(x * ny + y) as usize];
-        for (dx, dy, w) in steps {
-            let (px, py) = (x + dx, y + dy);
-            if (0..nx).contains(&px) && (0..ny).contains(&py) {
-                best = best.min(d[(px * ny + py) as usize] + w);
-            }
-        }
-        d[(x * ny + y) as usize] = best;
-    };
+    const FAR: f32 = 255.0;
+    const DIAGONAL: f32 = 1.414;
+    let (nx, ny) = (GridSpec::NX, GridSpec::NY);
+    // A border of cells that are never nearest spares the loops all tests.
+    let row = ny + 2;
+    let mut d = vec![2.0 * FAR; (nx + 2) * row];
     for x in 0..nx {
         for y in 0..ny {
-            relax(
-                x,
-                y,
-                [(-1, 0, 1.0), (0, -1, 1.0), (-1, -1, 1.414), (-1, 1, 1.414)],
-            );
+            d[(x + 1) * row + y + 1] = if set(x * ny + y) { 0.0 } else { FAR };
         }
     }
-    for x in (0..nx).rev() {
-        for y in (0..ny).rev() {
-            relax(x, y, [(1, 0, 1.0), (0, 1, 1.0), (1, 1, 1.414), (1, -1, 1.414)]);
+    let mut passed = vec![0.0f32; row];
+    // Forwards from the row before, then backwards from the row after.
+    for x in 1..=nx {
+        let (before, here) = d.split_at_mut(x * row);
+        let before = &before[(x - 1) * row..];
+        let here = &mut here[..row];
+        for (y, out) in passed.iter_mut().enumerate().take(ny + 1).skip(1) {
+            let diagonal = before[y - 1].min(before[y + 1]) + DIAGONAL;
+            *out = here[y].min(before[y] + 1.0).min(diagonal);
+        }
+        for y in 1..=ny {
+            here[y] = passed[y].min(here[y - 1] + 1.0);
         }
     }
-    d
+    for x in (1..=nx).rev() {
+        let (here, after) = d.split_at_mut((x + 1) * row);
+        let here = &mut here[x * row..];
+        let after = &after[..row];
+        for (y, out) in passed.iter_mut().enumerate().take(ny + 1).skip(1) {
+            let diagonal = after[y - 1].min(after[y + 1]) + DIAGONAL;
+            *out = here[y].min(after[y] + 1.0).min(diagonal);
+        }
+        for y in (1..=ny).rev() {
+            here[y] = passed[y].min(here[y + 1] + 1.0);
+        }
+    }
+    (0..nx)
+        .flat_map(|x| d[(x + 1) * row + 1..][..ny].iter().copied())
+        .collect()
 }
 
 /// A layout with room for scenery.
@@ -109,6 +120,11 @@ impl<'a> Site<'a> {
     /// Distance to the nearest road, car park or sidewalk, m.
     pub fn paved_m(&self, p: DVec2) -> f64 {
         Self::at(&self.to_paved, p)
+    }
+
+    /// The same of a cell.
+    pub fn cell_to_paved_m(&self, cell: usize) -> f64 {
+        f64::from(self.to_paved[cell]) * GridSpec::VOXEL_M
     }
 
     /// Distance to the nearest road or car park, m.

@@ -18,6 +18,10 @@ pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
         if seen[start] {
             continue;
         }
+        // The cell's own distance differs from the blended one at its centre by rounding alone.
+        if (site.cell_to_paved_m(start) - distance_m).abs() > 0.26 {
+            continue;
+        }
         let p = GridSpec::center(start / GridSpec::NY, start % GridSpec::NY, 0).truncate();
         if (site.paved_m(p) - distance_m).abs() > 0.25 {
             continue;
