@@ -133,20 +133,29 @@ impl Region {
         for (id, now) in &frame.boxes {
             match source.boxes.get(id) {
                 Some(before) if same_solid(now, before) => unchanged.push(now),
-                before => before.into_iter().chain([now]).for_each(&mut mark),
+                _ => mark(now),
             }
         }
-        let removed = source
-            .boxes
-            .iter()
-            .filter(|(id, _)| !frame.boxes.contains_key(id));
-        removed.for_each(|(_, b)| mark(b));
+        // Columns that show a box that has left: boxes inferred from labels may overlap others.
+        let mut left = vec![false; GridSpec::COLUMNS];
+        for (id, before) in &source.boxes {
+            if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
+                mark(before);
+                box_cells(before, 0.0, |x, y| {
+                    left[x * GridSpec::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
+                });
+            }
+        }
         if !changed.contains(&true) {
             return Self::empty();
         }
         let mut columns = dilate(&changed, GridSpec::NX, halo_columns);
         for b in unchanged {
-            box_cells(b, 0.0, |x, y| columns[x * GridSpec::NY + y] = false);
+            box_cells(b, 0.0, |x, y| {
+                let i = x * GridSpec::NY + y;
+                let own = || source.occupancy.column(x, y).contains(&b.class.id());
+                columns[i] &= left[i] && !own();
+            });
             // Around it only what is visibly part of it, and not against a changed box's own ground.
             box_cells(b, OVERHANG_M, |x, y| {
                 let i = x * GridSpec::NY + y;
@@ -405,6 +414,32 @@ pub(super) mod tests {
         assert_eq!(region.bounds, Some(([0, 197], [2, 199])));
         assert_eq!(region.column_count(), 9);
         assert_eq!(region.cell_count(), 1);
+    }
+
+    /// Boxes inferred from labels are as wide as they may be: the voxels decide whose a column is.
+    #[test]
+    fn what_a_removed_box_showed_goes_below_another_box_too() {
+        let (gone, mut wide) = (car(1, 5.0, 0.0, 0.0), car(2, 5.0, 2.8, 0.0));
+        wide.class = Class::Trailer;
+        wide.size_m.y = 5.0; // over y of 0.3 to 5.3: a third of the car
+        let mut frame = frame_with(&[gone]);
+        let [x, y] = GridSpec::column_at(5.0, 0.6).expect("inside");
+        frame.occupancy.set(x, y, 4, Class::Trailer.id());
+        let boxes = [gone, wide].map(|b| (b.id, b));
+        let mut frame = Frame::new(frame.layout.clone(), boxes.into(), frame.occupancy.clone());
+        frame.boxes.remove(&gone.id);
+        let region = Region::of_edit(&frame, 2);
+        let outside: Vec<usize> = cells_of(&gone, 0.0)
+            .into_iter()
+            .filter(|c| !region.columns[*c])
+            .collect();
+        assert_eq!(
+            outside,
+            [x * GridSpec::NY + y],
+            "only where the trailer shows itself"
+        );
+        let ground_of_the_other = GridSpec::column_at(5.0, 4.0).expect("inside");
+        assert!(!region.columns[ground_of_the_other[0] * GridSpec::NY + ground_of_the_other[1]]);
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Seeded random draws of a world: one small stream per concern, so that a change in one place
 //! (one more bush) does not reshuffle another (the cars).
 
+use std::cell::Cell;
+
 /// A SplitMix64 stream (Steele, Lea and Flood 2014): tiny, fast, good enough to place trees.
 #[derive(Clone, Debug)]
 pub struct Draw(u64);
@@ -61,15 +63,41 @@ impl Draw {
 
 /// Smooth noise in -1..1 with features of about one unit: bilinear blend of hashed lattice values.
 pub fn noise(seed: u64, x: f64, y: f64) -> f64 {
-    let (fx, fy) = (x.floor(), y.floor());
-    let at = |dx: i64, dy: i64| {
-        let (ix, iy) = (fx as i64 + dx, fy as i64 + dy);
-        let h = hash(seed ^ hash(ix as u64 ^ hash(iy as u64)));
-        (h >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (smooth(x - fx), smooth(y - fy));
-    let low = at(0, 0) * (1.0 - u) + at(1, 0) * u;
-    let high = at(0, 1) * (1.0 - u) + at(1, 1) * u;
-    low * (1.0 - v) + high * v
+    Noise::new(seed).at(x, y)
+}
+
+/// The same noise for many places one after another: the corners of the last square of the lattice are kept.
+pub struct Noise {
+    seed: u64,
+    square: Cell<([f64; 2], [f64; 4])>,
+}
+
+impl Noise {
+    /// The noise of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            seed,
+            square: Cell::new(([f64::NAN; 2], [0.0; 4])),
+        }
+    }
+
+    /// Its value at a place.
+    pub fn at(&self, x: f64, y: f64) -> f64 {
+        let (fx, fy) = (x.floor(), y.floor());
+        let (mut of, mut corners) = self.square.get();
+        if of != [fx, fy] {
+            let corner = |dx: i64, dy: i64| {
+                let (ix, iy) = ((fx as i64).wrapping_add(dx), (fy as i64).wrapping_add(dy));
+                let h = hash(self.seed ^ hash(ix as u64 ^ hash(iy as u64)));
+                (h >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+            };
+            (of, corners) = ([fx, fy], [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)]);
+            self.square.set((of, corners));
+        }
+        let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
+        let (u, v) = (smooth(x - fx), smooth(y - fy));
+        let low = corners[0] * (1.0 - u) + corners[1] * u;
+        let high = corners[2] * (1.0 - u) + corners[3] * u;
+        low * (1.0 - v) + high * v
+    }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::draw::{Draw, noise};
+use super::draw::{Draw, Noise};
 use super::{BIN_M, BINS, Hit, scenery};
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Relief};
 
@@ -36,11 +36,12 @@ impl Ground {
             most + MOST_ABOVE_RELIEF_M
         };
         let classes = classes(layout, seed);
+        let (walk, open) = (Noise::new(seed), Noise::new(seed));
         let above = |(c, class): (usize, &Class)| {
             let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
             let height_m = match class {
-                Class::Sidewalk => KERB_M + 0.05 * noise(seed, p.x / 14.0, p.y / 14.0),
-                Class::Terrain => 0.08 + 0.1 * noise(seed, p.x / 9.0, p.y / 9.0),
+                Class::Sidewalk => KERB_M + 0.05 * walk.at(p.x / 14.0, p.y / 14.0),
+                Class::Terrain => 0.08 + 0.1 * open.at(p.x / 9.0, p.y / 9.0),
                 Class::OtherFlat => 0.15,
                 _ => 0.0,
             };

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::draw::{Draw, noise};
+use super::draw::{Draw, Noise};
 use super::scenery::distance_cells;
 use crate::scene::{BevLayer, BevLayout, GridSpec, Relief};
 
@@ -85,11 +85,12 @@ impl Terrain {
         let cells = layout.cells();
         let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
         let to_paved = distance_cells(|c| cells[c] & paved != 0);
+        let [long, bank_noise, rough_noise] = [0x9177, 0xba2c, 0x4011].map(|salt| Noise::new(seed ^ salt));
         let road = |p: DVec2| {
             // A parabola near the ego that turns into a straight grade.
             let along = p.x / 30.0;
             let curve = bend * ((1.0 + along * along).sqrt() - 1.0) * 2.0;
-            grade.dot(p) + curve + wave * noise(seed ^ 0x9177, p.x / 45.0, p.y / 45.0)
+            grade.dot(p) + curve + wave * long.at(p.x / 45.0, p.y / 45.0)
         };
         let at_ego = road(DVec2::ZERO);
         let stairs = Stairs::drawn(&mut draw, &to_paved);
@@ -112,8 +113,8 @@ impl Terrain {
             if away_m == 0.0 {
                 return road(p) - at_ego;
             }
-            let uneven = 0.75 + 0.25 * noise(seed ^ 0xba2c, p.x / 12.0, p.y / 12.0);
-            let rough = wave * (away_m / 8.0).min(1.0) * 0.6 * noise(seed ^ 0x4011, p.x / 13.0, p.y / 13.0);
+            let uneven = 0.75 + 0.25 * bank_noise.at(p.x / 12.0, p.y / 12.0);
+            let rough = wave * (away_m / 8.0).min(1.0) * 0.6 * rough_noise.at(p.x / 13.0, p.y / 13.0);
             road(p) - at_ego + bank * rise * uneven + rough
         })
     }
