@@ -22,7 +22,7 @@ shot 120
 at 600 500
 xdotool key u
 sleep 1
-at 119 330
+at 119 301
 shot 40
 xdotool click 1
 sleep 1
@@ -58,7 +58,7 @@ done
 sleep "${SETTLED_S:-60}"
 shot 130
 # Before and after, in every view at once.
-at 1428 778
+at 1429 793
 xdotool click 1 # versions lie behind history
 sleep 1
 at 1440 870
