@@ -209,6 +209,29 @@ fn sensors_and_views_render() {
 }
 
 #[test]
+fn scenery_is_drawn_into_a_scene_and_the_same_wish_gives_the_same_bytes() {
+    let dir = Folder::new();
+    let (scene, town, again) = (dir.scene(), dir.path("town.loom"), dir.path("again.loom"));
+    let draw = |out: &str| {
+        json(&sceneloom(&[
+            "scenery",
+            &scene,
+            "--setting",
+            "old-town",
+            "--json",
+            "-o",
+            out,
+        ]))
+    };
+    let report = draw(&town);
+    assert!(report["things"].as_u64() > Some(10), "{report}");
+    assert!(report["voxels_changed"].as_u64() > Some(1000), "{report}");
+    draw(&again);
+    let bytes = |path: &str| std::fs::read(path).expect("written");
+    assert!(bytes(&town) == bytes(&again));
+}
+
+#[test]
 fn bad_arguments_are_named() {
     let dir = Folder::new();
     let scene = dir.scene();
@@ -221,6 +244,11 @@ fn bad_arguments_are_named() {
         &["generate", &dir.path("missing.loom"), "-o", &out],
         &["missing.loom"],
     );
+    let scenery = |more: &[&str], needles: &[&str]| {
+        refused(&[&["scenery", &scene, "-o", &out], more].concat(), needles);
+    };
+    scenery(&["--green", "-1"], &["--green is -1", "0 to 4"]);
+    scenery(&["--built", "NaN"], &["--built is NaN"]);
     refused(&["generate", &scene, "--steps", "0", "-o", &out], &["steps", "0"]);
     refused(
         &["render", &scene, "--what", "smell", "-o", &dir.path("x")],

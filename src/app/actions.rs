@@ -6,6 +6,7 @@ use crate::viewport::ViewPreset;
 
 use super::command::Command;
 use super::dock::Workspace;
+use super::staged::Verdict;
 use super::state::{Tool, UiState, VoxelVerb};
 use super::tools::things::{ThingCommand, ThingTool};
 use super::tools::{PaintShape, ToolCommand, VoxelMode};
@@ -556,6 +557,25 @@ pub const ACTIONS: &[ActionDef] = &[
     action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
         Some(Command::CancelGeneration)
     }),
+    action(Generation, "scenery", "Draw scenery anew", "", |_| {
+        Some(Command::DrawScenery)
+    }),
+    action(Generation, "accept", "Accept the new result", "", |_| {
+        Some(Command::Decide(Verdict::Accept))
+    }),
+    action(Generation, "decline", "Decline the new result", "", |_| {
+        Some(Command::Decide(Verdict::Decline))
+    }),
+    action(Generation, "next_seed", "Another result: next seed", "", |_| {
+        Some(Command::Decide(Verdict::NextSeed))
+    }),
+    action(
+        Generation,
+        "stop_here",
+        "Stop generating, keep what is shown",
+        "",
+        |_| Some(Command::StopHere),
+    ),
     action(
         Generation,
         "cancel_waiting",

@@ -36,6 +36,7 @@ use super::perf::Perf;
 use super::recovery::Recovery;
 use super::sensing::Sensing;
 use super::settings::Settings;
+use super::staged::Staged;
 use super::state::{Pane, UiState};
 use super::theme;
 use super::tuning::Tuning;
@@ -152,6 +153,7 @@ pub struct SceneloomApp {
     /// What was generated so far.
     pub versions: Versions,
     pub(super) compare: Compare,
+    pub(super) staged: Option<Staged>,
     pub(super) prompt: PromptPane,
     pub(super) render_state: Option<egui_wgpu::RenderState>,
     pub(super) palette: Palette,
@@ -161,6 +163,8 @@ pub struct SceneloomApp {
     pub keymap: Keymap,
     shortcuts: Shortcuts,
     kept: (Option<PathBuf>, Settings, f64), // file of the settings, what it holds, when it was compared, s
+    pub(super) drawn_first: Option<(SceneRev, Arc<Scene>)>, // scenery that waits for its generation, and the state before
+    pub(super) words: Option<(SceneRev, Arc<Scene>)>, // the state that a sentence made, and the one before
     finished: Option<(Arc<GenResult>, Option<&'static str>)>, // came during a drag, and the label if it is a step
     preview: Option<(SceneRev, Arc<Scene>)>,
     title: String,
@@ -250,6 +254,9 @@ impl SceneloomApp {
             palette: Palette::default(),
             versions,
             compare: Compare::default(),
+            staged: None,
+            words: None,
+            drawn_first: None,
             prompt: PromptPane::default(),
             render_state,
             shortcuts: Shortcuts::default(),

@@ -26,7 +26,7 @@ pub(super) fn merged(there: Background, drawn: &Background) -> Background {
 }
 
 /// The columns that a form stands on or hangs over, grown by a margin.
-fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
+pub(super) fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
     let around = |outline_m: &[DVec2], visit: &mut dyn FnMut(usize, usize)| {
         polygon_cells(outline_m, &mut *visit);
         let ring: Vec<DVec2> = outline_m.iter().chain(outline_m.first()).copied().collect();

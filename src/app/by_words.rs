@@ -21,6 +21,7 @@ impl SceneloomApp {
         let before = self.document.settled_scene().clone();
         self.apply(step_name(words), edits);
         let after = self.document.settled_scene();
+        self.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
         let changed = changed_boxes(before.frame(), after.frame());
         let conditions = |prompt: &str| Conditions::from_prompt(prompt);
         let other_light = conditions(&before.prompt) != conditions(&after.prompt);

@@ -65,6 +65,12 @@ pub enum Command {
         /// True: everything, from fresh noise.
         full: bool,
     },
+    /// Draws what stands beside the roads anew, by rules.
+    DrawScenery,
+    /// What becomes of a result that waits.
+    Decide(super::staged::Verdict),
+    /// Ends a whole generation with what it shows now.
+    StopHere,
     /// Stops the generation that runs.
     CancelGeneration,
     /// Lets an edit that waits for its generation go.

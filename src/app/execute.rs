@@ -81,6 +81,9 @@ impl SceneloomApp {
             Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::Generate { full } => self.generate(full),
+            Command::DrawScenery => self.draw_scenery(),
+            Command::Decide(verdict) => self.decide(verdict),
+            Command::StopHere => self.stop_here(),
             Command::CancelGeneration => {
                 if let Some(running) = &mut self.live.running {
                     running.cancelled = true;
@@ -310,6 +313,9 @@ impl SceneloomApp {
         let mut params = self.live.params_for(&scene, full);
         if anew {
             self.state.tools.draw_anew(&mut params);
+        }
+        if full && self.draws_scenery_first() {
+            return self.generate_on_scenery(params);
         }
         let same = |r: &super::live::Running| r.key.rev == scene.rev && r.key.params == params;
         if !self.live.running.as_ref().is_some_and(same) {

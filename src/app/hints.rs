@@ -2,7 +2,7 @@
 
 use super::state::{Pane, Tool, UiState, VoxelVerb};
 use super::tools::things::ThingTool;
-use super::tools::{PaintShape, VoxelMode};
+use super::tools::{PaintShape, RegionShape, VoxelMode};
 use crate::editor::transform::Kind;
 
 /// One line: buttons and held keys, as they count in the view under the pointer.
@@ -22,10 +22,10 @@ pub fn hint(state: &UiState) -> String {
         Tool::Thing(tool) => thing(state, tool, over_3d),
         Tool::Region if over_3d => vec!["The region is marked in the bird's-eye view"],
         Tool::Region => vec![
-            if state.tools.region_brush {
-                "Drag paints the mark"
-            } else {
-                "Drag marks a rectangle"
+            match state.tools.region_shape {
+                RegionShape::Brush => "Drag paints the mark",
+                RegionShape::Lasso => "Drag marks what it goes around",
+                RegionShape::Rectangle => "Drag marks a rectangle",
             },
             "Shift takes away",
         ],

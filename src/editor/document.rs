@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::scene::{Scene, SceneRev, VoxelGrid};
+use crate::scene::{Background, Scene, SceneRev, VoxelGrid};
 
 use super::edit::{self, Edit, EditError};
 
@@ -230,6 +230,24 @@ impl Document {
             return Err(Stale);
         }
         let mut scene = Scene::clone(self.settled_scene());
+        edit::adopt(scene.frame_mut(), occupancy);
+        self.push(label.into(), scene);
+        Ok(self.settled_scene().rev)
+    }
+
+    /// The same, with other things beside the roads, whose voxels are in the occupancy.
+    pub fn adopt_with_things(
+        &mut self,
+        label: impl Into<Label>,
+        rev: SceneRev,
+        occupancy: VoxelGrid,
+        background: Background,
+    ) -> Result<SceneRev, Stale> {
+        if self.drag.is_some() || self.settled_scene().rev != rev {
+            return Err(Stale);
+        }
+        let mut scene = Scene::clone(self.settled_scene());
+        scene.background = Arc::new(background);
         edit::adopt(scene.frame_mut(), occupancy);
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)

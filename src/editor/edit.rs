@@ -118,6 +118,12 @@ pub enum Edit {
         /// What and where from now on, world frame.
         form: Form,
     },
+    /// Takes man-made and plant voxels out that belong to no thing, and lays the ground where they stood. Painted voxels stay.
+    ClearScenery {
+        /// Where; everywhere if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shape: Option<Shape>,
+    },
     /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
     AddPolylines {
         /// What they mean and where they run, ego frame, m; at least two vertices each.
@@ -295,6 +301,10 @@ impl Edit {
                     scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }
+            Self::ClearScenery { shape } => {
+                let cells = shape.as_ref().map(Shape::cells).transpose()?;
+                things::clear_scenery(scene, cells.as_deref());
+            }
             edit if edit.is_of_things() => {
                 if let Some(background) = things::changed(self, &scene.background)? {
                     things::replace_background(scene, background);
@@ -467,6 +477,7 @@ impl Edit {
             // These concern the scene, see `apply`.
             Self::SetPrompt { .. }
             | Self::SetRig { .. }
+            | Self::ClearScenery { .. }
             | Self::AddThings { .. }
             | Self::RemoveThings { .. }
             | Self::MoveThings { .. }

@@ -13,6 +13,7 @@ pub mod lane_strip;
 pub mod lanes;
 pub mod measure;
 pub mod outline;
+pub mod part;
 pub mod pick;
 pub mod pick_things;
 pub mod shape;
@@ -22,5 +23,6 @@ pub mod voxel_ops;
 
 pub use document::{Document, Stale};
 pub use edit::{Edit, EditError};
+pub use part::Part;
 pub use shape::Shape;
 pub use things::columns_between;

@@ -160,6 +160,69 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
     }
 }
 
+/// Takes voxels of scenery that belong to no thing out of columns (none: of all) of the current frame and of its source.
+pub(super) fn clear_scenery(scene: &mut Scene, cells: Option<&[[usize; 2]]>) {
+    let all = || (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
+    let cells = cells.map_or_else(|| all().collect(), <[_]>::to_vec);
+    let kept = scene.background.in_grid(&scene.frame().world_from_ego);
+    let mut frame = Frame::clone(scene.frame());
+    let source = Arc::make_mut(&mut frame.source);
+    let grids = [
+        (&mut frame.occupancy, &frame.layout),
+        (&mut source.occupancy, &source.layout),
+    ];
+    let mut changed = false;
+    for (grid, layout) in grids {
+        changed |= clear_columns(grid, layout, &frame.painted, &cells, &kept);
+    }
+    if changed {
+        *scene.frame_mut() = frame;
+    }
+}
+
+/// True if there was something to take out.
+fn clear_columns(
+    grid: &mut VoxelGrid,
+    layout: &BevLayout,
+    painted: &VoxelPaint,
+    cells: &[[usize; 2]],
+    kept: &[Thing],
+) -> bool {
+    // What the things' own forms account for, in these columns and their class.
+    let mut owned: BTreeMap<[usize; 2], [bool; GridSpec::NZ]> = BTreeMap::new();
+    for thing in kept {
+        let class = thing.form.class().id();
+        for (at, voxels) in thing.columns(layout) {
+            let own = owned.entry(at).or_default();
+            let now = grid.column(at[0], at[1]);
+            for z in 0..GridSpec::NZ {
+                own[z] |= voxels[z] != Class::FREE && (now[z] == voxels[z] || now[z] == class);
+            }
+        }
+    }
+    let mut emptied = Vec::new();
+    let mut changed = false;
+    for &[x, y] in cells {
+        let (own, locked) = (owned.get(&[x, y]), painted.column(x, y));
+        let mut column = *grid.column(x, y);
+        for z in 0..GridSpec::NZ {
+            let scenery = [Class::Manmade.id(), Class::Vegetation.id()].contains(&column[z]);
+            if scenery && locked[z] == NOT_PAINTED && !own.is_some_and(|own| own[z]) {
+                column[z] = Class::FREE;
+            }
+        }
+        if column != *grid.column(x, y) {
+            *grid.column_mut(x, y) = column;
+            changed = true;
+            if column[ground_bin(layout, x, y)] == Class::FREE {
+                emptied.push([x, y]);
+            }
+        }
+    }
+    refill_ground(grid, layout, &emptied);
+    changed
+}
+
 /// Columns of a frame, `[x * NY + y]`, whose voxels an edit of the background from `before` to `after` may change.
 pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -> Vec<bool> {
     let mut out = vec![false; GridSpec::COLUMNS];

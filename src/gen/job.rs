@@ -115,6 +115,10 @@ pub struct GenReport {
     pub ground_kept: usize,
     /// Voxels that nobody asked for on the road or in a removed box's place, and that were cleared.
     pub invented_cleared: usize,
+    /// Voxels put under crowns that hung in the air.
+    pub stems_added: usize,
+    /// Voxels that hung in the air or were of an object without a box, and were taken out.
+    pub loose_dropped: usize,
     /// Voxels that were put where no sensor of the source had looked, and that were taken out again.
     pub unobserved_kept: usize,
     /// Relative RMS error of encode, invert and sample again, where it was measured.
@@ -138,6 +142,11 @@ impl GenReport {
         let out = work(self);
         *self.wall_s.entry(stage.name()).or_default() += start.elapsed().as_secs_f64();
         out
+    }
+
+    /// Notes what hung in the air.
+    pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
+        (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
     }
 
     /// Wall time of all stages, s.

@@ -5,6 +5,7 @@ pub mod dataset;
 pub mod inversion;
 pub mod job;
 pub mod keep_clear;
+pub mod keep_grounded;
 pub mod keep_objects;
 pub mod metrics;
 pub mod model;

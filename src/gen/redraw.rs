@@ -67,9 +67,13 @@ impl RedrawMask {
     /// The cells that an upright rectangle of the ego frame touches by the centre of a column, m.
     pub fn of_rect(a_m: DVec2, b_m: DVec2) -> Self {
         let (min, max) = (a_m.min(b_m), a_m.max(b_m));
+        Self::of_outline(&[min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)])
+    }
+
+    /// The cells that an outline of the ego frame, m, goes around or touches by the centre of a column.
+    pub fn of_outline(points_m: &[DVec2]) -> Self {
         let mut mask = Self::default();
-        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-        polygon_cells(&corners, |x, y| mask.set_columns(&[[x, y]], true));
+        polygon_cells(points_m, |x, y| mask.set_columns(&[[x, y]], true));
         mask
     }
 

@@ -25,6 +25,7 @@ pub mod road_map;
 pub mod sensor_data;
 pub mod solid;
 pub mod splats;
+pub mod support;
 pub mod variants;
 pub mod waiver;
 

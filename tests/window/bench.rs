@@ -23,6 +23,8 @@ use sceneloom::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, VoxelGrid
 /// What a test tells the running job.
 pub enum Do {
     Step,
+    /// Shows a scene without anything in it.
+    Show,
     Finish,
     Fail,
 }
@@ -50,6 +52,12 @@ impl Pipeline for Scripted {
                     step += 1;
                     ctx.progress(Stage::Denoise, step, 3)?;
                 }
+                Ok(Do::Show) => ctx.preview(GenResult {
+                    key: job.key(),
+                    frame: job.scene.current,
+                    occupancy: VoxelGrid::new(),
+                    report: GenReport::default(),
+                }),
                 Ok(Do::Fail) => return Err(GenError::failed("weights are missing")),
                 Ok(Do::Finish) => break,
             }

@@ -94,6 +94,8 @@ fn a_day_of_work() {
     bench.started.recv_timeout(PATIENCE).expect("it starts");
     bench.orders.send(Do::Finish).expect("it listens");
     bench.wait_until("a version", |b| b.app().versions.list().len() == 2);
+    bench.steps(2);
+    bench.click("Accept");
     bench.key(Modifiers::SHIFT, Key::Backslash);
     assert_eq!(bench.app().state.compare, CompareMode::Wipe);
     bench.app().state.compare = CompareMode::Off;

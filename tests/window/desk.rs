@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use sceneloom::app::Command;
 use sceneloom::app::state::Pane;
+use sceneloom::app::tools::RegionShape;
 use sceneloom::editor::{Edit, Shape as Area};
 use sceneloom::formats::project;
 use sceneloom::generation::job::RegionMode;
@@ -289,7 +290,7 @@ fn a_region_is_painted_by_a_brush() {
     let mut bench = Bench::new();
     bench.off();
     bench.key(Modifiers::NONE, Key::N);
-    bench.app().state.tools.region_brush = true;
+    bench.app().state.tools.region_shape = RegionShape::Brush;
     bench.app().state.brush_m = 1.6;
     let way = [(0.0, -10.0), (0.0, 10.0), (10.0, 10.0)].map(|(x, y)| bench.bev(x, y));
     bench.drag(&way, Modifiers::NONE);

@@ -11,6 +11,7 @@ mod overdraw;
 mod recovery;
 mod sensors;
 mod shell;
+mod staged;
 mod tools;
 mod trade;
 mod views;

@@ -102,6 +102,8 @@ fn versions_are_compared_and_gone_back_to() {
         .expect("generation starts");
     bench.orders.send(Do::Finish).expect("it runs");
     bench.wait_until("versions", |b| b.app().versions.list().len() == 2);
+    bench.steps(2);
+    bench.click("Accept");
     let generated = bench.frame().occupancy.clone();
     assert!(opened != generated);
     // Held, the key shows the version before; let go, the present one.

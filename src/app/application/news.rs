@@ -7,9 +7,10 @@ use crossbeam_channel::TryRecvError;
 
 use super::{SceneloomApp, one_line};
 use crate::app::camera_views::Wanted;
-use crate::app::live::{Advice, Purpose};
+use crate::app::live::{Advice, Purpose, Running};
 use crate::app::panels::status::Receipt;
 use crate::app::panels::toasts::Level;
+use crate::app::staged::Again;
 use crate::editor::Document;
 use crate::generation::job::{GenParams, GenResult, Job, JobEvent, JobUpdate, Named};
 use crate::generation::redraw::RedrawMask;
@@ -95,7 +96,13 @@ impl SceneloomApp {
                 }
             }
             JobUpdate::Failed(error) => {
-                self.live.ended(event.id);
+                if self
+                    .live
+                    .ended(event.id)
+                    .is_some_and(|r| r.purpose == Purpose::Full)
+                {
+                    self.take_scenery_back();
+                }
                 self.preview = None;
                 self.tuning.note_failure(&error.to_string());
                 let now_s = self.now_s();
@@ -112,7 +119,10 @@ impl SceneloomApp {
                 );
             }
             JobUpdate::Superseded => {
-                if self.live.ended(event.id).is_some() {
+                if let Some(running) = self.live.ended(event.id) {
+                    if running.purpose == Purpose::Full {
+                        self.take_scenery_back();
+                    }
                     self.perf.job_ended(self.now_s(), None, "cancelled");
                 }
                 self.preview = None;
@@ -123,8 +133,11 @@ impl SceneloomApp {
     /// Takes a result into the document, if it still shows the state it was made for.
     pub(super) fn adopt(&mut self, result: &GenResult, own_step: Option<&'static str>) {
         self.preview = None;
+        let before = self.document.settled_scene().clone();
+        let drawn = self.drawn_first.take().filter(|(rev, _)| *rev == result.rev());
+        let own_step_label = own_step.filter(|_| drawn.is_none());
         // What the user asked to be drawn anew is a step of its own; what follows an edit belongs to that edit.
-        let adopted = match own_step {
+        let adopted = match own_step_label {
             Some(label) => self
                 .document
                 .adopt_as_step(label, result.rev(), result.occupancy.clone())
@@ -147,7 +160,58 @@ impl SceneloomApp {
             for note in &result.report.notes {
                 self.toasts.log(note.clone(), now_s);
             }
+            let words = self.words.take().filter(|(rev, _)| *rev == result.rev());
+            match (own_step, words) {
+                (Some(_), _) => self.stage(
+                    drawn.map_or(before, |(_, before)| before),
+                    Some(Again::Generate(Box::new(result.key.params))),
+                ),
+                (None, Some((_, before))) => self.stage(before, None),
+                (None, None) => {}
+            }
         }
+    }
+
+    /// Takes what a whole generation shows now as its result.
+    pub(in crate::app) fn stop_here(&mut self) {
+        let before = self.document.settled_scene().clone();
+        let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.rev;
+        let Some(running) = self.live.running.as_mut().filter(whole) else {
+            return;
+        };
+        let Some((_, shown)) = self.preview.take_if(|(rev, _)| *rev == before.rev) else {
+            return;
+        };
+        running.cancelled = true;
+        let params = running.key.params;
+        let (step, steps) = running.progress.map_or((0, 0), |(_, step, steps)| (step, steps));
+        self.worker.cancel();
+        let label = "Generate, stopped early";
+        let occupancy = shown.frame().occupancy.clone();
+        let drawn = self.drawn_first.take().filter(|(rev, _)| *rev == before.rev);
+        let adopted = match drawn {
+            Some(_) => self.document.adopt(before.rev, occupancy),
+            None => self.document.adopt_as_step(label, before.rev, occupancy),
+        };
+        if adopted.is_ok() {
+            let note = format!("After {step} of {steps} steps");
+            let scene = self.document.settled_scene().clone();
+            self.versions.push(label.to_owned(), note, scene);
+            self.receipt = None;
+            self.live.source_changed();
+            self.stage(
+                drawn.map_or(before, |(_, before)| before),
+                Some(Again::Generate(Box::new(params))),
+            );
+        }
+    }
+
+    /// True while a whole generation shows what comes, so that it can be stopped with that.
+    pub(super) fn shows_what_comes(&self) -> bool {
+        let rev = self.document.settled_scene().rev;
+        let whole = |r: &Running| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
+        self.live.running.as_ref().is_some_and(whole)
+            && self.preview.as_ref().is_some_and(|(of, _)| *of == rev)
     }
 
     pub(super) fn take_opened(&mut self, ctx: &egui::Context) {

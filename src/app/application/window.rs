@@ -26,6 +26,7 @@ impl SceneloomApp {
         self.passes = self.passes.saturating_add(1);
         let mut commands = Vec::new();
         self.take_window_events(ui.ctx(), &mut commands);
+        self.tidy_staging();
         self.prepare_compare(ui);
         let scene = self.shown_scene();
         // What a dialog covers answers nothing, and keeps no tooltip open over it.
@@ -120,6 +121,7 @@ impl SceneloomApp {
         let status = StatusInput {
             findings,
             running: self.live.running.as_ref(),
+            shows_what_comes: self.shows_what_comes(),
             now_s,
             receipt: self.receipt.as_ref(),
             live: self.live.on,
@@ -173,6 +175,7 @@ impl SceneloomApp {
             true => self.view3d.rect,
             false => self.center,
         };
+        self.staged_ui(ui, over, commands);
         performance_ui(ui, over, &mut self.perf);
         self.toasts.show(ui, self.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {

@@ -82,6 +82,8 @@ impl EditCommand {
             "objects_kept": r.objects_kept,
             "ground_kept": r.ground_kept,
             "invented_cleared": r.invented_cleared,
+            "stems_added": r.stems_added,
+            "loose_dropped": r.loose_dropped,
             "unobserved_kept": r.unobserved_kept,
             "seed": params.seed,
             "steps": params.steps,

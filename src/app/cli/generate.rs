@@ -9,6 +9,7 @@ use serde_json::json;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, output};
 use crate::app::open;
+use crate::app::scenery::SceneryWish;
 use crate::editor::Document;
 use crate::formats::project;
 use crate::generation::job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
@@ -26,6 +27,10 @@ pub struct Generate {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
+    /// Let the networks invent what stands beside the roads of a scene that says nothing of it, instead of drawing it by
+    /// rules first.
+    #[arg(long)]
+    bare: bool,
     #[command(flatten)]
     generation: Gen,
     #[command(flatten)]
@@ -82,6 +87,18 @@ pub fn sense(scene: &Scene) -> (f64, f64) {
     (lidar_s, start.elapsed().as_secs_f64())
 }
 
+/// Draws what stands beside the roads, where nothing is known of it and everything is generated: networks alone would fill
+/// it with rubble. True if it did.
+fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<bool> {
+    let scene = document.scene().clone();
+    let nothing_known = scene.background.is_empty() && !scene.frame().inferred.background;
+    if params.region != RegionMode::Full || !nothing_known {
+        return Ok(false);
+    }
+    document.apply_all("Draw scenery", &SceneryWish::of_seed(params.seed).edits(&scene))?;
+    Ok(true)
+}
+
 impl Generate {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
@@ -89,6 +106,7 @@ impl Generate {
         let progress = Progress::new(&self.common);
         let params = self.generation.params(full_params())?;
         let mut document = Document::new(scene);
+        let drawn = !self.bare && draw_scenery(&mut document, &params)?;
         let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
         let scene = document.scene();
         project::save(&self.output, scene)?;
@@ -103,7 +121,10 @@ impl Generate {
             "network_calls": result.report.network_calls,
             "wall_s": wall_s,
             "peak_rss_mb": output::peak_rss_mb(),
+            "scenery_drawn": drawn,
             "objects_kept": result.report.objects_kept,
+            "stems_added": result.report.stems_added,
+            "loose_dropped": result.report.loose_dropped,
             "seed": params.seed,
             "steps": params.steps,
             "guidance": params.guidance,

@@ -17,6 +17,7 @@ mod progress;
 mod prompt;
 mod region_arg;
 mod render;
+mod scenery;
 mod shot;
 pub(in crate::app) mod trade;
 pub(in crate::app) mod trials;
@@ -61,6 +62,8 @@ enum Command {
     Generate(generate::Generate),
     /// Apply edits and regenerate what they touch, by inversion.
     Edit(edit::EditCommand),
+    /// What stands beside the roads, drawn anew by rules: everywhere or in a region.
+    Scenery(scenery::Scenery),
     /// Pictures of what the sensors see.
     Render(render::Render),
     /// The 3D viewport alone, off screen.
@@ -243,6 +246,7 @@ pub fn main() -> ExitCode {
     let outcome = match cli.command {
         Some(Command::Demo(c)) => c.run(),
         Some(Command::New(c)) => c.run(),
+        Some(Command::Scenery(c)) => c.run(),
         Some(Command::Import(c)) => c.run(),
         Some(Command::Prompt(c)) => c.run(),
         Some(Command::Generate(c)) => c.run(),

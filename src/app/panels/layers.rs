@@ -6,10 +6,12 @@ use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 use crate::app::bev_image::DRAW_ORDER;
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
+use crate::app::staged::{TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::app::theme;
 use crate::app::tools::things::{self, ThingCommand};
 use crate::app::tools::{PaintShape, ToolCommand, panel as tools};
+use crate::generation::world::scenery::Setting;
 use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
@@ -50,12 +52,43 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         ui.add_space(theme::GAP);
         section(ui, "Scenery");
         let named = &mut state.named;
-        density_row(ui, "Vegetation", &mut named.vegetation, 0.5);
-        density_row(ui, "Buildings", &mut named.building, 0.6);
+        density_row(ui, "Vegetation", &mut named.vegetation, TYPICAL_VEGETATION as f32);
+        density_row(ui, "Buildings", &mut named.building, TYPICAL_BUILDING as f32);
         density_row(ui, "Clutter", &mut named.clutter, 0.25);
         density_row(ui, "Completeness", &mut named.completeness, 1.0);
         caption(ui, "What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there.");
+        scenery_row(ui, state, commands);
     });
+}
+
+/// What kind of place, and the button that draws it.
+fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+    let name = |setting: Option<Setting>| setting.map_or("Suits the road", Setting::label);
+    ui.horizontal(|ui| {
+        let chosen = &mut state.tools.setting;
+        egui::ComboBox::from_id_salt("setting")
+            .width(92.0)
+            .selected_text(name(*chosen))
+            .show_ui(ui, |ui| {
+                for setting in std::iter::once(None).chain(Setting::ALL.map(Some)) {
+                    ui.selectable_value(chosen, setting, name(setting));
+                }
+            })
+            .response
+            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Kind of place"));
+        let hint =
+            "What stands beside the roads, anew by rules, as things; voxels of scenery without a thing go";
+        let draw = ui.button("Draw").on_hover_text(hint);
+        draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
+        if draw.clicked() {
+            commands.push(Command::DrawScenery);
+        }
+    });
+    let place = match state.tools.region.is_empty() {
+        true => "Everywhere; in a region if one is marked (N).",
+        false => "In the marked region.",
+    };
+    caption(ui, place);
 }
 
 /// A number that generation is asked for, if it is ticked; `typical` is where it begins.

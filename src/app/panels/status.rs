@@ -60,6 +60,8 @@ impl Receipt {
 pub struct StatusInput<'a> {
     /// The job on its way.
     pub running: Option<&'a Running>,
+    /// A whole generation shows what comes.
+    pub shows_what_comes: bool,
     /// Now, on the clock of `running`, s.
     pub now_s: f64,
     /// Of the last generation.
@@ -90,7 +92,7 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
         ui.spacing_mut().item_spacing.x = theme::GAP;
         ui.spacing_mut().interact_size.y = 20.0;
         if let Some(running) = input.running {
-            progress(ui, running, input.now_s, commands);
+            progress(ui, running, input, commands);
         } else if let Some(what) = input.busy_with {
             ui.add(egui::Spinner::new().size(13.0).color(theme::accent()));
             say(ui, what, theme::text());
@@ -195,8 +197,8 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Command>) {
-    let seconds = (now_s - running.submitted_s).max(0.0);
+fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
+    let seconds = (input.now_s - running.submitted_s).max(0.0);
     let (stage, step, steps) = running
         .progress
         .map_or(("Waiting", 0, 0), |(stage, step, steps)| {
@@ -237,6 +239,12 @@ fn progress(ui: &mut Ui, running: &Running, now_s: f64, commands: &mut Vec<Comma
         &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
         theme::text(),
     );
+    if input.shows_what_comes {
+        let stop = ui.add(egui::Button::new("Keep this").small());
+        if stop.on_hover_text("Ends here, with what is shown").clicked() {
+            commands.push(Command::StopHere);
+        }
+    }
     let cancel = ui.add(egui::Button::new("Cancel").small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {

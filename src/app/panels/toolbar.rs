@@ -304,6 +304,7 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
             item(ui, "Generate edited region", "", true),
             Command::Generate { full: false },
         );
+        on(item(ui, "Draw scenery anew", "", true), Command::DrawScenery);
         on(
             item(ui, "Cancel", "Ctrl+Backspace", input.busy),
             Command::CancelGeneration,

@@ -19,7 +19,7 @@ use super::boxes::of;
 use super::things::ThingCommand;
 use super::things::drag::{self, Pull as ThingPull, ThingDrag};
 use super::things::press::{self, ThingPress};
-use super::{Choose, PaintShape, ToolCommand, gizmo};
+use super::{Choose, PaintShape, RegionShape, ToolCommand, gizmo};
 
 /// What the pointer is doing with one of these tools.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +52,13 @@ pub enum BevGesture {
         points_m: Vec<DVec2>,
         /// Adds to the selection.
         add: bool,
+    },
+    /// Marks what an outline goes around.
+    RegionOutline {
+        /// Way so far, m.
+        points_m: Vec<DVec2>,
+        /// Marks, or takes the mark away.
+        on: bool,
     },
     /// Marks what is drawn anew.
     Region {
@@ -110,6 +117,12 @@ pub(in crate::app) fn begin(
             let at_m = measure::snapped(frame, at_m, HANDLE_REACH / map.scale);
             commands.push(Command::Tools(ToolCommand::Point(at_m)));
             Some(Gesture::Ignored)
+        }
+        Tool::Region if state.tools.region_shape == RegionShape::Lasso => {
+            Some(Gesture::Tool(BevGesture::RegionOutline {
+                points_m: vec![at_m],
+                on: !modifiers.shift,
+            }))
         }
         Tool::Region => Some(Gesture::Tool(BevGesture::Region {
             from_m: at_m,
@@ -335,7 +348,7 @@ pub(in crate::app) fn drag(
                 pointer::preview(commands, vec![edit]);
             }
         }
-        BevGesture::Region { from_m, to_m, on } if state.tools.region_brush => {
+        BevGesture::Region { from_m, to_m, on } if state.tools.region_shape == RegionShape::Brush => {
             commands.push(Command::Tools(ToolCommand::RegionStroke(
                 *from_m,
                 at_m,
@@ -345,7 +358,7 @@ pub(in crate::app) fn drag(
             (*from_m, *to_m) = (at_m, at_m);
         }
         BevGesture::Marquee { to_m, .. } | BevGesture::Region { to_m, .. } => *to_m = at_m,
-        BevGesture::Lasso { points_m, .. } => {
+        BevGesture::Lasso { points_m, .. } | BevGesture::RegionOutline { points_m, .. } => {
             let apart_m = 2.0 / map.scale;
             if points_m.last().is_none_or(|p| p.distance(at_m) > apart_m) {
                 points_m.push(at_m);
@@ -472,12 +485,15 @@ pub(in crate::app) fn end(
             }
         }
         // A brush has marked on its way.
-        BevGesture::Region { .. } if state.tools.region_brush => {}
+        BevGesture::Region { .. } if state.tools.region_shape == RegionShape::Brush => {}
         BevGesture::Region { from_m, to_m, on } => {
             // A click marks the cell under it.
             let around = DVec2::splat(GridSpec::VOXEL_M / 2.0);
             let (min_m, max_m) = (from_m.min(to_m) - around, from_m.max(to_m) + around);
             commands.push(Command::Tools(ToolCommand::Region(min_m, max_m, on)));
+        }
+        BevGesture::RegionOutline { points_m, on } => {
+            commands.push(Command::Tools(ToolCommand::RegionOutline(points_m, on)));
         }
         BevGesture::Lasso { points_m, add } => {
             if points_m.len() >= 3 {

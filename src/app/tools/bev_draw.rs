@@ -15,7 +15,7 @@ use crate::scene::{GridSpec, Scene};
 use super::bev::{BevGesture, pull};
 use super::gizmo::{Gizmo, Part};
 use super::things::drag::Pull as ThingPull;
-use super::{PaintShape, gizmo, things};
+use super::{PaintShape, RegionShape, gizmo, things};
 
 /// Draws over the finished view.
 pub(in crate::app) fn draw(
@@ -40,12 +40,12 @@ pub(in crate::app) fn draw(
         region(painter, map, state);
     }
     match gesture {
-        Gesture::Tool(BevGesture::Region { .. }) if state.tools.region_brush => {}
+        Gesture::Tool(BevGesture::Region { .. }) if state.tools.region_shape == RegionShape::Brush => {}
         Gesture::Tool(BevGesture::Marquee { from_m, to_m, .. } | BevGesture::Region { from_m, to_m, .. }) => {
             let rect = Rect::from_two_pos(map.to_screen(*from_m), map.to_screen(*to_m));
             marquee(painter, rect);
         }
-        Gesture::Tool(BevGesture::Lasso { points_m, .. }) => {
+        Gesture::Tool(BevGesture::Lasso { points_m, .. } | BevGesture::RegionOutline { points_m, .. }) => {
             lasso(painter, points_m.iter().map(|p| map.to_screen(*p)).collect());
         }
         Gesture::Tool(BevGesture::Transform {
@@ -93,7 +93,8 @@ pub(in crate::app) fn draw(
     if state.tool == Tool::Brush {
         outline(painter, map, state, pointer);
     }
-    if let (Tool::Region, true, Some(at)) = (state.tool, state.tools.region_brush, pointer) {
+    let brush = state.tools.region_shape == RegionShape::Brush;
+    if let (Tool::Region, true, Some(at)) = (state.tool, brush, pointer) {
         let radius = (state.brush_m / 2.0 * map.scale) as f32;
         painter.circle_stroke(at, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));
         painter.circle_stroke(at, radius, Stroke::new(1.5, theme::accent()));

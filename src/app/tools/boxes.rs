@@ -147,6 +147,11 @@ impl SceneloomApp {
                     self.state.tools.region.set(i, j, on);
                 }
             }
+            ToolCommand::RegionOutline(points_m, on) => {
+                for [i, j] in RedrawMask::of_outline(&points_m).cells() {
+                    self.state.tools.region.set(i, j, on);
+                }
+            }
             ToolCommand::RegionStroke(a_m, b_m, width_m, on) => {
                 let stroke = Shape::Line {
                     points_m: vec![a_m, b_m],

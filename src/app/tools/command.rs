@@ -85,6 +85,8 @@ pub enum ToolCommand {
     ClearPoints,
     /// Marks a rectangle of the ego frame (m) to be drawn anew, or takes the mark away.
     Region(DVec2, DVec2, bool),
+    /// Marks what an outline of the ego frame (m) goes around to be drawn anew, or takes the mark away.
+    RegionOutline(Vec<DVec2>, bool),
     /// Marks what a brush of that width (m) passes from one point to another (ego frame, m), or takes the mark away.
     RegionStroke(DVec2, DVec2, f64, bool),
     /// Of the tools for things.

@@ -13,4 +13,4 @@ pub mod view3d;
 pub mod view3d_things;
 
 pub use command::{Choose, ToolCommand};
-pub use options::{PaintShape, ToolState, VoxelMode};
+pub use options::{PaintShape, RegionShape, ToolState, VoxelMode};

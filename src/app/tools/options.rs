@@ -16,6 +16,7 @@ use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
 use crate::generation::job::GenParams;
 use crate::generation::redraw::RedrawMask;
+use crate::generation::world::scenery::Setting;
 use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
 use super::Choose;
@@ -43,6 +44,18 @@ pub enum PaintShape {
     Fill,
     /// Takes over the layer under the pointer.
     Pick,
+}
+
+/// How a region is marked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RegionShape {
+    /// From corner to corner.
+    #[default]
+    Rectangle,
+    /// What an outline goes around.
+    Lasso,
+    /// Along the way.
+    Brush,
 }
 
 impl PaintShape {
@@ -137,11 +150,15 @@ pub struct ToolState {
     /// Cells to be drawn anew although nothing was edited there.
     pub region: RedrawMask,
     /// They are marked by a brush of the brush's size; false: by rectangles.
-    pub region_brush: bool,
+    pub region_shape: RegionShape,
     /// How far they leave what is there, 0 to 1.
     pub region_strength: f64,
     /// How often cells were drawn anew: each time other noise.
     pub region_draws: u64,
+    /// What kind of place scenery is drawn for; none: one that suits the road.
+    pub setting: Option<Setting>,
+    /// Times that scenery was drawn.
+    pub scenery_draws: u64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,
     /// Bit per map layer that is not painted.
@@ -187,9 +204,11 @@ impl Default for ToolState {
             symmetry: false,
             voxels: Vec::new(),
             region: RedrawMask::default(),
-            region_brush: false,
+            region_shape: RegionShape::default(),
             region_strength: 1.0,
             region_draws: 0,
+            setting: None,
+            scenery_draws: 0,
             variants: BTreeMap::new(),
             layers_locked: 0,
             layer_opacity: [1.0; DRAW_ORDER.len()],

@@ -13,7 +13,7 @@ use crate::editor::lane_strip::LaneStrip;
 use crate::editor::transform::{Kind, Orientation};
 use crate::scene::{Class, variants};
 
-use super::{PaintShape, ToolCommand, VoxelMode};
+use super::{PaintShape, RegionShape, ToolCommand, VoxelMode};
 
 fn button(ui: &mut Ui, name: &str, hint: &str, enabled: bool) -> bool {
     let response = ui.add_enabled(enabled, egui::Button::new(name));
@@ -243,11 +243,16 @@ pub fn region(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
     );
     let ways = [
-        (false, "Rectangle", "drag from corner to corner"),
-        (true, "Brush", "paint the mark; [ and ] change the size"),
+        (RegionShape::Rectangle, "Rectangle", "drag from corner to corner"),
+        (RegionShape::Lasso, "Lasso", "draw around it"),
+        (
+            RegionShape::Brush,
+            "Brush",
+            "paint the mark; [ and ] change the size",
+        ),
     ];
-    icons::segments(ui, &mut state.tools.region_brush, &ways);
-    if state.tools.region_brush {
+    icons::segments(ui, &mut state.tools.region_shape, &ways);
+    if state.tools.region_shape == RegionShape::Brush {
         slider(ui, "Brush, m", &mut state.brush_m, UiState::BRUSH_M);
     }
     let n = state.tools.region.count();

@@ -3,7 +3,6 @@
 
 mod against_lane;
 mod box_without_occupancy;
-mod components;
 mod floating_voxels;
 mod geometry;
 mod lanes;
@@ -23,7 +22,7 @@ use glam::DVec3;
 
 use super::Edit;
 use crate::scene::draft::{ground_bin, ground_class};
-use crate::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox};
+use crate::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, support};
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -200,11 +199,11 @@ const MOST_ROUNDS: usize = 8;
 impl Context<'_> {
     fn bits(&self) -> &Bits {
         self.bits.get_or_init(|| {
-            let by_class = components::by_class(&self.frame.occupancy);
-            let occupied = components::occupied(&self.frame.occupancy);
-            let ground = components::ground(&by_class);
+            let by_class = support::by_class(&self.frame.occupancy);
+            let occupied = support::occupied(&self.frame.occupancy);
+            let ground = support::ground(&by_class);
             Bits {
-                supported: components::supported(&occupied, &ground),
+                supported: support::supported(&occupied, &ground),
                 by_class,
                 occupied,
                 ground,

@@ -3,7 +3,7 @@
 use super::{Context, Finding, Fix, Severity, middle, removal};
 use crate::editor::Edit;
 use crate::scene::raster::box_cells;
-use crate::scene::{Class, GridSpec, infer};
+use crate::scene::{Class, GridSpec, infer, support};
 
 pub const NAME: &str = "occupancy_without_box";
 /// Voxels this far outside a box still belong to it, m: networks draw objects up to a voxel and a half too wide.
@@ -32,7 +32,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
         if cells.len() < LEAST_VOXELS {
             continue;
         }
-        for group in super::components::groups(cells) {
+        for group in support::groups(cells) {
             if group.len() < LEAST_VOXELS {
                 continue;
             }

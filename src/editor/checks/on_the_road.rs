@@ -1,7 +1,7 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
-use super::components::{bins_set, groups, main_class, supported};
 use super::{Context, Finding, Fix, Severity, middle, removal};
+use crate::scene::support::{bins_set, groups, main_class, supported};
 use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
 
 pub const NAME: &str = "on_the_road";

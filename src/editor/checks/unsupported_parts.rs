@@ -1,10 +1,10 @@
 //! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
 //! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
 
-use super::components::{bins_set, ground, groups, neighbours, reached};
-use super::floating_voxels::{CROWN, is_known_to_float, lowest_m, stem};
+use super::floating_voxels::lowest_m;
 use super::{Context, Finding, Fix, Severity, middle};
 use crate::editor::Edit;
+use crate::scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
 use crate::scene::{Class, GridSpec};
 
 pub const NAME: &str = "unsupported_parts";
@@ -35,7 +35,8 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             cells.extend(bins_set(c, own[c] & !rests[c] & bits.supported[c]));
         }
         let large = groups(cells).into_iter().filter(|g| g.len() >= LEAST_VOXELS);
-        let known = large.filter(|g| is_known_to_float(frame, g));
+        let known =
+            large.filter(|g| is_known_to_float(&frame.occupancy, frame.inferred.unobserved.as_ref(), g));
         parts.extend(known.map(|g| (*class, g)));
     }
     parts.sort_by_key(|(_, g)| std::cmp::Reverse(g.len()));
@@ -46,7 +47,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             edits: vec![Edit::PaintVoxels { cells, class }],
         };
         let mut fixes = vec![paint("Remove the part", part.clone(), Class::Free)];
-        let stem = stem(frame, &part);
+        let stem = stem(&frame.occupancy, &part);
         if class == Class::Vegetation && part.len() >= CROWN && !stem.is_empty() {
             fixes.insert(0, paint("Put a stem under it", stem, class));
         }

@@ -17,6 +17,7 @@ use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
 use crate::generation::keep_clear::{keep_clear, keep_unobserved};
+use crate::generation::keep_grounded::keep_grounded;
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::model::{DitCondition, OccModels, tokens_of};
 use crate::generation::redraw::{self, RedrawMask};
@@ -255,6 +256,13 @@ impl OccPipeline {
             .map_err(GenError::failed)?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
+            report.grounded(keep_grounded(
+                frame,
+                &region,
+                true,
+                &Request::of(frame),
+                &mut generated,
+            ));
         }
         let source = &frame.source.occupancy;
         let result = self.finish(job, source, &generated, &region, &mut report);
@@ -400,6 +408,7 @@ impl OccPipeline {
             let request = Request::of(frame);
             report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
             report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
+            report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
         if anew {

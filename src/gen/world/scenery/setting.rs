@@ -44,6 +44,23 @@ impl Setting {
     ];
 }
 
+impl Setting {
+    /// Name to show: `Old town`.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::OldTown => "Old town",
+            Self::City => "City",
+            Self::Suburb => "Suburb",
+            Self::Industry => "Industry",
+            Self::Forest => "Forest",
+            Self::Country => "Country",
+            Self::Motorway => "Motorway",
+            Self::Park => "Park",
+            Self::Retail => "Retail",
+        }
+    }
+}
+
 /// One side of the ego's road.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {

@@ -6,6 +6,7 @@ use crate::app::cli::trials::{Reached, Trial};
 use crate::editor::Document;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::keep_clear::{keep_clear, keep_unobserved};
+use crate::generation::keep_grounded::keep_grounded;
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::metrics::invented::Invented;
 use crate::generation::pipeline::OccPipeline;
@@ -103,6 +104,7 @@ pub fn try_edit(
     let mut shown = kept.clone();
     keep_unobserved(&frame, &region, &params.redraw, &request, &mut shown);
     keep_clear(&frame, &region, &params.redraw, &request, &mut shown);
+    keep_grounded(&frame, &region, false, &request, &mut shown);
     let states = [networks, kept, shown];
     let source = &frame.source.occupancy;
     Ok(Tried {

@@ -1,6 +1,6 @@
 //! Groups of voxels that touch each other, and what of the occupancy stands on the ground.
 
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::scene::{Class, GridSpec, Unobserved, VoxelGrid};
 
 /// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
 const GROUND_BINS: u16 = 0b111;
@@ -37,6 +37,9 @@ pub fn ground(by_class: &[Vec<u16>]) -> Vec<u16> {
     }
     out
 }
+
+/// Vegetation that floats in groups of at least so many voxels is the crown of a tree.
+pub const CROWN: usize = 8;
 
 /// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
 /// that touch by a face, an edge or a corner.
@@ -159,6 +162,41 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
     let most = votes.iter().copied().max().unwrap_or(0);
     let first = votes.iter().position(|v| *v == most).unwrap_or(0);
     Class::from_id(first as u8).unwrap_or(Class::Others)
+}
+
+/// False for what may be held by something that the grid does not show: beyond its sides or its top (objects excepted,
+/// they stand on their own), or by voxels below that no sensor observed.
+pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
+    let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
+    let at_edge = |[x, y, z]: [usize; 3]| {
+        x == 0 || y == 0 || x + 1 == GridSpec::NX || y + 1 == GridSpec::NY || z + 1 == GridSpec::NZ
+    };
+    let unknown_below = |[x, y, z]: [usize; 3]| {
+        let words = unobserved.map(Unobserved::words);
+        z > 0 && words.is_some_and(|w| w[x * GridSpec::NY + y] >> (z - 1) & 1 == 1)
+    };
+    !group
+        .iter()
+        .any(|c| (at_edge(*c) && !is_object(*c)) || unknown_below(*c))
+}
+
+/// Free voxels from the underside of a group down to what is below it, under the voxel that is nearest to its middle.
+pub fn stem(grid: &VoxelGrid, group: &[[usize; 3]]) -> Vec<[usize; 3]> {
+    let n = group.len().max(1) as f64;
+    let middle = [0, 1].map(|axis| group.iter().map(|c| c[axis] as f64).sum::<f64>() / n);
+    let lowest = |[x, y, z]: &&[usize; 3]| !group.contains(&[*x, *y, z.wrapping_sub(1)]);
+    let off = |c: &[usize; 3]| (c[0] as f64 - middle[0]).powi(2) + (c[1] as f64 - middle[1]).powi(2);
+    let nearest = group
+        .iter()
+        .filter(lowest)
+        .min_by(|a, b| off(a).total_cmp(&off(b)));
+    let Some(&[x, y, top]) = nearest else {
+        return Vec::new();
+    };
+    let free = |z: &usize| grid.get(x, y, *z) == Class::FREE;
+    let mut cells: Vec<_> = (0..top).rev().take_while(free).map(|z| [x, y, z]).collect();
+    cells.reverse();
+    cells
 }
 
 #[cfg(test)]

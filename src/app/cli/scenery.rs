@@ -1,0 +1,93 @@
+//! `sceneloom scenery`: what stands beside the roads, drawn anew.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use serde_json::json;
+
+use super::region_arg::RegionArg;
+use super::{Common, Outcome, output};
+use crate::app::open;
+use crate::app::scenery::SceneryWish;
+use crate::editor::Document;
+use crate::formats::project;
+use crate::generation::redraw::RedrawMask;
+use crate::generation::world::scenery::Setting;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Scenery {
+    /// Scene to read.
+    scene: PathBuf,
+    /// Scene to write.
+    #[arg(short, long, value_name = "S.loom")]
+    output: PathBuf,
+    /// What kind of place; one that suits the road if left out.
+    #[arg(long, value_enum, value_name = "NAME")]
+    setting: Option<Setting>,
+    /// Number of plants, 1 = usual there; 0 is none.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    green: f64,
+    /// Number of buildings, 1 = usual there; 0 is none.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    built: f64,
+    /// Rectangle X0,Y0,X1,Y1 of the ego frame in metres outside of which nothing changes; everywhere if left out.
+    #[arg(long, value_name = "RECT", allow_hyphen_values = true)]
+    region: Option<RegionArg>,
+    /// Fixes every random draw.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Scenery {
+    /// What is asked for; errors if a number is out of range.
+    fn wish(&self) -> anyhow::Result<SceneryWish> {
+        for (name, value) in [("--green", self.green), ("--built", self.built)] {
+            if !(0.0..=4.0).contains(&value) {
+                bail!("{name} is {value}, expected 0 to 4");
+            }
+        }
+        let region = match self.region {
+            None | Some(RegionArg::Full) => RedrawMask::default(),
+            Some(RegionArg::Rect(mask)) => mask,
+            Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
+        };
+        Ok(SceneryWish {
+            seed: self.seed,
+            setting: self.setting,
+            green: self.green,
+            built: self.built,
+            region,
+        })
+    }
+
+    pub(super) fn run(self) -> Outcome {
+        let wish = self.wish()?;
+        let scene = open::scene(&self.scene)?;
+        let before = scene.frame().occupancy.clone();
+        let edits = wish.edits(&scene);
+        let mut document = Document::new(scene);
+        document.apply_all("Draw scenery", &edits)?;
+        let scene = document.scene();
+        project::save(&self.output, scene)?;
+        let (things, changed) = (
+            scene.background.len(),
+            before.count_different(&scene.frame().occupancy),
+        );
+        let report = json!({
+            "things": things,
+            "voxels_changed": changed,
+            "seed": self.seed,
+            "file": self.output,
+        });
+        output::report(&self.common, &report, || {
+            format!(
+                "{}: {things} things beside the road, {changed} voxels changed",
+                self.output.display()
+            )
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,190 @@
+//! What stands beside the roads, drawn anew by rules from a seed: everywhere or in a region, as things that can be edited.
+//! Nothing is generated, and nothing else changes.
+
+use crate::editor::{Edit, Shape};
+use crate::generation::redraw::RedrawMask;
+use crate::generation::region::COLUMNS_PER_CELL;
+use crate::generation::world::scenery::{self, Setting, Side, Style};
+use crate::scene::{Background, Form, GridSpec, Scene, ThingId};
+
+use super::around;
+
+/// What is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneryWish {
+    /// Fixes every random draw.
+    pub seed: u64,
+    /// What kind of place; none: one that suits the road.
+    pub setting: Option<Setting>,
+    /// Number of plants, 1 = usual there; 0 is none.
+    pub green: f64,
+    /// Number of buildings, 1 = usual there; 0 is none.
+    pub built: f64,
+    /// Cells in which it is drawn; empty: everywhere.
+    pub region: RedrawMask,
+}
+
+impl SceneryWish {
+    /// What suits the road, everywhere.
+    pub fn of_seed(seed: u64) -> Self {
+        Self {
+            seed,
+            setting: None,
+            green: 1.0,
+            built: 1.0,
+            region: RedrawMask::default(),
+        }
+    }
+
+    /// Edits that draw the scenery of a scene's current frame anew: what stands whole in the region goes, so do voxels of
+    /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border.
+    pub fn edits(&self, scene: &Scene) -> Vec<Edit> {
+        let frame = scene.frame();
+        let to_ego = frame.world_from_ego.inverse();
+        let columns = self.columns();
+        let whole = |form: &Form| {
+            let mut inside = true;
+            around::columns(form, GridSpec::VOXEL_M, |x, y| {
+                inside &= columns[x * GridSpec::NY + y];
+            });
+            inside
+        };
+        let (mut ids, mut stays) = (Vec::<ThingId>::new(), Background::default());
+        for thing in scene.background.iter() {
+            let form = thing.form.in_frame(&to_ego);
+            match whole(&form) {
+                true => ids.push(thing.id),
+                false => drop(stays.add(form)),
+            }
+        }
+        let drawn = scenery::background_of(&frame.layout, &frame.boxes, &self.style(scene), self.seed);
+        let drawn: Background = drawn.iter().filter(|t| whole(&t.form)).cloned().collect();
+        let known = stays.len();
+        let merged = around::merged(stays, &drawn);
+        let come = merged.iter().skip(known);
+        let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
+        let cells = (0..GridSpec::COLUMNS).filter(|c| columns[*c]);
+        let cells = cells.map(|c| [c / GridSpec::NY, c % GridSpec::NY]).collect();
+        let mut edits = Vec::new();
+        if !ids.is_empty() {
+            edits.push(Edit::RemoveThings { ids });
+        }
+        let shape = (!self.region.is_empty()).then_some(Shape::Cells(cells));
+        edits.push(Edit::ClearScenery { shape });
+        if !forms.is_empty() {
+            edits.push(Edit::AddThings { forms });
+        }
+        edits
+    }
+
+    fn style(&self, scene: &Scene) -> Style {
+        let wanted = |side: Side| Side {
+            green: side.green * self.green,
+            built: side.built * self.built,
+            ..side
+        };
+        let style = match self.setting {
+            Some(setting) => Style::both(Side::usual(setting)),
+            None => Style::drawn(&scene.frame().layout, self.seed),
+        };
+        Style {
+            left: wanted(style.left),
+            right: wanted(style.right),
+        }
+    }
+
+    /// `[x * NY + y]`: columns of the region.
+    fn columns(&self) -> Vec<bool> {
+        (0..GridSpec::COLUMNS)
+            .map(|c| {
+                let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+                self.region.is_empty() || self.region.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::app::open;
+    use crate::editor::Document;
+    use crate::scene::{Class, VoxelGrid};
+
+    fn wish(seed: u64) -> SceneryWish {
+        SceneryWish {
+            seed,
+            setting: Some(Setting::OldTown),
+            green: 1.0,
+            built: 1.0,
+            region: RedrawMask::default(),
+        }
+    }
+
+    fn scenery_voxels(grid: &VoxelGrid) -> usize {
+        let counts = grid.class_counts();
+        counts[usize::from(Class::Manmade.id())] + counts[usize::from(Class::Vegetation.id())]
+    }
+
+    #[test]
+    fn a_region_is_drawn_anew_and_the_rest_stays() {
+        let scene = open::from_template("straight", 7).expect("a template");
+        let mut document = Document::new(scene);
+        let before = document.scene().clone();
+        let region = RedrawMask::of_rect(DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
+        let wish = SceneryWish { region, ..wish(11) };
+        document
+            .apply_all("Draw scenery", &wish.edits(&before))
+            .expect("sound");
+        let after = document.scene().clone();
+        assert_ne!(after.background, before.background);
+        let (old, new) = (&before.frame().occupancy, &after.frame().occupancy);
+        let columns = wish.columns();
+        let mut changed = 0;
+        for (c, inside) in columns.iter().enumerate() {
+            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let differs = old.column(x, y) != new.column(x, y);
+            assert!(*inside || !differs, "column ({x}, {y}) lies outside");
+            changed += usize::from(differs);
+        }
+        assert!(changed > 500, "{changed}");
+        // Nothing waits for the networks.
+        let region = crate::generation::region::Region::of_edit(after.frame(), 2);
+        assert!(region.is_empty());
+        document.undo();
+        assert!(document.scene().frame().occupancy == before.frame().occupancy);
+    }
+
+    #[test]
+    fn scenery_without_things_goes_and_none_can_be_asked_for() {
+        // Buildings that no thing accounts for, as in a scene of generated voxels.
+        let mut scene = open::from_template("straight", 7).expect("a template");
+        scene.background = Default::default();
+        assert!(scenery_voxels(&scene.frame().occupancy) > 1000);
+        let nothing = SceneryWish {
+            green: 0.0,
+            built: 0.0,
+            setting: Some(Setting::Country),
+            ..wish(3)
+        };
+        let mut document = Document::new(scene);
+        let edits = nothing.edits(document.scene());
+        document.apply_all("Draw scenery", &edits).expect("sound");
+        let left = scenery_voxels(&document.scene().frame().occupancy);
+        let town = wish(3).edits(document.scene());
+        document.apply_all("Draw scenery", &town).expect("sound");
+        let scene = document.scene().clone();
+        let built = scenery_voxels(&scene.frame().occupancy);
+        assert!(built > 10 * left.max(100), "{left} {built}");
+        // The same wish gives the same things; another seed others.
+        let again = wish(3).edits(&scene);
+        document.apply_all("Draw scenery", &again).expect("sound");
+        let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
+        assert_eq!(forms(document.scene()), forms(&scene));
+        let other = wish(4).edits(&scene);
+        document.apply_all("Draw scenery", &other).expect("sound");
+        assert_ne!(forms(document.scene()), forms(&scene));
+    }
+}

@@ -1,0 +1,104 @@
+//! Part of a result: some of what differs between two states of the voxels is taken, the rest stays as it was.
+
+use crate::scene::{Class, GridSpec, VoxelGrid};
+
+/// What is taken.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Part {
+    /// Every voxel of these columns, `[x * NY + y]`.
+    Columns(Vec<bool>),
+    /// Voxels that were or become of this class.
+    Class(Class),
+}
+
+impl Part {
+    /// `before`, with this part of `after`.
+    pub fn taken(&self, before: &VoxelGrid, after: &VoxelGrid) -> VoxelGrid {
+        let mut out = before.clone();
+        each_different(before, after, |x, y, old, new| match self {
+            Self::Columns(columns) => {
+                if columns.get(x * GridSpec::NY + y) == Some(&true) {
+                    *out.column_mut(x, y) = *new;
+                }
+            }
+            Self::Class(class) => {
+                for z in (0..GridSpec::NZ).filter(|z| old[*z] != new[*z]) {
+                    if [old[z], new[z]].contains(&class.id()) {
+                        out.set(x, y, z, new[z]);
+                    }
+                }
+            }
+        });
+        out
+    }
+}
+
+/// Voxels that are of another class in `after`, or come or go, by the class that comes or (for what becomes free) goes;
+/// most first.
+pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, usize)> {
+    let mut counts = [0usize; 256];
+    each_different(before, after, |_, _, old, new| {
+        for (old, new) in old.iter().zip(new).filter(|(a, b)| a != b) {
+            let label = if *new == Class::FREE { *old } else { *new };
+            counts[usize::from(label)] += 1;
+        }
+    });
+    let class = |(label, count): (usize, &usize)| {
+        let class = u8::try_from(label).ok().and_then(Class::from_id)?;
+        (*count > 0).then_some((class, *count))
+    };
+    let mut found: Vec<_> = counts.iter().enumerate().filter_map(class).collect();
+    found.sort_by_key(|(class, count)| (std::cmp::Reverse(*count), class.id()));
+    found
+}
+
+type Column = [u8; GridSpec::NZ];
+
+fn each_different(
+    before: &VoxelGrid,
+    after: &VoxelGrid,
+    mut visit: impl FnMut(usize, usize, &Column, &Column),
+) {
+    for x in 0..GridSpec::NX {
+        for y in 0..GridSpec::NY {
+            let (old, new) = (before.column(x, y), after.column(x, y));
+            if old != new {
+                visit(x, y, old, new);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(voxels: &[([usize; 3], Class)]) -> VoxelGrid {
+        let mut grid = VoxelGrid::new();
+        for ([x, y, z], class) in voxels {
+            grid.set(*x, *y, *z, class.id());
+        }
+        grid
+    }
+
+    #[test]
+    fn a_part_is_taken_and_the_rest_stays() {
+        let before = grid(&[([1, 1, 3], Class::Vegetation), ([5, 5, 2], Class::Manmade)]);
+        let after = grid(&[([1, 1, 3], Class::Manmade), ([9, 9, 4], Class::Car)]);
+        assert_eq!(
+            changed_by_class(&before, &after),
+            [(Class::Manmade, 2), (Class::Car, 1)]
+        );
+        // What goes and what comes of a class.
+        let manmade = Part::Class(Class::Manmade).taken(&before, &after);
+        assert_eq!(manmade, grid(&[([1, 1, 3], Class::Manmade)]));
+        let cars = Part::Class(Class::Car).taken(&before, &after);
+        assert_eq!(before.count_different(&cars), 1);
+        let mut columns = vec![false; GridSpec::COLUMNS];
+        columns[5 * GridSpec::NY + 5] = true;
+        let place = Part::Columns(columns).taken(&before, &after);
+        assert_eq!(place, grid(&[([1, 1, 3], Class::Vegetation)]));
+        // Columns that nobody named are not taken.
+        assert_eq!(Part::Columns(Vec::new()).taken(&before, &after), before);
+    }
+}
