@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::metrics::stats::median;
-use sceneloom::generation::model::{CELLS, DitCondition, KeysValues, OccModels, tokens_of};
+use sceneloom::generation::model::{
+    CELLS, ColumnHeights, DitCondition, GROUPS, KeysValues, OccModels, tokens_of,
+};
 
 const RUNS: usize = 25;
 const SIDE: usize = 50;
@@ -21,7 +23,9 @@ fn main() {
         heading: frame.heading,
         named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
-        given: vec![0.0; CELLS],
+        given: vec![[0.0; GROUPS]; CELLS],
+        columns: vec![ColumnHeights::default(); 40_000],
+        ground: false,
         mask: vec![1.0; CELLS],
         context: vec![0.0; latent.len()],
     };

@@ -9,7 +9,7 @@ use sceneloom::generation::model::candle_dit::CandleDit;
 use sceneloom::generation::model::candle_vae::CandleVae;
 use sceneloom::generation::model::layers::{View, matmul};
 use sceneloom::generation::model::panels::{Panels, Start};
-use sceneloom::generation::model::{DitCondition, KeysValues, Middle, OccModels};
+use sceneloom::generation::model::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccModels};
 use sceneloom::generation::params::Precision;
 
 const RUNS: usize = 15;
@@ -59,7 +59,7 @@ fn products() {
 fn main() {
     let models = OccModels::bundled().expect("the shipped weights load");
     let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
-    let candle = CandleDit::new(bytes, 4).expect("the shipped weights load");
+    let candle = CandleDit::new(bytes, models.dit.config().heads).expect("the shipped weights load");
     let vae_bytes = include_bytes!("../assets/weights/occ_vae.safetensors");
     let candle_vae =
         CandleVae::new(vae_bytes, models.vae.config().clone()).expect("the shipped weights load");
@@ -72,7 +72,9 @@ fn main() {
         heading: frame.heading,
         named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
-        given: vec![0.0; 2500],
+        given: vec![[0.0; GROUPS]; 2500],
+        columns: vec![ColumnHeights::default(); 40_000],
+        ground: false,
         mask: vec![1.0; 2500],
         context: vec![0.0; 20_000],
     };

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use safetensors::{Dtype, tensor::TensorView};
 use sceneloom::formats::occ3d;
 use sceneloom::generation::dataset::occupancy_frame;
-use sceneloom::generation::model::{DitCondition, OccModels};
+use sceneloom::generation::model::{ColumnHeights, DitCondition, GROUPS, OccModels};
 use sceneloom::generation::rng::{Stream, normal_field};
 use sceneloom::generation::schedule::{Betas, Schedule, Spacing};
 use sceneloom::generation::sensors::{cloud::GaussianCloud, raycast::ColumnMasks, splat};
@@ -109,7 +109,9 @@ fn main() {
         heading: frame.heading.clone(),
         named: [None; 4],
         draft_latent: models.vae.encode(&frame.draft).expect("a sound grid"),
-        given: vec![0.0; 2500],
+        given: vec![[0.0; GROUPS]; 2500],
+        columns: vec![ColumnHeights::default(); 40_000],
+        ground: false,
         mask: vec![1.0; 2500],
         context: vec![0.0; 20_000],
     };

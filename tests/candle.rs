@@ -3,7 +3,7 @@
 use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::model::candle_dit::CandleDit;
 use sceneloom::generation::model::candle_vae::CandleVae;
-use sceneloom::generation::model::{DitCondition, OccModels};
+use sceneloom::generation::model::{ColumnHeights, DitCondition, OccModels};
 
 const WEIGHTS: &[u8] = include_bytes!("../assets/weights/occ_dit.safetensors");
 
@@ -19,8 +19,12 @@ fn numbers(count: usize, stream: u32) -> Vec<f32> {
 #[test]
 fn dit_agrees_with_candle() {
     let models = OccModels::bundled().expect("the shipped weights load");
-    let candle = CandleDit::new(WEIGHTS, 4).expect("the shipped weights load");
+    let candle = CandleDit::new(WEIGHTS, models.dit.config().heads).expect("the shipped weights load");
     let mask: Vec<f32> = (0..2500).map(|i| f32::from(u8::from(i % 50 > 20))).collect();
+    let heights = |i: u8| ColumnHeights {
+        standing: [[i % 3, i % 3 + i % 3 * 2], [0, 0]],
+        ground: i % 5,
+    };
     let condition = DitCondition {
         bev: (0..40_000u32)
             .map(|i| i.wrapping_mul(747_796_405) & 0x3_ffff & (i >> 3))
@@ -28,7 +32,11 @@ fn dit_agrees_with_candle() {
         heading: (0..40_000u32).map(|i| (i * 7 % 961 / 4) as u8).collect(),
         named: [Some(0.5), None, Some(0.1), Some(1.0)],
         draft_latent: numbers(20_000, 1),
-        given: (0..2500).map(|i| f32::from(u8::from(i % 7 < 4))).collect(),
+        given: (0..2500)
+            .map(|i| [i % 7 < 4, i % 3 < 2].map(|g| f32::from(u8::from(g))))
+            .collect(),
+        columns: (0..40_000).map(|i| heights(i as u8)).collect(),
+        ground: true,
         context: numbers(20_000, 2)
             .iter()
             .enumerate()

@@ -8,7 +8,8 @@ use safetensors::{Dtype, SafeTensors};
 use sceneloom::generation::model::lidar::field::Ray;
 use sceneloom::generation::model::lidar::{LearnedRay, LidarNet};
 use sceneloom::generation::model::{
-    CELLS, CHANNELS, DitCondition, KeysValues, LATENT, ModelError, OccModels, OccVae, fine_vae, tokens_of,
+    CELLS, CHANNELS, ColumnHeights, DitCondition, Heard, KeysValues, LATENT, ModelError, OccModels, OccVae,
+    fine_vae, tokens_of,
 };
 use sceneloom::scene::VoxelGrid;
 
@@ -109,14 +110,25 @@ fn condition() -> DitCondition {
         0 => 1 + ((x * 7 + y * 3) % 240) as u8,
         _ => 0,
     };
+    let heights = |x: usize, y: usize| ColumnHeights {
+        standing: [
+            [(x % 4 + 1) as u8, (x % 4 + 1 + y % 3) as u8]
+                .map(|bin| if (x + y).is_multiple_of(3) { bin } else { 0 }),
+            [2, 9].map(|bin| if (x / 2 + y).is_multiple_of(5) { bin } else { 0 }),
+        ],
+        ground: ((x + 2 * y) % 6) as u8,
+    };
     DitCondition {
         bev: (0..40_000).map(|c| bits(c / 200, c % 200)).collect(),
         heading: (0..40_000).map(|c| heading(c / 200, c % 200)).collect(),
         named: [Some(0.25), None, Some(0.75), Some(0.5)],
         draft_latent: uniform(LATENT, 3),
         given: (0..2500)
-            .map(|c| f32::from(u8::from(c / 50 >= 20 && (5..33).contains(&(c % 50)))))
+            .map(|c| [c / 50 >= 20 && (5..33).contains(&(c % 50)), c % 50 < 30])
+            .map(|groups| groups.map(|given| f32::from(u8::from(given))))
             .collect(),
+        columns: (0..40_000).map(|c| heights(c / 200, c % 200)).collect(),
+        ground: true,
         context: context.collect(),
         mask,
     }
@@ -136,12 +148,28 @@ fn fine_vae_agrees_with_python() {
 fn agrees(vae: &OccVae, golden: &Golden) {
     let latent = golden.f32("latent");
     assert_close("latent", vae.encode(&scene(golden)).expect("labels"), &latent);
-    let (logits, cells) = (golden.f32("logits"), golden.i32("cells"));
-    let of_cell = logits.len() / cells.len();
-    assert_eq!(of_cell, (200 / vae.config().side()).pow(2) * 16 * 18);
-    for (cell, truth) in cells.into_iter().zip(logits.chunks_exact(of_cell)) {
-        let found = vae.logits(&latent, cell as usize).expect("a finite latent");
-        assert_close(&format!("logits of cell {cell}"), found, truth);
+    let draft = scene(golden);
+    let observed = (0..40_000u32).map(|c| match (3 * (c / 200) + 5 * (c % 200)) % 7 {
+        0..4 => 1 << 16 | ((c / 200) * (c % 200)) & 0xffff,
+        _ => 0,
+    });
+    let observed: Vec<u32> = observed.collect();
+    let told = Heard {
+        draft: Some(&draft),
+        observed: Some(&observed),
+    };
+    for (name, heard) in [("logits", Heard::default()), ("logits_told", told)] {
+        let (logits, cells) = (golden.f32(name), golden.i32("cells"));
+        let of_cell = logits.len() / cells.len();
+        assert_eq!(of_cell, (200 / vae.config().side()).pow(2) * 16 * 18);
+        for (cell, truth) in cells.into_iter().zip(logits.chunks_exact(of_cell)) {
+            let found = vae.logits(&latent, cell as usize, heard);
+            assert_close(
+                &format!("{name} of cell {cell}"),
+                found.expect("a finite latent"),
+                truth,
+            );
+        }
     }
 }
 
@@ -166,7 +194,10 @@ fn row_33_decode() {
     let latent = uniform(LATENT, 7);
     let grid = models.vae.decode(&latent).expect("a finite latent");
     for cell in [0, 49, 1275, 2499] {
-        let logits = models.vae.logits(&latent, cell).expect("a finite latent");
+        let logits = models
+            .vae
+            .logits(&latent, cell, Heard::default())
+            .expect("a finite latent");
         for (voxel, logits) in logits.chunks_exact(18).enumerate() {
             let best = sceneloom::generation::model::kernels::argmax(logits).expect("no NaN");
             let (x, y) = (cell / 50 * 4 + voxel / 64, cell % 50 * 4 + voxel / 16 % 4);

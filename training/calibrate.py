@@ -16,11 +16,11 @@ from safetensors.torch import load_file, save_file
 
 import losses
 from data import Frames, as_tensor
-from latents import latent_space
-from models.occ_vae import CLASSES
-from train import load_vae
+from models.occ_vae import CLASSES, latent_space, load_vae
 
 KINDS = ("dense", "labels")
+# What a decoder that listens is told of each: the draft, and what was observed.
+TOLD = {"dense": ("given",), "labels": ("draft", "observed")}
 MARGIN = 5.0  # logits: voxels whose best two classes are further apart keep their class, whatever the biases
 STEPS = (0.4, 0.2, 0.1)
 FURTHEST = 2.0  # of a bias: beyond, a few voxels of the rarest class would decide
@@ -36,7 +36,10 @@ def voxels(vae, frames, count):
         for frame in np.linspace(0, len(frames) - 1, min(count, len(frames))).astype(int):
             grid = as_tensor([frames.read(frame, kind)])
             latent = vae.encode(grid) * vae.latent_std + vae.latent_mean
-            found = vae.logits(vae.features(latent.permute(0, 3, 1, 2))).reshape(-1, CLASSES)
+            told = [as_tensor([frames.read(frame, name)]) for name in TOLD[kind]]
+            told += [torch.zeros(1, *grid.shape[1:3], dtype=torch.int32)][: 2 - len(told)]
+            heard = told if vae.config.hears else None
+            found = vae.logits(vae.features(latent.permute(0, 3, 1, 2), heard)).reshape(-1, CLASSES)
             label, top = grid.reshape(-1), found.topk(2, 1).values
             doubt = top[:, 0] - top[:, 1] < MARGIN
             sure.add(label[~doubt], found[~doubt].argmax(1))

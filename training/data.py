@@ -1,5 +1,6 @@
 """Shards written by `sceneloom dataset occupancy`: shard_NNNNN.safetensors with u8 dense, labels, draft
-[N,200,200,16], i32 bev and u8 heading [N,200,200]. Memory-mapped; one frame is read at a time. Or the newest of what
+[N,200,200,16], i32 bev and u8 heading [N,200,200], i32 observed [N,200,200] (a bit per voxel that the labelling drive observed, and bit 16
+where that is known; all of it 0 in shards of before). Memory-mapped; one frame is read at a time. Or the newest of what
 `sceneloom-worlds --stream` writes, which never touch a disk."""
 import json
 import queue
@@ -12,7 +13,7 @@ import numpy as np
 import torch
 
 GRIDS = {"dense": (200, 200, 16), "labels": (200, 200, 16), "draft": (200, 200, 16), "bev": (200, 200),
-         "heading": (200, 200)}
+         "heading": (200, 200), "observed": (200, 200)}
 DTYPES = {"U8": np.uint8, "I32": np.int32, "U32": np.uint32}
 
 
@@ -21,6 +22,10 @@ def arrays_of(header, where, array):
     found = {}
     for name, shape in GRIDS.items():
         entry = header.get(name)
+        if entry is None and name == "observed":
+            count = header["dense"]["shape"][0] if "dense" in header else 0
+            found[name] = np.broadcast_to(np.zeros((), np.int32), (count, *shape))
+            continue
         if entry is None or tuple(entry["shape"][1:]) != shape or entry["dtype"] not in DTYPES:
             raise SystemExit(f"{where}: tensor {name}: expected [N, {shape}], found {entry}")
         found[name] = array(DTYPES[entry["dtype"]], entry["data_offsets"][0], tuple(entry["shape"]))
@@ -81,12 +86,12 @@ class Frames:
         who reads twice holds on to the pair."""
         return frame if isinstance(frame, tuple) else self.index[frame]
 
-    def read(self, frame, name):
-        """An array of a frame; `given` is the draft with the background in it."""
+    def read(self, frame, name, part=()):
+        """An array of a frame, or the part of it at two slices; `given` is the draft with the background in it."""
         shard, i = self.at(frame)
         if name == "given":
-            return with_background(shard.arrays["draft"][i], shard.arrays["dense"][i])
-        return shard.arrays[name][i]
+            return with_background(shard.arrays["draft"][(i, *part)], shard.arrays["dense"][(i, *part)])
+        return shard.arrays[name][(i, *part)]
 
 
 class Streamed(Frames):
@@ -226,8 +231,8 @@ class Places:
                     found[c].append((frame, column // 200, column % 200))
         self.found = found
 
-    def crop(self, rng, kind, side, anywhere):
-        """u8 [side,side,16] from a random frame: with probability `anywhere` at a random place, else around a voxel of
+    def crop(self, rng, names, side, anywhere):
+        """The same square [side,side] of several arrays of a random frame: with probability `anywhere` at a random place, else around a voxel of
         a random object class. Its corner lies anywhere, not on the latent's cells: more variety for nothing."""
         classes = [f for f in self.found if f]
         if rng.random() < anywhere or not classes:
@@ -236,7 +241,7 @@ class Places:
             places = classes[rng.integers(len(classes))]
             frame, x, y = places[rng.integers(len(places))]
         x, y = (int(np.clip(v - rng.integers(side // 8, side - side // 8), 0, 200 - side)) for v in (x, y))
-        return self.frames.read(frame, kind)[x : x + side, y : y + side]
+        return tuple(self.frames.read(frame, name, (slice(x, x + side), slice(y, y + side))) for name in names)
 
 
 def as_tensor(grids):
@@ -279,14 +284,15 @@ def draw_masks(rng, batch, whole=0.4):
 
 
 def draw_given(rng, batch):
-    """Where the background is given [B,50,50,1]: everywhere in half of the frames, nowhere in a quarter, else in or outside
-    of some rectangles."""
-    flags = np.zeros((batch, 50, 50, 1), np.float32)
+    """Where the two groups of the background are given [B,50,50,2]: both everywhere for four frames in ten, none for two; of the others
+    each group everywhere, nowhere, or in or outside of some rectangles."""
+    flags = np.zeros((batch, 50, 50, 2), np.float32)
     for flag in flags:
         u = rng.random()
-        if u < 0.5:
+        if u < 0.4:
             flag[:] = 1
-        elif u < 0.75:
-            mask = draw_masks(rng, 1, whole=0)[0][..., None]
-            flag[:] = mask if rng.random() < 0.5 else 1 - mask
+        elif u > 0.6:
+            mask = draw_masks(rng, 1, whole=0)[0]
+            for group in range(2):
+                flag[..., group] = (0, 1, mask, 1 - mask)[rng.integers(4)]
     return flags

@@ -15,9 +15,8 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 from data import Frames, as_tensor
-from latents import latent_space
-from models.occ_dit import DitConfig, OccDit, cell_headings, unshuffle_layout
-from models.occ_vae import OccVae, VaeConfig
+from models.occ_dit import DitConfig, OccDit, condition_of
+from models.occ_vae import OccVae, VaeConfig, latent_space
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN_TIMES = (0.0, 437.5, 999.0)
@@ -44,27 +43,34 @@ def uniform(count, stream):
 
 @torch.no_grad()
 def vae_golden(vae, frames, side):
-    """The front right quarter of a frame: occupied voxels, its latent of `side` cells each way, logits of a few cells."""
+    """The front right quarter of a frame: occupied voxels, its latent of `side` cells each way, logits of a few cells; these again
+    where the decoder hears the very grid as a draft, and what was observed."""
     grid = np.full((200, 200, 16), 17, np.uint8)
     grid[100:160, 70:130] = frames.read(0, "labels")[100:160, 70:130]
     where = np.flatnonzero(grid.reshape(-1) != 17)
     latent = vae.encode(as_tensor([grid]))
-    features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2))[0]
+    x, y = np.meshgrid(np.arange(200), np.arange(200), indexing="ij")
+    observed = np.where((3 * x + 5 * y) % 7 < 4, 1 << 16 | (x * y & 0xFFFF), 0).astype(np.int32)
     wide = 200 // side
     picked = [c // 50 * side // 50 * side + c % 50 * side // 50 for c in GOLDEN_CELLS]
     at = [(c // side * wide, c % side * wide) for c in picked]
-    cells = torch.stack([features[x:, y:][:wide, :wide].reshape(wide * wide * 16, -1) for x, y in at])
+
+    def logits(heard):
+        features = vae.features((latent * vae.latent_std + vae.latent_mean).permute(0, 3, 1, 2), heard)[0]
+        return vae.logits(torch.stack([features[x:, y:][:wide, :wide].reshape(wide * wide * 16, -1) for x, y in at]))
+
     return {
         "voxels": torch.from_numpy(where.astype(np.int32)),
         "labels": torch.from_numpy(grid.reshape(-1)[where]),
         "latent": latent.reshape(-1),
         "cells": torch.tensor(picked, dtype=torch.int32),
-        "logits": vae.logits(cells),
+        "logits": logits(None),
+        "logits_told": logits((as_tensor([grid]), as_tensor([observed])) if vae.config.hears else None),
     }
 
 
 def golden_condition():
-    """Mask, context, draft, layout bits, headings, named numbers, where the background is given: any language can make them alike."""
+    """Mask, context, draft, layout bits, headings, named numbers, background and ground: any language can make them alike."""
     mask = torch.zeros(50, 50)
     mask[10:31, 17:40] = 1
     context = uniform(20000, 2).view(50, 50, 8) * (1 - mask[..., None])
@@ -73,16 +79,20 @@ def golden_condition():
     for layer in range(18):
         bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
     heading = torch.where((x // 8 + y // 4) % 5 == 0, 1 + (x * 7 + y * 3) % 240, 0)
-    named = torch.tensor([[0.25, 0.0, 0.75, 0.5, 1.0, 0.0, 1.0, 1.0]])
-    given = torch.zeros(1, 50, 50, 1)
-    given[:, 20:, 5:33] = 1
-    return mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], named, given
+    named = torch.tensor([[0.25, 0.0, 0.75, 0.5, 1.0, 0.0, 1.0, 1.0, 1.0]])
+    given = torch.zeros(1, 50, 50, 2)
+    given[:, 20:, 5:33, 0] = 1
+    given[:, :, :30, 1] = 1
+    built, grown = (x + y) % 3 == 0, (x // 2 + y) % 5 == 0
+    columns = torch.stack([(x % 4 + 1) * built, (x % 4 + 1 + y % 3) * built, 2 * grown, 9 * grown, (x + 2 * y) % 6], -1)
+    cells = condition_of(mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], given,
+                         columns[None].to(torch.uint8), torch.ones(1, 50, 50))
+    return cells, named
 
 
 @torch.no_grad()
 def dit_golden(dit):
-    mask, context, draft, bev, heading, named, given = golden_condition()
-    condition = dit.condition(mask, context, draft, unshuffle_layout(bev), cell_headings(heading), named, given)
+    condition = dit.condition(*golden_condition())
     x = uniform(20000, 1).view(1, 50, 50, 8)
     out = [dit(x, torch.tensor([t]), condition).reshape(-1)[::5] for t in GOLDEN_TIMES]
     return {"t": torch.tensor(GOLDEN_TIMES), "every_fifth_v": torch.stack(out)}
@@ -100,7 +110,6 @@ def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--vae", type=Path, required=True)
     p.add_argument("--dit", type=Path, required=True)
-    p.add_argument("--distilled", type=Path, help="weights of the DiT's student (distill.py)")
     p.add_argument("--fine", type=Path, help="weights of the fine VAE; those that are there stay without it")
     p.add_argument("--data", type=Path, required=True, help="the data set; the VAE's golden is a held-out frame")
     p.add_argument("--data-command", required=True, help="how the data were made, for the card")
@@ -114,15 +123,14 @@ def main():
     old = args.weights / "card.json"
     kept = json.loads(old.read_text()) if old.exists() else {}
     card = {"data_command": args.data_command, "precision": "matrices f16, vectors f32"}
-    networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else []) \
-        + ([("occ_dit_distilled", args.distilled)] if args.distilled else [])
+    networks = [("occ_vae", args.vae), ("occ_dit", args.dit)] + ([("occ_vae_fine", args.fine)] if args.fine else [])
     for kind, path in networks:
         tensors, meta = read(path)
-        if meta.get("kind") != kind.removesuffix("_fine").removesuffix("_distilled"):
+        if meta.get("kind") != kind.removesuffix("_fine"):
             raise SystemExit(f"{path}: expected weights of {kind}, found {meta.get('kind')}")
         if kind.startswith("occ_dit") and meta["vae"] != name:
             raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
-        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "distilled_steps", "teacher_steps", "calibrated")
+        keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "calibrated")
         meta = {k: meta[k] for k in keep if k in meta} | ({"name": name} if kind == "occ_vae" else {})
         out = args.weights / f"{kind}.safetensors"
         save_file(halved(tensors), out, meta)

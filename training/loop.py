@@ -41,7 +41,8 @@ def optimizers(model, kind, lr, betas, weight_decay):
 class Run:
     """A training run measured by the wall clock: learning rate, EMA, checkpoints, log."""
 
-    def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup):
+    def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup, steady=None):
+        self.steady = steady
         self.out, self.minutes, self.lr, self.warmup, self.ema_decay = Path(args.output), args.minutes, lr, warmup, ema
         self.model, self.ema = model, copy.deepcopy(model).requires_grad_(False).eval()
         self.optimizers = optimizers(model, args.optimizer, lr, betas, weight_decay)
@@ -63,8 +64,11 @@ class Run:
         return self.elapsed() >= self.minutes
 
     def rate(self):
+        """Falls to zero at the end: all the way (half a cosine), or, if a share of the time is `steady`, in a line after that: such
+        a run can be made longer while it is steady."""
         done = min(1.0, self.elapsed() / self.minutes)
-        return self.lr * min(1.0, (self.step + 1) / self.warmup) * 0.5 * (1 + math.cos(math.pi * done))
+        fall = 0.5 * (1 + math.cos(math.pi * done)) if self.steady is None else min(1.0, (1 - done) / (1 - self.steady))
+        return self.lr * min(1.0, (self.step + 1) / self.warmup) * fall
 
     def update(self, loss, samples):
         """One optimiser step; a loss that is not finite is skipped and reported."""

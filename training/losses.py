@@ -65,8 +65,8 @@ def kl_to_normal(mean, logvar):
     return 0.5 * (mean**2 + torch.expm1(logvar) - logvar).mean()
 
 
-def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.01, anchor=None):
-    """Cross-entropy and Lovasz on sampled voxels, the KL term and, given an `anchor` (another VAE), the squared distance of the
+def vae_loss(model, labels, heard=None, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_000, latent_noise=0.01, anchor=None):
+    """`heard` as in `OccVae.features`. Cross-entropy and Lovasz on sampled voxels, the KL term and, given an `anchor` (another VAE), the squared distance of the
     latents from its own, in their spread. Returns the loss and its parts."""
     mean, logvar = model.moments(labels)
     latent = mean
@@ -74,10 +74,11 @@ def vae_loss(model, labels, kl_weight=1e-6, voxels_per_cell=5, lovasz_voxels=24_
         latent = mean + torch.randn_like(mean) * (0.5 * logvar).exp()
         # A little of the latent's own spread, so that the decoder forgives what diffusion gets slightly wrong.
         spread = mean.detach().std((0, 2, 3), keepdim=True)
-        latent = latent + torch.randn_like(mean) * spread * latent_noise
+        level = 2 * latent_noise * torch.rand(len(mean), 1, 1, 1, device=mean.device)
+        latent = latent + torch.randn_like(mean) * spread * level
     cells = labels.shape[0] * labels.shape[1] * labels.shape[2] // 16  # 1.6 m each, whatever the latent
     index, label, weight = sample_voxels(labels, voxels_per_cell * cells)
-    logits = model.logits(model.features(latent).reshape(-1, FEATURES)[index])
+    logits = model.logits(model.features(latent, heard).reshape(-1, FEATURES)[index])
     ce = (F.cross_entropy(logits, label, reduction="none") * weight).sum() / weight.sum()
     pick = torch.randint(len(label), (min(lovasz_voxels, len(label)),), device=label.device)
     lovasz = lovasz_softmax(logits[pick].softmax(-1), label[pick])

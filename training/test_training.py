@@ -11,9 +11,11 @@ from safetensors.numpy import save_file
 
 from calibrate import figures, search
 from data import GRIDS, Places, Streamed, draw_given, leaned, named, turned, turned_heading, with_background
+from muon import orthogonalised
 from losses import kl_to_normal, lovasz_softmax, vae_loss
-from models.occ_dit import OccDit, DitConfig, patchify, unpatchify
+from models.occ_dit import CONDITION, DitConfig, OccDit, condition_of, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
+from pack import columns_of
 from schedule import alpha_bar, ddim_sample
 
 
@@ -63,7 +65,7 @@ def shapes_and_schedule():
     assert torch.equal(unfold(fold(x)), x)
     assert torch.equal(fold(x)[0, :, 4, 5], x[0, :, 8:10, 10:12].permute(1, 2, 0).reshape(-1))
     x = torch.randn(2, 50, 50, 8)
-    assert torch.equal(unpatchify(patchify(x), 8), x)
+    assert torch.equal(unpatchify(patchify(x)), x)
     abar = alpha_bar()
     assert abar[-1] == 0 and (abar[1:] < abar[:-1]).all() and len(abar) == 1000
     # Data that is one point x0: v = alpha eps - sigma x0 is known, and DDIM must land on x0.
@@ -95,13 +97,48 @@ def networks_learn():
     empty = torch.full_like(labels, 17)
     assert torch.isfinite(vae_loss(vae, empty)[0])
 
-    dit = OccDit(DitConfig(width=64, depth=2, given=True))
+    dit = OccDit(DitConfig(width=64, depth=2, heads=2))
     torch.nn.init.normal_(dit.final.weight)
-    zeros = torch.zeros(1, 50, 50, 8)
-    nothing = [torch.zeros(1, 50, 50, 288), torch.zeros(1, 50, 50, 2), torch.zeros(1, 8), torch.ones(1, 50, 50, 1)]
-    condition = dit.condition(torch.ones(1, 50, 50), zeros, zeros, *nothing)
+    condition = dit.condition(torch.randn(1, 50, 50, CONDITION), torch.zeros(1, 9))
     dit(torch.randn(1, 50, 50, 8), torch.tensor([500.0]), condition).sum().backward()
     assert all(torch.isfinite(p.grad).all() for p in dit.parameters() if p.grad is not None)
+
+
+def a_window_hears_what_its_part_of_the_frame_says():
+    torch.manual_seed(1)
+    draw = lambda *shape, high=2: torch.randint(high, (1, *shape))
+    whole = {"mask": draw(50, 50).float(), "context": torch.randn(1, 50, 50, 8), "draft": torch.randn(1, 50, 50, 8),
+             "bev": draw(200, 200, high=2**18).int(), "heading": draw(200, 200, high=241).byte(), "given": draw(50, 50, 2).float(),
+             "columns": draw(200, 200, 5, high=17).byte(), "ground": draw(50, 50).float()}
+    cells = condition_of(**whole)
+    assert cells.shape == (1, 50, 50, CONDITION)
+    part = {name: x[:, 40:72, 80:112] if x.shape[1] == 200 else x[:, 10:18, 20:28] for name, x in whole.items()}
+    assert torch.equal(condition_of(**part), cells[:, 10:18, 20:28])
+    # A network without blocks looks at each token alone, so a window of it is a window of the whole.
+    dit = OccDit(DitConfig(width=64, depth=0, heads=2))
+    torch.nn.init.normal_(dit.final.weight)
+    x, t, named = torch.randn(1, 50, 50, 8), torch.tensor([500.0]), torch.zeros(1, 9)
+    with torch.no_grad():
+        all_ = dit(x, t, dit.condition(cells, named))
+        window = dit(x[:, 10:18, 20:28], t, dit.condition(cells[:, 10:18, 20:28], named, torch.tensor([[5, 10]])))
+    close(window, all_[:, 10:18, 20:28], 1e-5)
+
+
+def columns_of_the_background():
+    draft = np.full((200, 200, 16), 17, np.uint8)
+    draft[..., 2] = 11
+    given = draft.copy()
+    given[3, 4, 3:7], given[3, 4, 9], given[5, 6, 2:4] = 15, 16, 16
+    found = columns_of(draft, given)
+    assert found[3, 4].tolist() == [4, 7, 10, 10, 3] and found[5, 6].tolist() == [0, 0, 3, 4, 3] and found[0, 0].tolist() == [0, 0, 0, 0, 3]
+
+
+def muon_treats_matrices_of_one_shape_alike():
+    torch.manual_seed(4)
+    matrices = torch.randn(3, 96, 64)
+    found = orthogonalised(matrices)
+    assert (torch.linalg.svdvals(found) < 1.3).all() and (torch.linalg.svdvals(found)[:, :60] > 0.5).all()
+    close(orthogonalised(matrices[1]), found[1], 2e-2)
 
 
 def headings_turn_with_their_frames():
@@ -150,7 +187,7 @@ def a_given_background_stands_in_the_draft():
     assert (found == 15).sum() == 9 * 9 * 3 - 2 and (found[9:, 9:, 1:] == 17).all()
     flags = draw_given(np.random.default_rng(2), 400)
     shares = flags.mean((1, 2, 3))
-    assert 0.4 < (shares == 1).mean() < 0.6 and 0.15 < (shares == 0).mean() < 0.35
+    assert 0.35 < (shares == 1).mean() < 0.55 and 0.15 < (shares == 0).mean() < 0.35
 
 
 def a_stream_is_read_in_order():
@@ -196,10 +233,11 @@ def calibration_undoes_a_bias():
 
 
 if __name__ == "__main__":
-    reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../../shared/reference")
+    reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../shared/reference")
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
-    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias):
+    for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, a_window_hears_what_its_part_of_the_frame_says,
+                 columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias):
         test()
         print(test.__name__, "ok")

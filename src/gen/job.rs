@@ -13,7 +13,7 @@ use super::schedule::ScheduleError;
 use super::solver::SolverError;
 use crate::scene::{Scene, SceneRev, VoxelGrid};
 
-pub use super::params::{DitVariant, GenParams, Named, Precision, Quality, RegionMode};
+pub use super::params::{GenParams, Named, Precision, Quality, RegionMode};
 
 /// All that a pipeline may read.
 #[derive(Clone, Debug)]
@@ -109,6 +109,10 @@ pub struct GenReport {
     pub seam_change_share: f64,
     /// Voxels that differ from the source.
     pub voxels_changed: usize,
+    /// Voxels of the region that the edit does not change and the VAE would have ([`keep_unchanged`]).
+    ///
+    /// [`keep_unchanged`]: super::keep_unchanged::keep_unchanged
+    pub unchanged_kept: usize,
     /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
     pub objects_kept: usize,
     /// Columns whose painted ground the networks did not follow, and that were given it.

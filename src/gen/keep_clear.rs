@@ -82,6 +82,19 @@ pub fn keep_unobserved(
     count
 }
 
+/// What is known to be observed after an edit, as the decoder hears it (`Unobserved::observed`): nothing of columns that the
+/// user edited and of cells of `redraw`. `None` where the frame has no masks.
+pub fn observed_still(frame: &Frame, redraw: &RedrawMask, request: &Request<'_>) -> Option<Vec<u32>> {
+    let mut observed = frame.inferred.unobserved.as_ref()?.observed();
+    for (c, told) in observed.iter_mut().enumerate() {
+        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        if request.edited(c) || redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+            *told = 0;
+        }
+    }
+    Some(observed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::region::Region;
+use super::seen_draft::seen_voxels;
 use crate::scene::draft::{ground_bin, ground_class};
 use crate::scene::raster::box_cells;
 use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
@@ -11,6 +12,8 @@ use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
 /// A placed box counts as there if at least this share of its columns holds its class, of the share that boxes of the
 /// frame usually have: labels with holes hold less than complete worlds.
 const THERE: f64 = 0.5;
+/// Objects are hollow in frames that hold something in a smaller share of their columns, as labels do.
+const SOLID: f64 = 0.8;
 /// A box of the source whose class fills less of its columns was not seen, and says nothing of a box that moved.
 const SEEN: f64 = 0.05;
 /// A box that kept its size to this much keeps its voxels when it moves, m.
@@ -18,13 +21,14 @@ const SAME_SIZE_M: f64 = 0.05;
 /// Voxels this far outside a removed box still belong to it, m.
 const OVERHANG_M: f64 = 0.3;
 
-/// Corrects `generated` inside the region: drafts of placed boxes that are mostly missing are put in,
+/// Corrects `generated` inside the region: drafts of placed boxes that are mostly missing are put in (as labels would have them, where the frame is like that),
 /// voxels of removed boxes are cleared. Returns how many boxes needed it. Of the boxes that are there,
 /// `all` looks at every one, else only at those that differ from the source.
 pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut VoxelGrid) -> usize {
     let old = &frame.source.boxes;
     let changed = |id: &BoxId, b: &SceneBox| old.get(id) != Some(b);
-    let (mut corrected, least) = (0, THERE * usual_fill(frame));
+    let shown = if all { &*generated } else { &frame.source.occupancy };
+    let (mut corrected, usual) = (0, Usual::of(frame, shown));
     for (id, b) in old {
         if frame.boxes.get(id) != Some(b) {
             corrected += usize::from(clear(frame, region, b, generated));
@@ -32,24 +36,43 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     }
     for (id, b) in &frame.boxes {
         if all || changed(id, b) {
-            corrected += usize::from(put_in(frame, region, b, least, generated));
+            corrected += usize::from(put_in(frame, region, b, &usual, generated));
         }
     }
     corrected
 }
 
-/// Share of its columns that a box of the source usually fills, as a median over boxes that were seen at all; without any,
-/// the share of all columns that hold something.
-fn usual_fill(frame: &Frame) -> f64 {
-    let source = &frame.source;
-    let seen = source.boxes.values().map(|b| filled(&source.occupancy, b));
-    let mut seen: Vec<f64> = seen.filter(|fill| *fill >= SEEN).collect();
-    seen.sort_by(f64::total_cmp);
-    let columns =
-        || (0..GridSpec::COLUMNS).map(|c| source.occupancy.column(c / GridSpec::NY, c % GridSpec::NY));
-    let any = || columns().filter(|c| c.iter().any(|l| *l != Class::FREE)).count();
-    let middle = seen.get(seen.len() / 2).copied();
-    middle.unwrap_or_else(|| any() as f64 / GridSpec::COLUMNS as f64)
+/// What boxes of a frame hold.
+struct Usual {
+    /// Share of its columns that a box of the source fills, as a median over boxes that were seen at all; without any, the share
+    /// of all columns that hold something; 1 where nothing does.
+    fill: f64,
+    /// Objects are hollow, as in labels, in which many columns are empty.
+    hollow: bool,
+}
+
+impl Usual {
+    /// Of the boxes of a frame's source; `shown` is the grid that a new box joins.
+    fn of(frame: &Frame, shown: &VoxelGrid) -> Self {
+        let source = &frame.source;
+        let seen = source.boxes.values().map(|b| filled(&source.occupancy, b));
+        let mut seen: Vec<f64> = seen.filter(|fill| *fill >= SEEN).collect();
+        seen.sort_by(f64::total_cmp);
+        let middle = seen.get(seen.len() / 2).copied();
+        let fill = || Some(held_share(&source.occupancy)).filter(|share| *share > 0.0);
+        let held = held_share(shown);
+        Self {
+            fill: middle.or_else(fill).unwrap_or(1.0),
+            hollow: held > 0.0 && held < SOLID,
+        }
+    }
+}
+
+/// Share of the columns that hold something, 0 to 1.
+fn held_share(grid: &VoxelGrid) -> f64 {
+    let columns = (0..GridSpec::COLUMNS).map(|c| grid.column(c / GridSpec::NY, c % GridSpec::NY));
+    let held = columns.filter(|c| c.iter().any(|l| *l != Class::FREE)).count();
+    held as f64 / GridSpec::COLUMNS as f64
 }
 
 /// Share of a box's columns that hold its class, 0 to 1.
@@ -110,15 +133,16 @@ fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
             .any(|l| Class::from_id(*l).is_some_and(Class::is_ground))
 }
 
-/// Puts a box in if less than `least` of its columns hold it: with its own voxels if it moved, else as its draft.
-fn put_in(frame: &Frame, region: &Region, b: &SceneBox, least: f64, generated: &mut VoxelGrid) -> bool {
+/// Puts a box in if its columns hold much less of it than the `usual` share: with its own voxels if it moved, else as its draft,
+/// of which labels hold what a sensor can see.
+fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated: &mut VoxelGrid) -> bool {
     let mut columns = draft::box_columns(b);
     columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
     let there = columns
         .iter()
         .filter(|(x, y, _)| generated.column(*x, *y).contains(&b.class.id()))
         .count();
-    if there as f64 >= least * columns.len() as f64 {
+    if there as f64 >= THERE * usual.fill * columns.len() as f64 {
         return false;
     }
     let moved = frame.source.boxes.get(&b.id).filter(|old| {
@@ -127,6 +151,21 @@ fn put_in(frame: &Frame, region: &Region, b: &SceneBox, least: f64, generated: &
     });
     if let Some(old) = moved {
         carry(frame, region, old, b, generated);
+        return true;
+    }
+    if usual.hollow {
+        let mut seen = seen_voxels(&frame.layout, b);
+        seen.retain(|[x, y, _]| region.columns[x * GridSpec::NY + y]);
+        let drop = |label: &mut u8| {
+            if *label == b.class.id() {
+                *label = Class::FREE;
+            }
+        };
+        columns
+            .iter()
+            .for_each(|(x, y, _)| generated.column_mut(*x, *y).iter_mut().for_each(drop));
+        seen.iter()
+            .for_each(|[x, y, z]| generated.set(*x, *y, *z, b.class.id()));
         return true;
     }
     for (x, y, layers) in columns {
@@ -331,6 +370,29 @@ mod tests {
         let same = sparse.clone();
         assert_eq!(keep_objects(&frame, &region, false, &mut sparse), 0);
         assert_eq!(sparse, same);
+    }
+
+    #[test]
+    fn a_new_box_is_hollow_among_labels_and_solid_in_a_complete_world() {
+        let new = car(1, 10.0);
+        let solid: usize = draft::box_columns(&new).iter().map(|c| c.2).sum();
+        let complete = draft::draft(&BevLayout::default(), [].into_iter());
+        let mut labels = VoxelGrid::new();
+        for (x, y, z, label) in complete.iter_set().filter(|v| (v.0 + v.1) % 3 == 0) {
+            labels.set(x, y, z, label);
+        }
+        for (source, hollow) in [(complete, false), (labels, true), (VoxelGrid::new(), false)] {
+            let mut frame = Frame::new(BevLayout::default(), Default::default(), source.clone());
+            frame.boxes.insert(new.id, new);
+            let mut generated = source;
+            let region = Region::of_edit(&frame, 2);
+            assert_eq!(keep_objects(&frame, &region, false, &mut generated), 1);
+            let found = generated.class_counts()[Class::Car as usize];
+            match hollow {
+                true => assert!((solid / 5..solid * 2 / 3).contains(&found), "{found} of {solid}"),
+                false => assert_eq!(found, solid),
+            }
+        }
     }
 
     #[test]

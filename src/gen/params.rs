@@ -42,17 +42,6 @@ pub enum Precision {
     Int8,
 }
 
-/// Which denoising network.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DitVariant {
-    /// The one that was trained on worlds.
-    #[default]
-    Base,
-    /// Its student, which was trained to make four steps of what takes its teacher twelve.
-    Distilled,
-}
-
 /// Numbers of [`Density`] that the user names, each 0 to 1. What is not named stays as it is in an edit, and is left
 /// to the networks in a new scene (but completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -127,8 +116,6 @@ pub struct GenParams {
     pub halo_tokens: u32,
     /// In what the denoising network's products are computed.
     pub precision: Precision,
-    /// Which denoising network.
-    pub network: DitVariant,
     /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
     pub reuse_steps: u32,
     /// How much work the result is worth.
@@ -156,7 +143,6 @@ impl Default for GenParams {
             local: true,
             halo_tokens: 1,
             precision: Precision::F32,
-            network: DitVariant::Base,
             reuse_steps: 1,
             quality: Quality::Final,
             named: Named::default(),
@@ -167,15 +153,7 @@ impl Default for GenParams {
 
 /// Counts, numbers, named numbers, choices.
 type Bits = ([u32; 5], [u64; 4], [Option<u32>; 4], Choices);
-type Choices = (
-    SolverKind,
-    RegionMode,
-    RedrawMask,
-    Quality,
-    Precision,
-    DitVariant,
-    [bool; 2],
-);
+type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
     /// Everything as bits: the basis of equality and hashing.
@@ -203,7 +181,6 @@ impl GenParams {
                 self.redraw,
                 self.quality,
                 self.precision,
-                self.network,
                 [self.keep_objects, self.local],
             ),
         )
@@ -275,9 +252,8 @@ mod tests {
         };
         let same = GenParams { strength: -0.0, ..a };
         assert_eq!((a, hash(&a)), (same, hash(&same)));
-        let changes: [fn(&mut GenParams); 15] = [
+        let changes: [fn(&mut GenParams); 14] = [
             |p| p.precision = Precision::Int8,
-            |p| p.network = DitVariant::Distilled,
             |p| p.reuse_steps = 2,
             |p| p.redraw.set(3, 4, true),
             |p| p.steps = 11,

@@ -13,6 +13,8 @@ pub enum Stream {
     Region = 1,
     /// Where in the encoder's normal distribution a latent is drawn.
     Encoder = 2,
+    /// Noise that scenery is drawn from.
+    Scenery = 3,
 }
 
 /// The ten-round Philox block function: four words from four counter words and two key words.

@@ -5,6 +5,9 @@ use std::sync::Arc;
 
 use super::{BoxId, GridSpec};
 
+/// Set beside a bit per observed bin of a column: it is known which were. A column of 0 says nothing.
+pub const KNOWN: u32 = 1 << GridSpec::NZ;
+
 /// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]`, one bit per bin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unobserved(Arc<[u16]>);
@@ -28,6 +31,11 @@ impl Unobserved {
     /// One word per column, `[x][y]`.
     pub fn words(&self) -> &[u16] {
         &self.0
+    }
+
+    /// What was observed: per column `[x][y]` one bit per bin and [`KNOWN`].
+    pub fn observed(&self) -> Vec<u32> {
+        self.0.iter().map(|word| u32::from(!word) | KNOWN).collect()
     }
 
     /// Share of a column's bins that nothing observed, 0 to 1.
@@ -75,6 +83,9 @@ mod tests {
         let found = Unobserved::from_observed(&observed).expect("one flag per voxel");
         assert_eq!(found.words()[3 * GridSpec::NY + 5], 1 << 2 | 1 << 15);
         assert_eq!((found.share(3, 5), found.share(3, 6)), (0.125, 0.0));
+        let told = found.observed();
+        assert_eq!(told[3 * GridSpec::NY + 5], KNOWN | 0x7ffb);
+        assert_eq!(told[0], KNOWN | 0xffff);
         assert_eq!(found.total(), 2.0 / GridSpec::VOXELS as f64);
         assert_eq!(Unobserved::from_words(found.words().to_vec()), Some(found));
         assert_eq!(Unobserved::from_observed(&observed[1..]), None);

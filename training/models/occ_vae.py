@@ -5,9 +5,14 @@ not depend on where in its latent cell it lies, so columns share their weights: 
 of the sixteen places it can have in a cell. The encoder sums one embedding per occupied voxel and looks two cells
 (3.2 m) around itself, so its cost follows what is there and an edit changes few latents; the decoder looks three.
 """
+import hashlib
+import json
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import torch
+from safetensors import safe_open
+from safetensors.torch import load_file
 from torch import nn
 from torch.nn import functional as F
 
@@ -27,6 +32,7 @@ class VaeConfig:
     widths: tuple = (48, 96, 192)
     encoder_kernels: tuple = ((1,), (3,), (3, 1, 1))
     decoder_kernels: tuple = ((3, 3, 1), (3,), (1, 1))
+    hears: bool = False  # the decoder hears the draft of the layout and which voxels were observed
 
     @classmethod
     def fine(cls):
@@ -87,6 +93,18 @@ def unfold(x):
     return x.reshape(b, 2 * h, 2 * w, c // 4).permute(0, 3, 1, 2)
 
 
+def sum_of_voxels(table, labels):
+    """u8 [B,X,Y,16] -> [B,W,X,Y]: per column the sum of the table's rows of its occupied voxels (bin * 17 + label)."""
+    columns = labels.reshape(-1, HEIGHT)
+    occupied = columns != FREE
+    where = occupied.view(-1).nonzero().squeeze(1)  # flat index: column * 16 + z
+    codes = (where % HEIGHT) * FREE + columns.reshape(-1)[where]
+    offsets = torch.zeros(len(columns), dtype=torch.long, device=labels.device)
+    torch.cumsum(occupied.sum(1)[:-1], 0, out=offsets[1:])
+    # [B,X,Y,W] seen as [B,W,X,Y] is channels_last already.
+    return table(codes, offsets).view(*labels.shape[:3], -1).permute(0, 3, 1, 2)
+
+
 class OccVae(nn.Module):
     """Works on maps of any size that four divides: training crops, frames."""
 
@@ -106,6 +124,11 @@ class OccVae(nn.Module):
         self.decoder_stem = nn.Conv2d(c.latent, coarse, 1)
         self.decoder = nn.ModuleList(Level(w, k) for w, k in zip(c.widths[::-1], c.decoder_kernels))
         self.up = nn.ModuleList(nn.Conv2d(b, 4 * a, 1) for a, b in steps[::-1])
+        if c.hears:
+            self.drafted = nn.EmbeddingBag(HEIGHT * FREE, fine, mode="sum")
+            self.observed = nn.Linear(HEIGHT + 1, fine, bias=False)  # bits of a column; are they known?
+            nn.init.zeros_(self.drafted.weight)
+            nn.init.zeros_(self.observed.weight)
         self.decoder_norm = ChannelNorm(fine)
         self.decoder_head = nn.Conv2d(fine, HEIGHT * FEATURES, 1)
         self.class_table = nn.Parameter(torch.randn(CLASSES, FEATURES))
@@ -116,29 +139,26 @@ class OccVae(nn.Module):
 
     def moments(self, labels):
         """Labels u8 [B,X,Y,16] -> mean, log variance [B,C,X/f,Y/f], not normalised; f columns a cell."""
-        b, nx, ny, _ = labels.shape
-        columns = labels.reshape(-1, HEIGHT)
-        occupied = columns != FREE
-        where = occupied.view(-1).nonzero().squeeze(1)  # flat index: column * 16 + z
-        codes = (where % HEIGHT) * FREE + columns.reshape(-1)[where]
-        offsets = torch.zeros(len(columns), dtype=torch.long, device=labels.device)
-        torch.cumsum(occupied.sum(1)[:-1], 0, out=offsets[1:])
-        # [B,X,Y,W] seen as [B,W,X,Y] is channels_last already.
-        x = self.embed(codes, offsets).view(b, nx, ny, -1).permute(0, 3, 1, 2)
-        x = self.encoder[0](x)
+        x = self.encoder[0](sum_of_voxels(self.embed, labels))
         for down, level in zip(self.down, self.encoder[1:]):
             x = level(down(fold(x)))
         with torch.autocast(x.device.type, enabled=False):  # bf16 would round off what latents are to carry
             mean, logvar = self.encoder_head(self.encoder_norm(x.float())).chunk(2, 1)
         return mean, logvar.clamp(-30.0, 20.0)
 
-    def features(self, latent):
-        """Latent [B,C,x,y], not normalised -> voxel features [B,f x,f y,16,8]."""
+    def features(self, latent, heard=None):
+        """Latent [B,C,x,y], not normalised, and what is `heard`: a draft u8 [B,f x,f y,16], all free where there is none, and what was
+        observed i32 [B,f x,f y] (a bit per voxel, and bit 16 where that is known) -> voxel features [B,f x,f y,16,8]."""
         with torch.autocast(latent.device.type, enabled=False):
             x = self.decoder_stem(latent.contiguous(memory_format=torch.channels_last))
         x = self.decoder[0](x)
-        for up, level in zip(self.up, self.decoder[1:]):
-            x = level(unfold(up(x)))
+        for i, (up, level) in enumerate(zip(self.up, self.decoder[1:])):
+            x = unfold(up(x))
+            if heard is not None and i + 1 == len(self.up):
+                draft, observed = heard
+                bits = (observed[..., None] >> torch.arange(HEIGHT + 1, device=x.device)) & 1
+                x = x + sum_of_voxels(self.drafted, draft) + self.observed(bits.to(x.dtype)).permute(0, 3, 1, 2)
+            x = level(x)
         x = self.decoder_head(self.decoder_norm(x)).permute(0, 2, 3, 1)
         return x.reshape(*x.shape[:3], HEIGHT, FEATURES)
 
@@ -152,7 +172,24 @@ class OccVae(nn.Module):
         mean, _ = self.moments(labels)
         return (mean.permute(0, 2, 3, 1) - self.latent_mean) / self.latent_std
 
-    def decode(self, latent):
-        """Normalised latent [B,50,50,8] -> u8 [B,200,200,16], the likeliest class of each voxel."""
-        features = self.features((latent * self.latent_std + self.latent_mean).permute(0, 3, 1, 2))
+    def decode(self, latent, heard=None):
+        """Normalised latent [B,50,50,8] and what the decoder hears (`features`) -> u8 [B,200,200,16], the likeliest class of each voxel."""
+        features = self.features((latent * self.latent_std + self.latent_mean).permute(0, 3, 1, 2), heard)
         return self.logits(features).argmax(-1).to(torch.uint8)
+
+
+def load_vae(path, device):
+    """The network of a file of weights, which learns no more."""
+    with safe_open(path, "pt") as f:
+        config = VaeConfig(**json.loads(f.metadata()["config"]))
+    vae = OccVae(config)
+    vae.load_state_dict({k: v.float() for k, v in load_file(path).items()})
+    return vae.to(device, memory_format=torch.channels_last).eval().requires_grad_(False)
+
+
+def latent_space(path):
+    """Names the latents of a VAE: its file's hash, or, where only the decoder was trained on, that of the file it came
+    from. A DiT belongs to a latent space."""
+    with safe_open(path, "pt") as f:
+        name = (f.metadata() or {}).get("latents")
+    return name or hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]

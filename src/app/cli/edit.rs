@@ -85,6 +85,7 @@ impl EditCommand {
             "stems_added": r.stems_added,
             "loose_dropped": r.loose_dropped,
             "unobserved_kept": r.unobserved_kept,
+            "unchanged_kept": r.unchanged_kept,
             "seed": params.seed,
             "steps": params.steps,
             "model": pipeline.models().card.name,

@@ -31,7 +31,7 @@ use clap::{Args, Parser, Subcommand};
 
 use self::region_arg::RegionArg;
 use crate::app::open;
-use crate::generation::job::{DitVariant, GenParams, Named, Precision, RegionMode};
+use crate::generation::job::{GenParams, Named, Precision, RegionMode};
 use crate::generation::solver::SolverKind;
 use crate::generation::trade::Stops;
 
@@ -149,9 +149,6 @@ struct Gen {
     /// In what the network's products are computed: f32, or int8, which is faster where the machine has AVX-512 VNNI.
     #[arg(long, value_parser = ["f32", "int8"])]
     precision: Option<String>,
-    /// Which denoising network: base, or distilled, its student of few steps, if a folder of weights holds one.
-    #[arg(long, value_parser = ["base", "distilled"])]
-    network: Option<String>,
     /// Leave the networks' output as it is, also where they left out a box that the user placed.
     #[arg(long)]
     raw: bool,
@@ -196,11 +193,6 @@ impl Gen {
             strength: self.strength,
             keep_objects: !self.raw,
             local: !self.dense && default.local,
-            network: match self.network.as_deref() {
-                Some("distilled") => DitVariant::Distilled,
-                Some(_) => DitVariant::Base,
-                None => default.network,
-            },
             precision: match self.precision.as_deref() {
                 Some("int8") => Precision::Int8,
                 Some(_) => Precision::F32,

@@ -1,7 +1,7 @@
 //! The settings that are tried: the default, each knob by itself, and random ones across all knobs (a Latin hypercube:
 //! every knob's values occur equally often).
 
-use crate::generation::job::{DitVariant, GenParams, Precision};
+use crate::generation::job::{GenParams, Precision};
 use crate::generation::solver::SolverKind;
 use crate::generation::trade::StopKnobs;
 use crate::generation::world::draw::Draw;
@@ -26,9 +26,6 @@ pub fn name_of(knobs: &StopKnobs, base: &StopKnobs) -> String {
     if knobs.precision == Precision::Int8 {
         parts.push("int8".into());
     }
-    if knobs.network == DitVariant::Distilled {
-        parts.push("distilled".into());
-    }
     if !knobs.local {
         parts.push("dense".into());
     } else if knobs.halo_tokens != base.halo_tokens {
@@ -44,7 +41,7 @@ pub fn name_of(knobs: &StopKnobs, base: &StopKnobs) -> String {
 }
 
 /// The settings of edits: `base`, knobs one at a time, and `draws` random ones.
-pub fn of_edits(base: GenParams, distilled: bool, draws: usize, seed: u64) -> Vec<Setting> {
+pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
     let mut out: Vec<Setting> = Vec::new();
     let mut add = |params: GenParams, other_target: bool, extra: &str| {
         let name = name_of(&StopKnobs::of(&params), &StopKnobs::of(&base)) + extra;
@@ -140,26 +137,6 @@ pub fn of_edits(base: GenParams, distilled: bool, draws: usize, seed: u64) -> Ve
             "",
         );
     }
-    if distilled {
-        for (steps, precision) in [
-            (1, Precision::F32),
-            (2, Precision::F32),
-            (4, Precision::F32),
-            (4, Precision::Int8),
-        ] {
-            let network = DitVariant::Distilled;
-            add(
-                GenParams {
-                    network,
-                    steps,
-                    precision,
-                    ..base
-                },
-                false,
-                "",
-            );
-        }
-    }
     for guidance in [1.5, 3.0] {
         add(
             GenParams { guidance, ..base },
@@ -244,7 +221,7 @@ mod tests {
 
     #[test]
     fn settings_are_sound_and_named_apart() {
-        let settings = of_edits(GenParams::default(), true, 12, 3);
+        let settings = of_edits(GenParams::default(), 12, 3);
         assert!(settings.len() > 30);
         for (i, s) in settings.iter().enumerate() {
             assert_eq!(s.params.check(), Ok(()));

@@ -4,8 +4,9 @@ use safetensors::tensor::Dtype;
 
 use super::shard::Shard;
 use crate::generation::world::draw::hash;
-use crate::generation::world::voxelize::{Drive, Vertical, complete, labels};
+use crate::generation::world::voxelize::{Drive, Vertical, complete, observed_labels};
 use crate::generation::world::{World, template, terrain::Terrain, traffic};
+use crate::scene::inferred::KNOWN;
 use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
 
 /// One training frame of the occupancy networks.
@@ -20,6 +21,8 @@ pub struct OccupancyFrame {
     pub bev: Vec<u32>,
     /// Headings of objects as [`raster::headings`] gives them, `[x][y]`.
     pub heading: Vec<u8>,
+    /// What the labelling drive observed, `[x][y]`: a bit per voxel, and [`KNOWN`].
+    pub observed: Vec<u32>,
 }
 
 /// The world of frame `index` of the data set of `seed`, and the frame's own seed. `roads` may give a
@@ -38,9 +41,21 @@ pub fn world_of(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>)
 pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> OccupancyFrame {
     let (world, seed) = world_of(seed, index, roads);
     let rig = SensorRig::default();
+    let (labels, observed) = observed_labels(
+        &world,
+        rig.lidars.first(),
+        &Drive::default(),
+        Vertical::Occ3d,
+        seed,
+    );
+    let bits = |column: &[bool]| {
+        let seen = column.iter().enumerate().filter(|(_, seen)| **seen);
+        seen.fold(KNOWN, |bits, (z, _)| bits | 1 << z)
+    };
     OccupancyFrame {
         dense: complete(&world, Vertical::Occ3d),
-        labels: labels(&world, &rig.lidars[0], &Drive::default(), Vertical::Occ3d, seed),
+        labels,
+        observed: observed.chunks_exact(GridSpec::NZ).map(bits).collect(),
         draft: draft::draft(&world.layout, world.boxes.values()),
         bev: raster::bev_channels(&world.layout, world.boxes.values()),
         heading: raster::headings(world.boxes.values()),
@@ -58,24 +73,28 @@ impl OccupancyFrame {
             heading: raster::headings(boxes.values()),
             dense: labels.clone(),
             labels,
+            observed: vec![0; GridSpec::COLUMNS],
         }
     }
 }
 
 impl Shard for OccupancyFrame {
-    const ARRAYS: &'static [&'static str] = &["dense", "labels", "draft", "bev", "heading"];
+    const ARRAYS: &'static [&'static str] = &["dense", "labels", "draft", "bev", "heading", "observed"];
 
-    /// u8 `dense`, `labels`, `draft` `[N,200,200,16]`, i32 `bev` and u8 `heading` `[N,200,200]`.
+    /// u8 `dense`, `labels`, `draft` `[N,200,200,16]`, i32 `bev` and `observed` and u8 `heading` `[N,200,200]`.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let (grid, columns) = (VOXELS.to_vec(), VOXELS[..2].to_vec());
         let bev = frames.iter().flat_map(|f| &f.bev).flat_map(|b| b.to_le_bytes());
+        let observed = frames.iter().flat_map(|f| &f.observed);
+        let observed = observed.flat_map(|b| b.to_le_bytes());
         let heading = frames.iter().flat_map(|f| &f.heading).copied();
         vec![
             (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.dense))),
             (Dtype::U8, grid.clone(), voxels(frames.iter().map(|f| &f.labels))),
             (Dtype::U8, grid, voxels(frames.iter().map(|f| &f.draft))),
             (Dtype::I32, columns.clone(), bev.collect()),
-            (Dtype::U8, columns, heading.collect()),
+            (Dtype::U8, columns.clone(), heading.collect()),
+            (Dtype::I32, columns, observed.collect()),
         ]
     }
 }

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::DitCondition;
+use super::{ColumnHeights, DitCondition};
 use candle_core::{D, DType, Device, Result, Tensor, safetensors};
 
 const TOKENS: usize = 625;
@@ -85,9 +85,23 @@ impl CandleDit {
                 }
             }
             features.extend(heading);
-            if self.tensors.contains_key("skip_given.weight") {
-                features.push(c.given[at]);
+            let columns = (0..16).map(|k| c.columns[(4 * i + k / 4) * 200 + 4 * j + k % 4]);
+            let columns: Vec<ColumnHeights> = columns.collect();
+            let ground = f32::from(u8::from(c.ground));
+            features.extend(c.given[at]);
+            for (group, given) in c.given[at].iter().enumerate() {
+                let stands = |k: &ColumnHeights| k.standing[group][1] > 0;
+                let bins = |n: u8| f32::from(n) / 16.0;
+                features.extend(columns.iter().map(|k| given * f32::from(u8::from(stands(k)))));
+                features.extend(
+                    columns
+                        .iter()
+                        .map(|k| given * bins(k.standing[group][0].saturating_sub(1))),
+                );
+                features.extend(columns.iter().map(|k| given * bins(k.standing[group][1])));
             }
+            features.push(ground);
+            features.extend(columns.iter().map(|k| ground * f32::from(k.ground) / 16.0));
             features
         };
         let tokens = patches(cell);
@@ -107,7 +121,8 @@ impl CandleDit {
         let time = Tensor::from_vec(time, (1, 2 * frequencies), &Device::Cpu)?;
         let mut named: Vec<f32> = c.named.iter().map(|n| n.unwrap_or(0.0)).collect();
         named.extend(c.named.iter().map(|n| f32::from(u8::from(n.is_some()))));
-        let named = Tensor::from_vec(named, (1, 8), &Device::Cpu)?;
+        named.push(f32::from(u8::from(draft.iter().any(|v| *v != 0.0))));
+        let named = Tensor::from_vec(named, (1, 9), &Device::Cpu)?;
         let named = self.linear("named2", &self.linear("named1", &named)?.silu()?)?;
         let time = self.linear("time2", &self.linear("time1", &time)?.silu()?)?;
         let c = (time + named)?.silu()?; // [1, W]
@@ -126,10 +141,14 @@ impl CandleDit {
             let scores = (qkv.get(0)?.matmul(&qkv.get(1)?.t()?)? / (size as f64).sqrt())?; // [H, 625, 625]
             let scores = scores.broadcast_sub(&scores.max_keepdim(D::Minus1)?)?.exp()?;
             let weights = scores.broadcast_div(&scores.sum_keepdim(D::Minus1)?)?;
-            let mixed = weights
-                .matmul(&qkv.get(2)?)?
-                .transpose(0, 1)?
-                .reshape((TOKENS, self.width))?;
+            let flat = |heads: Tensor| heads.transpose(0, 1)?.reshape((TOKENS, self.width));
+            let mut mixed = flat(weights.matmul(&qkv.get(2)?)?)?;
+            if let Some(local) = self.tensors.get(&name("local.weight")) {
+                let map = flat(qkv.get(2)?)?.t()?.reshape((1, self.width, 25, 25))?;
+                let near = map.conv2d(local, 1, 1, 1, self.width)?;
+                let near = near.reshape((self.width, TOKENS))?.t()?;
+                mixed = (mixed + near.broadcast_add(&self.tensors[&name("local.bias")])?)?;
+            }
             x = (&x + self.linear(&name("proj"), &mixed)?.broadcast_mul(&ada[2])?)?;
             let hidden = self
                 .linear(&name("fc1"), &Self::modulate(&x, &ada[3], &ada[4])?)?
@@ -142,15 +161,13 @@ impl CandleDit {
             .flatten_all()?
             .to_vec1()?;
         let gates: Vec<f32> = self.linear("skip", &c)?.flatten_all()?.to_vec1()?;
-        let added: Vec<f32> = match self.tensors.contains_key("skip_given.weight") {
-            true => self.linear("skip_given", &c)?.flatten_all()?.to_vec1()?,
-            false => vec![0.0; gates.len()],
-        };
+        let added: Vec<f32> = self.linear("skip_given", &c)?.flatten_all()?.to_vec1()?;
         let mut latent = vec![0.0; 2500 * CHANNELS];
         for (k, cell) in out.chunks_exact(CHANNELS).enumerate() {
             let (token, part) = (k / 4, k % 4);
             let (i, j) = (token / 25 * 2 + part / 2, token % 25 * 2 + part % 2);
-            let gate = |number: usize| gates[number] + given[i * 50 + j] * added[number];
+            let gate =
+                |number: usize| gates[number] + given[i * 50 + j].iter().product::<f32>() * added[number];
             for (channel, value) in cell.iter().enumerate() {
                 let at = (i * 50 + j) * CHANNELS + channel;
                 latent[at] = value + gate(channel) * state[at] + gate(CHANNELS + channel) * draft[at];

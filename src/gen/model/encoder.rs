@@ -65,10 +65,53 @@ pub fn steps(
         .collect()
 }
 
+/// One vector per bin and class.
+pub struct VoxelTable {
+    width: usize,
+    entries: Vec<f32>, // [z][class][width]
+}
+
+impl VoxelTable {
+    /// Takes the tensor `name.weight`.
+    pub fn new(w: &mut WeightFile<'_>, name: &str, width: usize) -> Result<Self, WeightsError> {
+        Ok(Self {
+            width,
+            entries: w.take(&format!("{name}.weight"), &[HEIGHT * OCCUPIED, width])?,
+        })
+    }
+
+    /// Adds to every column of a window the sum over its occupied voxels; `map` has one place per column.
+    pub fn add_to(&self, map: &mut Map, grid: &VoxelGrid, window: Window) -> Result<(), ModelError> {
+        let width = self.width;
+        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
+        let wide = map.columns * width;
+        map.data
+            .par_chunks_mut(wide)
+            .enumerate()
+            .try_for_each(|(row_index, row)| {
+                for (column_index, sum) in row.chunks_exact_mut(width).enumerate() {
+                    let (x, y) = (corner[0] + row_index, corner[1] + column_index);
+                    for (z, label) in grid.column(x, y).iter().enumerate() {
+                        if *label == Class::FREE {
+                            continue;
+                        }
+                        if *label > Class::FREE {
+                            let found = *label;
+                            return Err(ModelError::Label { x, y, z, found });
+                        }
+                        let entry = z * OCCUPIED + usize::from(*label);
+                        let vector = &self.entries[entry * width..][..width];
+                        sum.iter_mut().zip(vector).for_each(|(s, e)| *s += e);
+                    }
+                }
+                Ok(())
+            })
+    }
+}
+
 /// Labels to one vector per latent cell.
 pub struct Encoder {
-    width: usize,       // of the finest level
-    embed: Vec<f32>,    // [z][class][width]
+    embed: VoxelTable,
     levels: Vec<Level>, // finest first
     down: Vec<Linear>,
     norm: Norm,
@@ -81,10 +124,8 @@ impl Encoder {
         widths: &[usize],
         kernels: &[Vec<usize>],
     ) -> Result<Self, WeightsError> {
-        let width = widths[0];
         Ok(Self {
-            width,
-            embed: w.take("embed.weight", &[HEIGHT * OCCUPIED, width])?,
+            embed: VoxelTable::new(w, "embed", widths[0])?,
             levels: levels(w, "encoder", widths, kernels)?,
             down: steps(w, "down", widths.windows(2).map(|p| (4 * p[0], p[1])).collect())?,
             norm: Norm::new(w, "encoder_norm", widths[widths.len() - 1])?,
@@ -101,7 +142,19 @@ impl Encoder {
 
     /// Features of the cells of a window, as if nothing were around it.
     pub fn features(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
-        let mut map = self.embed_columns(grid, window)?;
+        let per_cell = GridSpec::NX / window.side;
+        let (rows, columns, width) = (
+            window.rows * per_cell,
+            window.columns * per_cell,
+            self.embed.width,
+        );
+        let mut map = Map {
+            data: vec![0.0; rows * columns * width],
+            rows,
+            columns,
+            width,
+        };
+        self.embed.add_to(&mut map, grid, window)?;
         self.levels[0].apply(&mut map);
         for (down, level) in self.down.iter().zip(&self.levels[1..]) {
             map = through(down, &map.fold());
@@ -111,41 +164,6 @@ impl Encoder {
         self.norm.rows(&map.data, &mut normed);
         map.data = normed;
         Ok(map)
-    }
-
-    /// The sum of one embedding per occupied voxel, for every column of a window.
-    fn embed_columns(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
-        let width = self.width;
-        let per_cell = GridSpec::NX / window.side;
-        let (rows, columns) = (window.rows * per_cell, window.columns * per_cell);
-        let (x0, y0) = (window.x * per_cell, window.y * per_cell);
-        let mut data = vec![0.0; rows * columns * width];
-        data.par_chunks_mut(columns * width)
-            .enumerate()
-            .try_for_each(|(row_index, row)| {
-                for (column_index, sum) in row.chunks_exact_mut(width).enumerate() {
-                    let (x, y) = (x0 + row_index, y0 + column_index);
-                    for (z, label) in grid.column(x, y).iter().enumerate() {
-                        if *label == Class::FREE {
-                            continue;
-                        }
-                        if *label > Class::FREE {
-                            let found = *label;
-                            return Err(ModelError::Label { x, y, z, found });
-                        }
-                        let entry = z * OCCUPIED + usize::from(*label);
-                        let embedding = &self.embed[entry * width..][..width];
-                        sum.iter_mut().zip(embedding).for_each(|(s, e)| *s += e);
-                    }
-                }
-                Ok(())
-            })?;
-        Ok(Map {
-            data,
-            rows,
-            columns,
-            width,
-        })
     }
 }
 

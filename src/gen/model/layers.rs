@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::int8::Int8Panels;
 use super::kernels;
 use super::map::Map;
-use super::panels::{Panels, Start, product};
+use super::panels::{LANES, PANEL, Panels, Start, product};
 use crate::generation::params::Precision;
 use crate::generation::weights::{WeightFile, WeightsError};
 
@@ -364,19 +364,24 @@ impl<'a> Head<'a> {
     /// out = scores times values.
     fn mix(&self, scores: &[f32], [rows, width, tokens]: [usize; 3], out: &mut [f32], out_stride: usize) {
         let values = &self.keys_values[self.value_at..];
-        if width % 16 == 0 && width <= 48 {
-            // Read where they lie.
-            let sizes = [rows, width, tokens];
-            product(
-                scores,
-                tokens,
-                values,
-                self.stride,
-                sizes,
-                Start::Zero,
-                out,
-                out_stride,
-            );
+        if width.is_multiple_of(LANES) {
+            // Read where they lie, as many columns at a time as the product takes.
+            let parts = width.div_ceil(PANEL);
+            let part = (width / LANES).div_ceil(parts) * LANES;
+            for first in (0..width).step_by(part) {
+                let sizes = [rows, part.min(width - first), tokens];
+                let (values, out) = (&values[first..], &mut out[first..]);
+                product(
+                    scores,
+                    tokens,
+                    values,
+                    self.stride,
+                    sizes,
+                    Start::Zero,
+                    out,
+                    out_stride,
+                );
+            }
         } else {
             let (a, b) = (View::rows(scores, tokens), View::rows(values, self.stride));
             matmul(out, out_stride, false, a, b, [rows, width, tokens]);

@@ -3,6 +3,7 @@
 
 pub mod candle_dit;
 pub mod candle_vae;
+pub mod column_heights;
 pub mod encoder;
 #[cfg(test)]
 mod golden;
@@ -23,11 +24,10 @@ use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
+pub use column_heights::{ColumnHeights, GROUPS, column_heights};
 pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
-pub use occ_vae::{OccVae, VaeConfig};
+pub use occ_vae::{Heard, OccVae, VaeConfig};
 
-use super::job::GenError;
-use super::params::DitVariant;
 use super::weights::{self, WeightFile, WeightsError};
 
 /// Latent cells along x and along y.
@@ -41,9 +41,6 @@ pub const LATENT: usize = CELLS * CHANNELS;
 
 /// File names of the two networks.
 pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
-
-/// File name of the DiT's student of few steps, which may be missing.
-pub const STUDENT: &str = "occ_dit_distilled.safetensors";
 
 /// What a network refuses, or cannot promise any more.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -130,8 +127,6 @@ pub struct OccModels {
     pub vae: OccVae,
     /// Latents from noise and a layout.
     pub dit: OccDit,
-    /// Its student of few steps, if there is one for this VAE.
-    pub distilled: Option<OccDit>,
     /// Which weights these are.
     pub card: ModelCard,
 }
@@ -150,18 +145,10 @@ impl OccModels {
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
-    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and the DiT's student if it is there.
+    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
         let [vae, dit] = FILES.map(|f| weights::read(&folder.join(f)));
-        let mut models = Self::parse(&vae?, &dit?)?;
-        let student = folder.join(STUDENT);
-        if student.exists() {
-            models.distilled = Some(OccDit::new(WeightFile::parse(
-                STUDENT,
-                &weights::read(&student)?,
-            )?)?);
-        }
-        Ok(Arc::new(models))
+        Ok(Arc::new(Self::parse(&vae?, &dit?)?))
     }
 
     fn parse(vae: &[u8], dit: &[u8]) -> Result<Self, WeightsError> {
@@ -201,21 +188,10 @@ impl OccModels {
         Ok(Self {
             vae,
             dit: OccDit::new(dit)?,
-            distilled: None,
             card,
         })
     }
 
     /// Tokens of a whole map.
     pub const TOKENS: usize = occ_dit::TOKENS;
-
-    /// The denoising network asked for.
-    pub fn dit_of(&self, variant: DitVariant) -> Result<&OccDit, GenError> {
-        match variant {
-            DitVariant::Base => Ok(&self.dit),
-            DitVariant::Distilled => self.distilled.as_ref().ok_or_else(|| {
-                GenError::Params("network is distilled, expected base: these weights have no student".into())
-            }),
-        }
-    }
 }

@@ -1,10 +1,12 @@
 //! Latent diffusion transformer for occupancy: predicts v from a noisy latent, a timestep and a
 //! condition (mask, context, draft, layout). adaLN-Zero blocks of Peebles and Xie, arXiv 2212.09748,
-//! over 625 tokens of 2x2 cells. Twin of `training/models/occ_dit.py`.
+//! over 625 tokens of 2x2 cells, with a depthwise convolution over the values (LePE, arXiv 2107.00652).
+//! Twin of `training/models/occ_dit.py`.
 
 use rayon::prelude::*;
 use serde::Deserialize;
 
+use super::column_heights::{ColumnHeights, GROUPS};
 use super::int8_attention::Int8Head;
 use super::layers::{Head, Linear, NORM_EPS};
 use super::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length, kernels};
@@ -23,10 +25,17 @@ const LAYERS: usize = 18;
 const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 /// Mean cosine and sine of headings in a cell.
 const HEADING: usize = 2;
-/// Mask, context, draft, layout, heading; then, if the network hears it, whether the background is given.
-const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT + HEADING;
+/// Columns of a cell.
+const CELL_COLUMNS: usize = COLUMNS * COLUMNS;
+/// Of a group of the background in a cell: mask, base and top in each column.
+const STANDING: usize = 3 * CELL_COLUMNS;
+/// Mask, context, draft, layout, heading; whether the groups of the background are given, and what they are; whether the
+/// ground's height is given, and that in each column.
+const CONDITION: usize = 1 + 2 * CHANNELS + LAYOUT + HEADING + GROUPS + GROUPS * STANDING + 1 + CELL_COLUMNS;
 /// Numbers given by name.
 const NAMED: usize = 4;
+/// Neighbours that a value is mixed with, itself among them.
+const NEAR: usize = 9;
 /// Most tokens that are worked on in one piece.
 const PIECE: usize = 80;
 /// Fewest: small sets are spread over the cores too.
@@ -46,17 +55,11 @@ pub struct DitConfig {
     pub heads: usize,
     /// Numbers of the timestep embedding.
     pub frequencies: usize,
-    /// It hears where the background is given.
-    #[serde(default)]
-    pub given: bool,
+    /// Blocks convolve their values.
+    pub local: bool,
 }
 
 impl DitConfig {
-    /// Numbers of a cell's condition.
-    fn condition(&self) -> usize {
-        CONDITION + usize::from(self.given)
-    }
-
     fn check(&self) -> Result<(), String> {
         if self.latent != CHANNELS {
             Err(format!("latent: expected {CHANNELS}, found {}", self.latent))
@@ -94,8 +97,13 @@ pub struct DitCondition {
     pub named: [Option<f32>; NAMED],
     /// Latent of the layout extruded naively, with the background where it is given, 50x50x8.
     pub draft_latent: Vec<f32>,
-    /// 1 where the draft holds the background and nothing else is to stand there, 0 where the network invents it, 50x50.
-    pub given: Vec<f32>,
+    /// Per group of the background: 1 where `columns` holds it and nothing else of it is to stand there, 0 where the network
+    /// invents it, 50x50. Where both are 1 the draft holds them too.
+    pub given: Vec<[f32; GROUPS]>,
+    /// Background and ground of each column, 200x200.
+    pub columns: Vec<ColumnHeights>,
+    /// The ground's height is given.
+    pub ground: bool,
     /// 1 where a cell is to be generated, 0 where it is kept, 50x50.
     pub mask: Vec<f32>,
     /// Latent of what is kept, 50x50x8; 0 where the mask is 1.
@@ -111,7 +119,7 @@ pub struct Prepared {
     embedded: Vec<f32>,
     /// Draft latent, 50x50x8.
     draft: Vec<f32>,
-    /// Where the background is given, 50x50.
+    /// Where all of the background is given, 50x50.
     given: Vec<f32>,
     /// What the named numbers add to the embedded time, `[width]`.
     named: Vec<f32>,
@@ -173,6 +181,13 @@ struct Block {
     proj: Linear,
     fc1: Linear,
     fc2: Linear,
+    local: Option<Local>,
+}
+
+/// A depthwise 3x3 convolution over the map of tokens.
+struct Local {
+    weight: Vec<f32>, // [neighbour][width]
+    bias: Vec<f32>,
 }
 
 /// The network with its weights.
@@ -190,7 +205,7 @@ pub struct OccDit {
     /// Gates of the noisy latent and of the draft per channel: the linear part of the answer.
     skip: Linear,
     /// What is added to them where the background is given.
-    skip_given: Option<Linear>,
+    skip_given: Linear,
     positions: Vec<f32>, // [token][width]
 }
 
@@ -203,10 +218,15 @@ impl OccDit {
             .map_err(|reason| file.config_error("config", reason))?;
         let (w, width) = (&mut file, config.width);
         let block = |w: &mut WeightFile<'_>, i: usize| {
+            let local = match config.local {
+                true => Some(Local::new(w, &format!("blocks.{i}.local"), width)?),
+                false => None,
+            };
             let mut linear = |name: &str, inputs, outputs| {
                 Linear::new(w, &format!("blocks.{i}.{name}"), inputs, outputs, &[])
             };
             Ok(Block {
+                local,
                 ada: linear("ada", width, 6 * width)?,
                 qkv: linear("qkv", width, 3 * width)?,
                 proj: linear("proj", width, width)?,
@@ -216,16 +236,10 @@ impl OccDit {
         };
         let dit = Self {
             embed_x: Linear::new(w, "embed_x", PATCH_CELLS * CHANNELS, width, &[])?,
-            embed_condition: Linear::without_bias(
-                w,
-                "embed_condition",
-                PATCH_CELLS * config.condition(),
-                width,
-                &[],
-            )?,
+            embed_condition: Linear::without_bias(w, "embed_condition", PATCH_CELLS * CONDITION, width, &[])?,
             time1: Linear::new(w, "time1", config.frequencies, width, &[])?,
             time2: Linear::new(w, "time2", width, width, &[])?,
-            named1: Linear::new(w, "named1", 2 * NAMED, width, &[])?,
+            named1: Linear::new(w, "named1", 2 * NAMED + 1, width, &[])?,
             named2: Linear::new(w, "named2", width, width, &[])?,
             blocks: (0..config.depth)
                 .map(|i| block(w, i))
@@ -233,10 +247,7 @@ impl OccDit {
             final_ada: Linear::new(w, "final_ada", width, 2 * width, &[])?,
             last: Linear::new(w, "final", width, PATCH_CELLS * CHANNELS, &[])?,
             skip: Linear::new(w, "skip", width, 2 * CHANNELS, &[])?,
-            skip_given: match config.given {
-                true => Some(Linear::new(w, "skip_given", width, 2 * CHANNELS, &[])?),
-                false => None,
-            },
+            skip_given: Linear::new(w, "skip_given", width, 2 * CHANNELS, &[])?,
             positions: positions(TOKENS_PER_SIDE, TOKENS_PER_SIDE, width),
             config,
         };
@@ -249,14 +260,15 @@ impl OccDit {
         &self.config
     }
 
-    /// The condition without layout, draft and named numbers, for guidance: what training shows one time in ten.
+    /// The condition without all that is asked for, for guidance: what training shows one time in fourteen.
     pub fn null_condition(&self, condition: &DitCondition) -> DitCondition {
         DitCondition {
             bev: vec![0; condition.bev.len()],
             heading: vec![0; condition.heading.len()],
             named: [None; NAMED],
             draft_latent: vec![0.0; condition.draft_latent.len()],
-            given: vec![0.0; condition.given.len()],
+            given: vec![[0.0; GROUPS]; condition.given.len()],
+            ground: false,
             ..condition.clone()
         }
     }
@@ -273,22 +285,21 @@ impl OccDit {
         check_finite("named numbers", &condition.named.map(|n| n.unwrap_or(0.0)))?;
         check_length("draft latent", condition.draft_latent.len(), LATENT)?;
         check_length("given background", condition.given.len(), CELLS)?;
-        check_finite("given background", &condition.given)?;
+        check_finite("given background", condition.given.as_flattened())?;
+        check_length("columns", condition.columns.len(), GridSpec::COLUMNS)?;
         check_length("mask", condition.mask.len(), CELLS)?;
         check_length("context", condition.context.len(), LATENT)?;
         check_finite("draft latent", &condition.draft_latent)?;
         check_finite("mask", &condition.mask)?;
         check_finite("context", &condition.context)?;
-        let per_cell = self.config.condition();
-        let row = PATCH_CELLS * per_cell;
+        let row = PATCH_CELLS * CONDITION;
         let mut features = vec![0.0; tokens.len() * row];
         features
             .par_chunks_mut(row)
             .zip(&tokens)
             .for_each(|(values, token)| {
-                for (cell, values) in patch(*token).zip(values.chunks_exact_mut(per_cell)) {
-                    condition.cell_features(cell, &mut values[..CONDITION]);
-                    values[CONDITION..].fill(condition.given[cell]);
+                for (cell, values) in patch(*token).zip(values.chunks_exact_mut(CONDITION)) {
+                    condition.cell_features(cell, values);
                 }
             });
         let mut embedded = self.embed_condition.parallel(&features, piece_of(tokens.len()));
@@ -299,13 +310,14 @@ impl OccDit {
         }
         let told = condition.named.map(|n| f32::from(u8::from(n.is_some())));
         let values = condition.named.map(|n| n.unwrap_or(0.0));
-        let mut named = self.named1.vector(&[values, told].concat());
+        let drafted = f32::from(u8::from(condition.draft_latent.iter().any(|v| *v != 0.0)));
+        let mut named = self.named1.vector(&[&values[..], &told[..], &[drafted]].concat());
         named.iter_mut().for_each(|v| *v = kernels::silu(*v));
         Ok(Prepared {
             tokens,
             embedded,
             draft: condition.draft_latent.clone(),
-            given: condition.given.clone(),
+            given: condition.given.iter().map(|g| g.iter().product()).collect(),
             named: self.named2.vector(&named),
         })
     }
@@ -409,11 +421,11 @@ impl OccDit {
         kernels::norm_rows(&tokens, NORM_EPS, &scale, shift, &mut normed);
         let patches = self.last.parallel(&normed, piece);
         let gates = self.skip.vector(&time);
-        let added = self.skip_given.as_ref().map(|g| g.vector(&time));
+        let added = self.skip_given.vector(&time);
         let mut out = vec![0.0; LATENT];
         for (cell, values) in cells().zip(patches.chunks_exact(CHANNELS)) {
             let given = condition.given[cell];
-            let gate = |i: usize| gates[i] + added.as_ref().map_or(0.0, |a| given * a[i]);
+            let gate = |i: usize| gates[i] + given * added[i];
             for (c, value) in values.iter().enumerate() {
                 let at = cell * CHANNELS + c;
                 out[at] = value + gate(c) * x[at] + gate(CHANNELS + c) * condition.draft[at];
@@ -425,13 +437,19 @@ impl OccDit {
 }
 
 impl DitCondition {
-    /// Mask, context, draft, layout and headings of one cell.
+    /// What is said of one cell, in the order of [`CONDITION`].
     fn cell_features(&self, cell: usize, values: &mut [f32]) {
         values[0] = self.mask[cell];
         let of = |latent: &[f32], to: &mut [f32]| to.copy_from_slice(&latent[cell * CHANNELS..][..CHANNELS]);
         of(&self.context, &mut values[1..][..CHANNELS]);
         of(&self.draft_latent, &mut values[1 + CHANNELS..][..CHANNELS]);
-        let (layout, heading) = values[1 + 2 * CHANNELS..].split_at_mut(LAYOUT);
+        let (layout, rest) = values[1 + 2 * CHANNELS..].split_at_mut(LAYOUT);
+        let (heading, rest) = rest.split_at_mut(HEADING);
+        let (given, rest) = rest.split_at_mut(GROUPS);
+        let (standing, ground) = rest.split_at_mut(GROUPS * STANDING);
+        given.copy_from_slice(&self.given[cell]);
+        ground[0] = f32::from(u8::from(self.ground));
+        let bins = |n: u8| f32::from(n) / GridSpec::NZ as f32;
         let [mut cos_sum, mut sin_sum] = [0.0; 2];
         for (column, layers) in layout.chunks_exact_mut(LAYERS).enumerate() {
             let x = cell / SIDE * COLUMNS + column / COLUMNS;
@@ -440,6 +458,17 @@ impl DitCondition {
             for (layer, value) in layers.iter_mut().enumerate() {
                 *value = (bits >> layer & 1) as f32;
             }
+            let heights = &self.columns[x * GridSpec::NY + y];
+            for (group, [base, top]) in heights.standing.iter().enumerate() {
+                if *top > 0 {
+                    let known = given[group];
+                    let told = [known, bins(base.saturating_sub(1)) * known, bins(*top) * known];
+                    for (number, value) in told.into_iter().enumerate() {
+                        standing[group * STANDING + number * CELL_COLUMNS + column] = value;
+                    }
+                }
+            }
+            ground[1 + column] = bins(heights.ground) * ground[0];
             let code = self.heading[x * GridSpec::NY + y];
             if code > 0 {
                 let angle = f32::from(code - 1) * (std::f32::consts::TAU / f32::from(HEADINGS));
@@ -447,7 +476,7 @@ impl DitCondition {
                 sin_sum += angle.sin();
             }
         }
-        let columns = (COLUMNS * COLUMNS) as f32;
+        let columns = CELL_COLUMNS as f32;
         heading.copy_from_slice(&[cos_sum / columns, sin_sum / columns]);
     }
 }
@@ -507,7 +536,8 @@ impl Block {
         tokens
             .par_chunks_mut(piece_tokens * width)
             .zip(qkv.par_chunks(piece_tokens * 3 * width))
-            .for_each(|(x, qkv)| {
+            .enumerate()
+            .for_each(|(piece, (x, qkv))| {
                 let mut attended = vec![0.0; x.len()];
                 let mut queries = Vec::with_capacity(x.len() / heads.len());
                 for (h, head) in heads.iter().enumerate() {
@@ -519,6 +549,12 @@ impl Block {
                     match head {
                         AnyHead::F32(head) => head.attend(&queries, &mut attended[at..], width),
                         AnyHead::Int8(head) => head.attend(&queries, &mut attended[at..], width),
+                    }
+                }
+                if let Some(local) = &self.local {
+                    let rows = attended.chunks_exact_mut(width);
+                    for (row, place) in rows.zip(&places[piece * piece_tokens..]) {
+                        local.add_at(*place, keys_values, row);
                     }
                 }
                 let mut out = vec![0.0; x.len()];
@@ -534,6 +570,35 @@ impl Block {
                 self.fc2.rows_in(precision, &hidden, &mut out);
                 kernels::add_gated(x, part(5), &out);
             });
+    }
+}
+
+impl Local {
+    fn new(w: &mut WeightFile<'_>, name: &str, width: usize) -> Result<Self, WeightsError> {
+        let weight = w.take(&format!("{name}.weight"), &[width, 1, 3, 3])?;
+        Ok(Self {
+            weight: (0..NEAR * width)
+                .map(|i| weight[i % width * NEAR + i / width])
+                .collect(),
+            bias: w.take(&format!("{name}.bias"), &[width])?,
+        })
+    }
+
+    /// Adds to `row` what the values around the token at `place` give; beyond the map there is nothing.
+    fn add_at(&self, place: usize, keys_values: &[f32], row: &mut [f32]) {
+        let width = row.len();
+        row.iter_mut().zip(&self.bias).for_each(|(r, b)| *r += b);
+        let [x, y] = [place / TOKENS_PER_SIDE, place % TOKENS_PER_SIDE];
+        for (near, weight) in self.weight.chunks_exact(width).enumerate() {
+            let (x, y) = (x + near / 3, y + near % 3); // one too far each
+            if (1..=TOKENS_PER_SIDE).contains(&x) && (1..=TOKENS_PER_SIDE).contains(&y) {
+                let token = (x - 1) * TOKENS_PER_SIDE + y - 1;
+                let values = &keys_values[(2 * token + 1) * width..][..width];
+                for ((r, v), w) in row.iter_mut().zip(values).zip(weight) {
+                    *r += v * w;
+                }
+            }
+        }
     }
 }
 
@@ -589,6 +654,7 @@ mod tests {
             proj: linear(golden, "dit.proj", WIDTH),
             fc1: linear(golden, "dit.fc1", WIDTH),
             fc2: linear(golden, "dit.fc2", 4 * WIDTH),
+            local: None,
         }
     }
 

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps, through};
+use super::encoder::{Encoder, HEIGHT, Level, PIECE, VoxelTable, levels, steps, through};
 use super::layers::{Linear, Norm};
 use super::map::{Map, Window};
 use super::{ModelError, check_finite, check_length, kernels};
@@ -33,6 +33,20 @@ pub struct VaeConfig {
     pub encoder_kernels: Vec<Vec<usize>>,
     /// Kernels (1 or 3) of the decoder's blocks at every level, coarsest first.
     pub decoder_kernels: Vec<Vec<usize>>,
+    /// The decoder hears the draft of the layout, and which voxels were observed.
+    #[serde(default)]
+    pub hears: bool,
+}
+
+/// What the decoder is told of the columns that it decodes.
+#[derive(Clone, Copy, Default)]
+pub struct Heard<'a> {
+    /// The draft of the layout, with the background where that is given.
+    pub draft: Option<&'a VoxelGrid>,
+    /// Which voxels of a labelled frame were observed ([`Unobserved::observed`]), 200x200.
+    ///
+    /// [`Unobserved::observed`]: crate::scene::Unobserved::observed
+    pub observed: Option<&'a [u32]>,
 }
 
 impl VaeConfig {
@@ -73,6 +87,7 @@ pub struct OccVae {
     decoder_stem: Linear,
     decoder: Vec<Level>, // coarsest first
     up: Vec<Linear>,
+    ears: Option<Ears>,
     decoder_norm: Norm,
     decoder_head: Linear, // with the class table multiplied in: logits of a column, [class][z]
     latent_mean: Vec<f32>,
@@ -96,6 +111,10 @@ impl OccVae {
             decoder_stem: Linear::new(w, "decoder_stem", latent, coarse, &[1, 1])?,
             decoder: levels(w, "decoder", &upwards, &config.decoder_kernels)?,
             up: steps(w, "up", upwards.windows(2).map(|p| (p[0], 4 * p[1])).collect())?,
+            ears: match config.hears {
+                true => Some(Ears::new(w, fine)?),
+                false => None,
+            },
             decoder_norm: Norm::new(w, "decoder_norm", fine)?,
             decoder_head: head(w, fine)?,
             latent_mean: w.take("latent_mean", &[latent])?,
@@ -212,34 +231,41 @@ impl OccVae {
     /// The same for some of the cells; the others stay free. Computes only what those cells
     /// can see, and gives them the labels that [`decode`](Self::decode) gives.
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
+        self.decode_told(latent, cells, Heard::default())
+    }
+
+    /// The same where more is known of the columns; networks that do not listen decode as without.
+    pub fn decode_told(
+        &self,
+        latent: &[f32],
+        cells: &[bool],
+        heard: Heard<'_>,
+    ) -> Result<VoxelGrid, ModelError> {
         check_length("cell mask", cells.len(), self.cells())?;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
+        if let Some(observed) = heard.observed {
+            check_length("observed columns", observed.len(), GridSpec::COLUMNS)?;
+        }
         let mut grid = VoxelGrid::new();
         let reach = self.decoder_reach();
         for cells in pieces(cells, reach) {
             if let Some(window) = Window::around(&cells, reach) {
-                self.decode_window(latent, &cells, window, &mut grid)?;
+                let map = self.decoder_map(latent, window, heard)?;
+                self.labels_of(&map, &cells, window, &mut grid);
             }
         }
         Ok(grid)
     }
 
     /// Puts the labels of the wanted cells of a window into a grid.
-    fn decode_window(
-        &self,
-        latent: &[f32],
-        cells: &[bool],
-        window: Window,
-        grid: &mut VoxelGrid,
-    ) -> Result<(), ModelError> {
+    fn labels_of(&self, map: &Map, cells: &[bool], window: Window, grid: &mut VoxelGrid) {
         let (side, per_cell) = (self.config.side(), self.columns());
-        let map = self.decoder_map(latent, window)?;
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
         let labels: Vec<Vec<u8>> = wanted
             .par_iter()
             .map(|cell| {
                 let mut labels = vec![0; per_cell * per_cell * HEIGHT];
-                let logits = self.cell_logits(&map, window, *cell);
+                let logits = self.cell_logits(map, window, *cell);
                 let columns = logits
                     .chunks_exact(CLASSES * HEIGHT)
                     .zip(labels.chunks_exact_mut(HEIGHT));
@@ -257,18 +283,17 @@ impl OccVae {
                 }
             }
         }
-        Ok(())
     }
 
     /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
-    pub fn logits(&self, latent: &[f32], cell: usize) -> Result<Vec<f32>, ModelError> {
+    pub fn logits(&self, latent: &[f32], cell: usize, heard: Heard<'_>) -> Result<Vec<f32>, ModelError> {
         let mut cells = vec![false; self.cells()];
         cells[cell] = true;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
         let Some(window) = Window::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
-        let map = self.decoder_map(latent, window)?;
+        let map = self.decoder_map(latent, window, heard)?;
         let logits = self.cell_logits(&map, window, cell);
         let columns = logits.chunks_exact(CLASSES * HEIGHT);
         Ok(columns
@@ -277,7 +302,7 @@ impl OccVae {
     }
 
     /// The decoder's blocks over a window, up to its last norm: one place per column of voxels.
-    fn decoder_map(&self, latent: &[f32], window: Window) -> Result<Map, ModelError> {
+    fn decoder_map(&self, latent: &[f32], window: Window, heard: Heard<'_>) -> Result<Map, ModelError> {
         check_finite("latent", latent)?;
         let channels = self.config.latent;
         let mut scaled = Vec::with_capacity(window.rows * window.columns * channels);
@@ -297,8 +322,11 @@ impl OccVae {
             width: self.config.widths[self.config.widths.len() - 1],
         };
         self.decoder[0].apply(&mut map);
-        for (up, level) in self.up.iter().zip(&self.decoder[1..]) {
+        for (i, (up, level)) in self.up.iter().zip(&self.decoder[1..]).enumerate() {
             map = through(up, &map).unfold();
+            if let (true, Some(ears)) = (i + 1 == self.up.len(), &self.ears) {
+                ears.add_to(&mut map, heard, window)?;
+            }
             level.apply(&mut map);
         }
         let mut normed = vec![0.0; map.data.len()];
@@ -326,6 +354,49 @@ impl OccVae {
         let mut logits = vec![0.0; per_cell * per_cell * CLASSES * HEIGHT];
         self.decoder_head.rows(&columns, &mut logits);
         logits
+    }
+}
+
+/// What the decoder's columns hear.
+struct Ears {
+    drafted: VoxelTable,
+    observed: Vec<f32>, // [bit][width]
+}
+
+impl Ears {
+    fn new(w: &mut WeightFile<'_>, width: usize) -> Result<Self, WeightsError> {
+        let bits = HEIGHT + 1;
+        let weight = w.take("observed.weight", &[width, bits])?;
+        Ok(Self {
+            drafted: VoxelTable::new(w, "drafted", width)?,
+            observed: (0..bits * width)
+                .map(|i| weight[i % width * bits + i / width])
+                .collect(),
+        })
+    }
+
+    fn add_to(&self, map: &mut Map, heard: Heard<'_>, window: Window) -> Result<(), ModelError> {
+        if let Some(draft) = heard.draft {
+            self.drafted.add_to(map, draft, window)?;
+        }
+        let Some(observed) = heard.observed else {
+            return Ok(());
+        };
+        let (width, wide) = (map.width, map.columns);
+        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
+        map.data
+            .par_chunks_mut(wide * width)
+            .enumerate()
+            .for_each(|(row, columns)| {
+                let told = &observed[(corner[0] + row) * GridSpec::NY + corner[1]..][..wide];
+                for (values, told) in columns.chunks_exact_mut(width).zip(told) {
+                    let bits = self.observed.chunks_exact(width).enumerate();
+                    for (_, adds) in bits.filter(|(bit, _)| told >> bit & 1 == 1) {
+                        values.iter_mut().zip(adds).for_each(|(v, a)| *v += a);
+                    }
+                }
+            });
+        Ok(())
     }
 }
 

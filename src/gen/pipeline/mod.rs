@@ -16,10 +16,11 @@ use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
-use crate::generation::keep_clear::{keep_clear, keep_unobserved};
+use crate::generation::keep_clear::{keep_clear, keep_unobserved, observed_still};
 use crate::generation::keep_grounded::keep_grounded;
 use crate::generation::keep_objects::{keep_ground, keep_objects};
-use crate::generation::model::{DitCondition, OccModels, tokens_of};
+use crate::generation::keep_unchanged::keep_unchanged;
+use crate::generation::model::{DitCondition, GROUPS, Heard, ModelError, OccModels, tokens_of};
 use crate::generation::redraw::{self, RedrawMask};
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::edit_with_replay;
@@ -144,10 +145,7 @@ impl OccPipeline {
         boxes: &BTreeMap<BoxId, SceneBox>,
         named: Named,
     ) -> Condition {
-        // Networks that do not hear of it invent it.
-        if self.models.dit.config().given {
-            self.standing = Standing::of(scene, layout, self.standing.as_ref());
-        }
+        self.standing = Standing::of(scene, layout, self.standing.as_ref());
         Condition::new(layout, boxes, self.standing.as_ref(), named, self.ablation)
     }
 
@@ -161,21 +159,23 @@ impl OccPipeline {
         params: &GenParams,
     ) -> Result<Network, GenError> {
         let guided = params.guidance != 1.0;
-        let draft_latent = match self.ablation {
-            Some(Ablation::Draft) => vec![0.0; CELLS * CHANNELS],
-            _ => self.draft_latent(&condition.draft)?,
+        let draft_latent = match condition.draft_hidden {
+            true => vec![0.0; CELLS * CHANNELS],
+            false => self.draft_latent(&condition.draft)?,
         };
         let full = DitCondition {
             bev: condition.bev.clone(),
             heading: condition.heading.clone(),
             named: condition.named.values(),
             draft_latent,
-            given: vec![f32::from(u8::from(condition.given)); CELLS],
+            given: vec![[f32::from(u8::from(condition.given)); GROUPS]; CELLS],
+            columns: condition.columns.clone(),
+            ground: true,
             mask,
             context,
         };
         let models = self.models.clone();
-        let dit = models.dit_of(params.network)?;
+        let dit = &models.dit;
         let prepared = match tokens {
             Some(tokens) => dit.prepare_some(&full, tokens),
             None => dit.prepare(&full),
@@ -192,7 +192,6 @@ impl OccPipeline {
             condition: prepared,
             without,
             keys_values: None,
-            variant: params.network,
             precision: params.precision,
             reuse_steps: params.reuse_steps,
             predictions: 0,
@@ -235,7 +234,7 @@ impl OccPipeline {
             sampler.sample(start, &mut network, |view| {
                 ctx.progress(Stage::Denoise, view.step, view.steps)?;
                 if ctx.previews() && view.step < view.steps && glimpses.due() {
-                    self.glimpse(job, &view.clean_estimate(), report, ctx)?;
+                    self.glimpse(job, &condition, &view.clean_estimate(), report, ctx)?;
                     glimpses.shown();
                 }
                 Ok(())
@@ -252,7 +251,11 @@ impl OccPipeline {
         ctx.progress(Stage::Decode, 0, 1)?;
         let latent = trajectory.latent_f32();
         let mut generated = report
-            .timed(Stage::Decode, |_| self.models.vae.decode(&latent))
+            .timed(Stage::Decode, |_| {
+                self.models
+                    .vae
+                    .decode_told(&latent, &region.cells, condition.told())
+            })
             .map_err(GenError::failed)?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
@@ -281,17 +284,20 @@ impl OccPipeline {
     fn glimpse(
         &self,
         job: &Job,
+        condition: &Condition,
         clean: &[f64],
         report: &GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(), GenError> {
         let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
-        let grid = self.models.vae.decode(&latent).map_err(GenError::failed)?;
+        let (vae, region) = (&self.models.vae, Region::full());
+        let grid = vae.decode_told(&latent, &region.cells, condition.told());
+        let grid = grid.map_err(GenError::failed)?;
         let frame = job.scene.frame();
         ctx.preview(GenResult {
             key: job.key(),
             frame: job.scene.current,
-            occupancy: composite(&frame.source.occupancy, &grid, &Region::full(), &frame.painted),
+            occupancy: composite(&frame.source.occupancy, &grid, &region, &frame.painted),
             report: report.clone(),
         });
         Ok(())
@@ -379,7 +385,7 @@ impl OccPipeline {
                         let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
                         let grid = models
                             .vae
-                            .decode_cells(&clean, &region.cells)
+                            .decode_told(&clean, &region.cells, condition.told())
                             .map_err(GenError::failed)?;
                         let occupancy = composite(before, &grid, &region, &frame.painted);
                         ctx.preview(GenResult {
@@ -397,15 +403,29 @@ impl OccPipeline {
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
+        let request = Request::of(frame);
+        let observed = observed_still(frame, redraw, &request);
+        let condition_before = self.condition_of_source(&job.scene);
         let mut generated = report
-            .timed(Stage::Decode, |_| {
-                self.models.vae.decode_cells(&edited.latent, &region.cells)
+            .timed(Stage::Decode, |report| {
+                let vae = &self.models.vae;
+                let decoded = |latent: &[f32], condition: &Condition| {
+                    let heard = Heard {
+                        observed: observed.as_deref(),
+                        ..condition.told()
+                    };
+                    vae.decode_told(latent, &region.cells, heard)
+                };
+                let mut generated = decoded(&edited.latent, &condition)?;
+                let source = decoded(&latent, &condition_before)?;
+                report.unchanged_kept =
+                    keep_unchanged(frame, &region, redraw, &request, &source, &mut generated);
+                Ok(generated)
             })
-            .map_err(GenError::failed)?;
+            .map_err(|error: ModelError| GenError::failed(error))?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
-            let request = Request::of(frame);
             report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
             report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));

@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use super::standing::Standing;
 use crate::generation::job::{GenError, Named};
-use crate::generation::model::{KeysValues, Middle, OccModels, Prepared};
-use crate::generation::params::{DitVariant, Precision};
+use crate::generation::model::{
+    ColumnHeights, Heard, KeysValues, Middle, OccModels, Prepared, column_heights,
+};
+use crate::generation::params::Precision;
 use crate::generation::solver::{Branch, Denoiser};
 use crate::scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
 
@@ -38,6 +40,10 @@ pub struct Condition {
     pub draft: VoxelGrid,
     /// The background is given.
     pub given: bool,
+    /// Nobody hears the draft.
+    pub draft_hidden: bool,
+    /// What of it stands in each column, and how high the ground is there.
+    pub columns: Vec<ColumnHeights>,
 }
 
 impl Condition {
@@ -49,9 +55,9 @@ impl Condition {
         named: Named,
         ablation: Option<Ablation>,
     ) -> Self {
-        let (bare, none) = (BevLayout::default(), BTreeMap::new());
+        let (empty, none) = (BevLayout::default(), BTreeMap::new());
         let layout = if ablation == Some(Ablation::Layout) {
-            &bare
+            &empty
         } else {
             layout
         };
@@ -61,7 +67,8 @@ impl Condition {
             boxes
         };
         let standing = standing.filter(|_| ablation != Some(Ablation::Background));
-        let mut draft = draft::draft(layout, boxes.values());
+        let bare = draft::draft(layout, boxes.values());
+        let mut draft = bare.clone();
         if let Some(standing) = standing {
             standing.stand_in(&mut draft);
         }
@@ -69,8 +76,20 @@ impl Condition {
             bev: raster::bev_channels(layout, boxes.values()),
             heading: raster::headings(boxes.values()),
             named,
-            draft,
             given: standing.is_some(),
+            columns: column_heights(&bare, &draft),
+            draft_hidden: ablation == Some(Ablation::Draft),
+            draft,
+        }
+    }
+}
+
+impl Condition {
+    /// What the decoder hears of it; nothing where the draft is hidden.
+    pub fn told(&self) -> Heard<'_> {
+        Heard {
+            draft: (!self.draft_hidden).then_some(&self.draft),
+            observed: None,
         }
     }
 }
@@ -91,9 +110,7 @@ pub struct Network {
     /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
     /// computed; none if nobody wants them.
     pub keys_values: Option<StepKeysValues>,
-    /// Which of the two denoising networks, and how its products are computed.
-    pub variant: DitVariant,
-    /// See [`DitVariant`].
+    /// How the denoising network's products are computed.
     pub precision: Precision,
     /// Compute the middle blocks at every so many predictions; 1 = at every one.
     pub reuse_steps: u32,
@@ -108,7 +125,7 @@ impl Denoiser for Network {
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
         let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
-        let (dit, step) = (self.models.dit_of(self.variant)?, t as f32);
+        let (dit, step) = (&self.models.dit, t as f32);
         let mut fresh = KeysValues::default();
         let v = match (branch, &self.without) {
             (Branch::Unconditional, Some(without)) => {

@@ -2,9 +2,11 @@
 
 use super::OccPipeline;
 use crate::generation::inversion::{Refinement, invert, round_trip_error};
-use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Stage};
+use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Named, Stage};
+use crate::generation::model::Heard;
+use crate::generation::region::Region;
 use crate::generation::solver::{Guidance, Sampler};
-use crate::scene::Scene;
+use crate::scene::{Scene, Unobserved, VoxelGrid};
 
 /// What inverting and sampling again gave.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +18,21 @@ pub struct RoundTrip {
 }
 
 impl OccPipeline {
+    /// What the VAE makes of the occupancy of a scene's frame; its decoder hears the frame's draft and masks.
+    pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
+        let frame = scene.frame();
+        let condition = self.condition(scene, &frame.layout, &frame.boxes, Named::default());
+        let observed = frame.inferred.unobserved.as_ref().map(Unobserved::observed);
+        let heard = Heard {
+            observed: observed.as_deref(),
+            ..condition.told()
+        };
+        let vae = &self.models.vae;
+        vae.encode(&frame.occupancy)
+            .and_then(|latent| vae.decode_told(&latent, &Region::full().cells, heard))
+            .map_err(GenError::failed)
+    }
+
     /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
         let known = self.source(&job.scene, &job.params, &mut GenReport::default(), ctx)?;

@@ -9,7 +9,7 @@ use crate::generation::composite::label_hash;
 use crate::generation::inversion::{InversionReport, Refinement, Trajectory, invert};
 use crate::generation::job::{GenError, GenParams, GenReport, JobCtx, Named, Stage};
 use crate::generation::model::KeysValues;
-use crate::generation::params::{DitVariant, Precision};
+use crate::generation::params::Precision;
 use crate::generation::region::CELLS;
 use crate::generation::solver::{Guidance, Sampler, SolverKind};
 use crate::generation::world::draw::hash;
@@ -34,7 +34,6 @@ pub(super) struct SourceKey {
     steps: u32,
     iterations: u32,
     exact: bool,
-    network: DitVariant,
     precision: Precision,
 }
 
@@ -72,13 +71,12 @@ impl OccPipeline {
             steps: params.steps,
             iterations: params.inversion_iterations,
             exact: params.solver == SolverKind::OBelm,
-            network: params.network,
             precision: params.precision,
         }
     }
 
     /// What a frame's source is generated from.
-    fn condition_of_source(&mut self, scene: &Scene) -> Condition {
+    pub(super) fn condition_of_source(&mut self, scene: &Scene) -> Condition {
         let frame = scene.frame();
         let named = Named::default().or(&density_of_source(frame));
         self.condition(scene, &frame.source.layout, &frame.source.boxes, named)

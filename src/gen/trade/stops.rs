@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Cost, Interval};
-use crate::generation::params::{DitVariant, GenParams, Precision};
+use crate::generation::params::{GenParams, Precision};
 use crate::generation::solver::SolverKind;
 
 /// The knobs that a stop sets; everything else of the parameters stays.
@@ -16,8 +16,6 @@ pub struct StopKnobs {
     pub solver: SolverKind,
     /// Of the network's products.
     pub precision: Precision,
-    /// Which network.
-    pub network: DitVariant,
     /// Compute only the tokens around the edit.
     pub local: bool,
     /// Tokens around the region that are computed with it.
@@ -35,7 +33,6 @@ impl StopKnobs {
             steps: params.steps,
             solver: params.solver,
             precision: params.precision,
-            network: params.network,
             local: params.local,
             halo_tokens: params.halo_tokens,
             inversion_iterations: params.inversion_iterations,
@@ -49,7 +46,6 @@ impl StopKnobs {
             steps: self.steps,
             solver: self.solver,
             precision: self.precision,
-            network: self.network,
             local: self.local,
             halo_tokens: self.halo_tokens,
             inversion_iterations: self.inversion_iterations,

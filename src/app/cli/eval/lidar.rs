@@ -10,6 +10,7 @@ use crate::app::cli::output;
 use crate::app::cli::progress::Progress;
 use crate::generation::dataset::world_of;
 use crate::generation::metrics::lidar::{bird_map, jsd, mmd};
+use crate::generation::metrics::logistic::auc;
 use crate::generation::metrics::stats::median;
 use crate::generation::metrics::sweep::SweepFigures;
 use crate::generation::model::lidar::field::{Ray, Sampling};
@@ -132,6 +133,13 @@ impl Echoes {
         }
     }
 
+    /// How often an echo that was lost has a greater predicted share than one that came back; 0.5 = no information.
+    fn drop_auc(&self) -> f64 {
+        let scores = [&self.lost[..], &self.returned[..]].concat();
+        let lost: Vec<bool> = (0..scores.len()).map(|i| i < self.lost.len()).collect();
+        auc(&scores, &lost)
+    }
+
     fn report(&self) -> Value {
         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
         let middle = median(&self.real_strength);
@@ -142,6 +150,7 @@ impl Echoes {
             "intensity_mean_error_of_a_constant": mean(&constant),
             "drop_rate": lost / (lost + returned),
             "drop_rate_predicted": (mean(&self.lost) * lost + mean(&self.returned) * returned) / (lost + returned),
+            "drop_auc": self.drop_auc(),
             "predicted_where_lost": mean(&self.lost),
             "predicted_where_returned": mean(&self.returned),
         })

@@ -32,7 +32,7 @@ impl Trade {
         }
         let mut raw = Raw::default();
         for part in ["edit", "scene"].into_iter().filter(|p| self.has(p)) {
-            let (base, settings) = self.settings(part, models);
+            let (base, settings) = self.settings(part);
             let found = self.cases(part)?;
             // Those of one scene share what makes it ready.
             let scenes: Vec<&[Case]> = found.chunk_by(|a, b| Arc::ptr_eq(&a.before, &b.before)).collect();

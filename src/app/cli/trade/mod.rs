@@ -102,11 +102,10 @@ impl Trade {
             .unwrap_or(if self.full() { 1000 } else { 200 })
     }
 
-    fn settings(&self, part: &str, models: &OccModels) -> (GenParams, Vec<Setting>) {
+    fn settings(&self, part: &str) -> (GenParams, Vec<Setting>) {
         let (base, mut settings) = if part == "edit" {
             let base = GenParams::default();
-            let distilled = models.distilled.is_some();
-            (base, settings::of_edits(base, distilled, self.draws, self.seed))
+            (base, settings::of_edits(base, self.draws, self.seed))
         } else {
             let base = full_params();
             (base, settings::of_scenes(base))
@@ -187,7 +186,7 @@ impl Trade {
         let mut stops = None;
         let mut figures = json!({});
         for (part, cases) in &raw.parts {
-            let (base, settings) = self.settings(part, &models);
+            let (base, settings) = self.settings(part);
             let rows: Vec<Row> = settings
                 .into_iter()
                 .enumerate()

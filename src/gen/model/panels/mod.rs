@@ -15,8 +15,8 @@ use super::int8::Int8Panels;
 use super::layers::View;
 
 /// Columns of a panel: three vectors of sixteen.
-const PANEL: usize = 3 * LANES;
-const LANES: usize = 16;
+pub(super) const PANEL: usize = 3 * LANES;
+pub(super) const LANES: usize = 16;
 
 /// A cache line: a vector that begins within one is read at once.
 #[derive(Clone, Copy, Pod, Zeroable)]

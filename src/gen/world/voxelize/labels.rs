@@ -40,11 +40,25 @@ pub fn labels(
 
 /// The same with the masks that a data set has beside its labels, by the first LiDAR and the cameras of a rig.
 pub fn labelled(world: &World, rig: &SensorRig, drive: &Drive, vertical: Vertical, seed: u64) -> Labelled {
+    let (grid, by_lidar) = observed_labels(world, rig.lidars.first(), drive, vertical, seed);
+    let by_camera = seen_by_cameras(&grid, &by_lidar, rig);
+    Labelled {
+        grid,
+        by_lidar,
+        by_camera,
+    }
+}
+
+/// The same without cameras: the labels, and per voxel `[x][y][z]` whether the LiDAR observed it.
+pub fn observed_labels(
+    world: &World,
+    lidar: Option<&LidarPattern>,
+    drive: &Drive,
+    vertical: Vertical,
+    seed: u64,
+) -> (VoxelGrid, Vec<bool>) {
     let mut passed = Passed::default();
-    let sweeps = rig
-        .lidars
-        .first()
-        .map(|lidar| drive_through(world, lidar, drive, seed, true));
+    let sweeps = lidar.map(|lidar| drive_through(world, lidar, drive, seed, true));
     let sweeps = sweeps.into_iter().flatten().map(|s| {
         passed.join(&s.passed);
         s.hits
@@ -58,12 +72,7 @@ pub fn labelled(world: &World, rig: &SensorRig, drive: &Drive, vertical: Vertica
             label => !filled || !Class::from_id(label).is_some_and(Class::is_ground),
         }));
     }
-    let by_camera = seen_by_cameras(&grid, &by_lidar, rig);
-    Labelled {
-        grid,
-        by_lidar,
-        by_camera,
-    }
+    (grid, by_lidar)
 }
 
 /// One sweep: voxels that were hit and their classes, and those that rays went through.

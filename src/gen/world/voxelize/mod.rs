@@ -10,7 +10,7 @@ use crate::scene::raster::bev_channels;
 use crate::scene::solid::fill::{SMEAR, fill, smear_down};
 use crate::scene::{BevLayer, Class, GridSpec, Relief, VoxelGrid};
 pub use drive::Drive;
-pub use labels::{Labelled, labelled, labels};
+pub use labels::{Labelled, labelled, labels, observed_labels};
 
 /// Where the ground sits vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

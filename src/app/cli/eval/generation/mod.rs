@@ -18,6 +18,8 @@ use serde_json::{Value, json};
 use super::{Bar, Eval, scene, with_interval};
 use crate::app::cli::generate::full_params;
 use crate::app::cli::progress::Progress;
+use crate::app::scenery::SceneryWish;
+use crate::editor::Document;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::extractor::Extractor;
 use crate::generation::metrics::iou::Confusion;
@@ -38,7 +40,7 @@ const DIVERSITY_FRAMES: usize = 8;
 /// Added to a seed for a draw that has nothing in common with the first.
 const OTHER_SEED: u64 = 1_000_000;
 /// Place of the generated scenes among the rows.
-const GENERATED: usize = 3;
+const GENERATED: usize = 4;
 
 /// All that is measured, frame by frame.
 #[derive(Default)]
@@ -119,6 +121,10 @@ impl Eval {
         };
         let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
         measured.given.add(&given, &truth);
+        let told = pipeline.reconstruct(&job.scene)?;
+        let drawn = with_drawn_scenery(&job.scene, common.wrapping_add(i as u64))?;
+        let drawn = pipeline.run(&Job { scene: drawn, params }, &JobCtx::detached())?;
+        let drawn = drawn.occupancy;
         let job = Job {
             scene: Arc::new(Scene {
                 background: Arc::default(),
@@ -165,8 +171,10 @@ impl Eval {
             other_truth,
             &truth,
             &decoded,
+            &told,
             &result.occupancy,
             &given,
+            &drawn,
             &undrafted,
             &naive,
         ];
@@ -184,6 +192,13 @@ impl Eval {
 /// The scene whose layout a row's occupancy is made for.
 fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
     if row == 0 { other } else { world }
+}
+
+/// A scene with its background drawn anew by rules, as the window does it before it generates.
+fn with_drawn_scenery(scene: &Arc<Scene>, seed: u64) -> anyhow::Result<Arc<Scene>> {
+    let mut document = Document::new((**scene).clone());
+    document.apply_all("Draw scenery", &SceneryWish::of_seed(seed).edits(scene))?;
+    Ok(document.scene().clone())
 }
 
 /// A world of another seed on the layout and boxes of a scene.

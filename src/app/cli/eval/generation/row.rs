@@ -20,12 +20,20 @@ use crate::scene::{Scene, SensorRig, VoxelGrid};
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
-pub const ROWS: [(&str, &str); 7] = [
+pub const ROWS: [(&str, &str); 9] = [
     ("other_worlds", "what every row is compared with"),
     ("worlds", "as many worlds: the floor"),
     ("through_vae", "the worlds, encoded and decoded"),
+    (
+        "vae_told",
+        "the same, its decoder told the draft with the background",
+    ),
     ("generated", "from the layouts alone"),
     ("background_given", "from the layouts and the worlds' background"),
+    (
+        "scenery_drawn",
+        "from the layouts and a background drawn by rules",
+    ),
     ("without_draft", "the same, the draft hidden from the network"),
     ("draft_alone", "the drafts of the layouts"),
 ];
