@@ -7,6 +7,7 @@ use glam::DVec3;
 use safetensors::{Dtype, SafeTensors};
 use sceneloom::generation::model::lidar::field::Ray;
 use sceneloom::generation::model::lidar::{LearnedRay, LidarNet};
+use sceneloom::generation::model::scenery::{self, SceneryCondition, SceneryNet};
 use sceneloom::generation::model::{
     CELLS, CHANNELS, ColumnHeights, DitCondition, Heard, KeysValues, LATENT, ModelError, OccModels, OccVae,
     fine_vae, tokens_of,
@@ -131,6 +132,32 @@ fn condition() -> DitCondition {
         ground: true,
         context: context.collect(),
         mask,
+    }
+}
+
+/// `golden` of training/export_scenery.py.
+#[test]
+fn scenery_agrees_with_python() {
+    let golden = Golden::open("parity_scenery.safetensors");
+    let DitCondition { bev, columns, .. } = condition();
+    let drawn = |cell: usize| {
+        let (x, y) = (cell / scenery::SIDE, cell % scenery::SIDE);
+        (20..77).contains(&x) && (31..90).contains(&y)
+    };
+    let condition = SceneryCondition {
+        bev,
+        ground: columns.iter().map(|c| c.ground).collect(),
+        drawn: (0..scenery::CELLS).map(drawn).collect(),
+        stands: scenery::map_of(&columns),
+        named: [Some(0.25), None, Some(0.75)],
+    };
+    let net = SceneryNet::bundled().expect("the shipped weights");
+    let x = uniform(scenery::CELLS * scenery::NUMBERS, 4);
+    let truth = golden.f32("every_fifth_v");
+    let times = golden.f32("t");
+    for (t, truth) in times.iter().zip(truth.chunks_exact(truth.len() / times.len())) {
+        let v = net.forward(&x, *t, &condition).expect("a sound condition");
+        assert_close(&format!("v at {t}"), v.into_iter().step_by(5), truth);
     }
 }
 

@@ -69,24 +69,36 @@ def vae_golden(vae, frames, side):
     }
 
 
+def golden_layout():
+    """Layout bits, i32 [200,200], that any language can make alike."""
+    x, y = torch.meshgrid(torch.arange(200), torch.arange(200), indexing="ij")
+    bev = torch.zeros(200, 200, dtype=torch.int32)
+    for layer in range(18):
+        bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
+    return bev
+
+
+def golden_columns():
+    """Background and ground, u8 [200,200,5], made so too."""
+    x, y = torch.meshgrid(torch.arange(200), torch.arange(200), indexing="ij")
+    built, grown = (x + y) % 3 == 0, (x // 2 + y) % 5 == 0
+    columns = torch.stack([(x % 4 + 1) * built, (x % 4 + 1 + y % 3) * built, 2 * grown, 9 * grown, (x + 2 * y) % 6], -1)
+    return columns.to(torch.uint8)
+
+
 def golden_condition():
     """Mask, context, draft, layout bits, headings, named numbers, background and ground: any language can make them alike."""
     mask = torch.zeros(50, 50)
     mask[10:31, 17:40] = 1
     context = uniform(20000, 2).view(50, 50, 8) * (1 - mask[..., None])
     x, y = torch.meshgrid(torch.arange(200), torch.arange(200), indexing="ij")
-    bev = torch.zeros(200, 200, dtype=torch.int32)
-    for layer in range(18):
-        bev |= (((x * 3 + y * 5 + layer * 37) % 97 < 11).int() << layer)
     heading = torch.where((x // 8 + y // 4) % 5 == 0, 1 + (x * 7 + y * 3) % 240, 0)
     named = torch.tensor([[0.25, 0.0, 0.75, 0.5, 1.0, 0.0, 1.0, 1.0, 1.0]])
     given = torch.zeros(1, 50, 50, 2)
     given[:, 20:, 5:33, 0] = 1
     given[:, :, :30, 1] = 1
-    built, grown = (x + y) % 3 == 0, (x // 2 + y) % 5 == 0
-    columns = torch.stack([(x % 4 + 1) * built, (x % 4 + 1 + y % 3) * built, 2 * grown, 9 * grown, (x + 2 * y) % 6], -1)
-    cells = condition_of(mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), bev[None], heading[None], given,
-                         columns[None].to(torch.uint8), torch.ones(1, 50, 50))
+    cells = condition_of(mask[None], context[None], uniform(20000, 3).view(1, 50, 50, 8), golden_layout()[None], heading[None], given,
+                         golden_columns()[None], torch.ones(1, 50, 50))
     return cells, named
 
 

@@ -27,8 +27,11 @@ mix='.30 .58 .12' # complete worlds, labels, drafts
 train train_vae.py vae .3 $(begin_with occ_vae) --kernels "$kernels" --mix $mix --anywhere .45 --leaned .35
 train train_dit.py occ_dit .45 $(begin_with occ_dit) --vae "$folder/vae.safetensors"
 train train_vae.py occ_vae .1 --decoder-of "$folder/vae.safetensors" --hears --latent-noise .1 --kernels "$kernels" --mix .40 .55 .05 --anywhere .45 --leaned .2
-train train_vae.py occ_vae_fine .15 $(begin_with occ_vae_fine) --fine --mix .42 .48 .1 --anywhere .45
+train train_vae.py occ_vae_fine .13 $(begin_with occ_vae_fine) --fine --mix .42 .48 .1 --anywhere .45
+
+train train_scenery.py scenery .02 --vae "$folder/vae.safetensors"
 
 "$python" "$here/calibrate.py" --vae "$folder/occ_vae.safetensors" --data "$folder" -o "$folder/calibrated.safetensors"
 "$python" "$here/export.py" --vae "$folder/calibrated.safetensors" --fine "$folder/occ_vae_fine.safetensors" \
     --dit "$folder/occ_dit.safetensors" --data "$folder" --data-command "$worlds"
+"$python" "$here/export_scenery.py" --weights "$folder/scenery.safetensors" --data-command "$worlds"

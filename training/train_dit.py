@@ -191,7 +191,7 @@ def main():
     p.add_argument("--batch", type=int, default=32, help="windows of a step; whole frames are a quarter as many")
     p.add_argument("--window", type=int, default=24, help="latent cells of a window's side, an even number")
     p.add_argument("--whole", type=float, default=0.3, help="share of the time, at its end, on whole frames")
-    p.add_argument("--labels", type=float, default=0.25, help="share of samples whose target is labels")
+    p.add_argument("--labels", type=float, default=0.35, help="share of samples whose target is labels")
     p.add_argument("--lr", type=float, default=2e-3)
     p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
     p.add_argument("--held-out", type=int, default=16, help="held-out frames of the error")

@@ -48,7 +48,7 @@ def losses(model, b):
     echoed, told = solid & (b["echo"] == 0), solid & (b["echo"] < 2)
     l_strength = F.mse_loss(strength[echoed], b["strength"][echoed]) if echoed.any() else f.sum() * 0
     l_drop = F.binary_cross_entropy_with_logits(drop[told], (b["echo"][told] == 1).float()) if told.any() else f.sum() * 0
-    total = 4 * sdf + 2 * clear + 0.5 * l_depth + 0.1 * l_hit + 5 * l_strength + 0.1 * l_drop
+    total = 4 * sdf + 2 * clear + 0.5 * l_depth + 0.1 * l_hit + 5 * l_strength + 0.3 * l_drop
     parts = {"sdf": sdf, "clear": clear, "depth": l_depth, "hit": l_hit, "strength": l_strength, "drop": l_drop}
     return total, {k: v.item() for k, v in parts.items()}, (depth, log_pass, drop, off)
 

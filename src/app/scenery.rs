@@ -1,21 +1,55 @@
-//! What stands beside the roads, drawn anew by rules from a seed: everywhere or in a region, as things that can be edited.
-//! Nothing is generated, and nothing else changes.
+//! What stands beside the roads, drawn anew from a seed: by rules or by a network, everywhere or in a region, as things that
+//! can be edited. Nothing else changes.
 
 use crate::editor::{Edit, Shape};
+use crate::generation::drawn_scenery::drawn_scenery;
+use crate::generation::job::GenError;
+use crate::generation::model::scenery::SceneryNet;
 use crate::generation::redraw::RedrawMask;
 use crate::generation::region::COLUMNS_PER_CELL;
 use crate::generation::world::scenery::{self, Setting, Side, Style};
-use crate::scene::{Background, Form, GridSpec, Scene, ThingId};
+use crate::scene::{Background, Class, Form, GridSpec, Scene, ThingId};
 
 use super::around;
+
+/// Share of vegetation (`Density`) that is usual.
+pub const TYPICAL_VEGETATION: f64 = 0.5;
+/// The same of buildings.
+pub const TYPICAL_BUILDING: f64 = 0.6;
+
+/// What draws it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawer {
+    /// The rules of the procedural worlds, for a kind of place; none: one that suits the road.
+    Rules(Option<Setting>),
+    /// A small diffusion network that has seen such worlds and looks at the road and at what stays.
+    Network,
+}
+
+impl Drawer {
+    /// All, in the order of lists.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let settings = Setting::ALL.map(|setting| Self::Rules(Some(setting)));
+        [Self::Rules(None), Self::Network].into_iter().chain(settings)
+    }
+
+    /// As lists show it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Rules(None) => "Suits the road",
+            Self::Rules(Some(setting)) => setting.label(),
+            Self::Network => "By a network",
+        }
+    }
+}
 
 /// What is wanted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneryWish {
     /// Fixes every random draw.
     pub seed: u64,
-    /// What kind of place; none: one that suits the road.
-    pub setting: Option<Setting>,
+    /// What draws it.
+    pub by: Drawer,
     /// Number of plants, 1 = usual there; 0 is none.
     pub green: f64,
     /// Number of buildings, 1 = usual there; 0 is none.
@@ -29,7 +63,7 @@ impl SceneryWish {
     pub fn of_seed(seed: u64) -> Self {
         Self {
             seed,
-            setting: None,
+            by: Drawer::Rules(None),
             green: 1.0,
             built: 1.0,
             region: RedrawMask::default(),
@@ -38,7 +72,7 @@ impl SceneryWish {
 
     /// Edits that draw the scenery of a scene's current frame anew: what stands whole in the region goes, so do voxels of
     /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border.
-    pub fn edits(&self, scene: &Scene) -> Vec<Edit> {
+    pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         let frame = scene.frame();
         let to_ego = frame.world_from_ego.inverse();
         let columns = self.columns();
@@ -57,7 +91,13 @@ impl SceneryWish {
                 false => drop(stays.add(form)),
             }
         }
-        let drawn = scenery::background_of(&frame.layout, &frame.boxes, &self.style(scene), self.seed);
+        let drawn = match self.by {
+            Drawer::Rules(setting) => {
+                let style = self.style(scene, setting);
+                scenery::background_of(&frame.layout, &frame.boxes, &style, self.seed)
+            }
+            Drawer::Network => self.by_network(scene, &columns)?,
+        };
         let drawn: Background = drawn.iter().filter(|t| whole(&t.form)).cloned().collect();
         let known = stays.len();
         let merged = around::merged(stays, &drawn);
@@ -74,16 +114,34 @@ impl SceneryWish {
         if !forms.is_empty() {
             edits.push(Edit::AddThings { forms });
         }
-        edits
+        Ok(edits)
     }
 
-    fn style(&self, scene: &Scene) -> Style {
+    fn by_network(&self, scene: &Scene, columns: &[bool]) -> Result<Background, GenError> {
+        let net = SceneryNet::bundled().map_err(GenError::failed)?;
+        // The usual is left to the network.
+        let named = |times: f64, typical: f64| (times != 1.0).then(|| (times * typical).min(1.0) as f32);
+        let named = [
+            named(self.green, TYPICAL_VEGETATION),
+            named(self.built, TYPICAL_BUILDING),
+            None,
+        ];
+        let drawn = drawn_scenery(&net, scene, columns, named, self.seed)?;
+        // The network hears a share; none is none.
+        let wanted = |form: &Form| match form.class() {
+            Class::Vegetation => self.green > 0.0,
+            _ => self.built > 0.0,
+        };
+        Ok(drawn.iter().filter(|t| wanted(&t.form)).cloned().collect())
+    }
+
+    fn style(&self, scene: &Scene, setting: Option<Setting>) -> Style {
         let wanted = |side: Side| Side {
             green: side.green * self.green,
             built: side.built * self.built,
             ..side
         };
-        let style = match self.setting {
+        let style = match setting {
             Some(setting) => Style::both(Side::usual(setting)),
             None => Style::drawn(&scene.frame().layout, self.seed),
         };
@@ -111,12 +169,12 @@ mod tests {
     use super::*;
     use crate::app::open;
     use crate::editor::Document;
-    use crate::scene::{Class, VoxelGrid};
+    use crate::scene::VoxelGrid;
 
     fn wish(seed: u64) -> SceneryWish {
         SceneryWish {
             seed,
-            setting: Some(Setting::OldTown),
+            by: Drawer::Rules(Some(Setting::OldTown)),
             green: 1.0,
             built: 1.0,
             region: RedrawMask::default(),
@@ -136,7 +194,7 @@ mod tests {
         let region = RedrawMask::of_rect(DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
         let wish = SceneryWish { region, ..wish(11) };
         document
-            .apply_all("Draw scenery", &wish.edits(&before))
+            .apply_all("Draw scenery", &wish.edits(&before).expect("rules"))
             .expect("sound");
         let after = document.scene().clone();
         assert_ne!(after.background, before.background);
@@ -166,25 +224,70 @@ mod tests {
         let nothing = SceneryWish {
             green: 0.0,
             built: 0.0,
-            setting: Some(Setting::Country),
+            by: Drawer::Rules(Some(Setting::Country)),
             ..wish(3)
         };
         let mut document = Document::new(scene);
-        let edits = nothing.edits(document.scene());
+        let edits = nothing.edits(document.scene()).expect("rules");
         document.apply_all("Draw scenery", &edits).expect("sound");
         let left = scenery_voxels(&document.scene().frame().occupancy);
-        let town = wish(3).edits(document.scene());
+        let town = wish(3).edits(document.scene()).expect("rules");
         document.apply_all("Draw scenery", &town).expect("sound");
         let scene = document.scene().clone();
         let built = scenery_voxels(&scene.frame().occupancy);
         assert!(built > 10 * left.max(100), "{left} {built}");
         // The same wish gives the same things; another seed others.
-        let again = wish(3).edits(&scene);
+        let again = wish(3).edits(&scene).expect("rules");
         document.apply_all("Draw scenery", &again).expect("sound");
         let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
         assert_eq!(forms(document.scene()), forms(&scene));
-        let other = wish(4).edits(&scene);
+        let other = wish(4).edits(&scene).expect("rules");
         document.apply_all("Draw scenery", &other).expect("sound");
         assert_ne!(forms(document.scene()), forms(&scene));
+    }
+
+    #[test]
+    fn a_network_draws_in_a_region_and_keeps_the_road_free() {
+        let scene = open::from_template("straight", 7).expect("a template");
+        let region = RedrawMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
+        let by_network = |seed, green| SceneryWish {
+            by: Drawer::Network,
+            green,
+            region,
+            ..wish(seed)
+        };
+        let drawn = |wish: SceneryWish| {
+            let mut document = Document::new(scene.clone());
+            let edits = wish.edits(&scene).expect("the shipped weights");
+            document.apply_all("Draw scenery", &edits).expect("sound");
+            document.scene().clone()
+        };
+        let first = drawn(by_network(5, 1.0));
+        let (old, new) = (&scene.frame().occupancy, &first.frame().occupancy);
+        let bev = crate::scene::raster::bev_channels(&scene.frame().layout, scene.frame().boxes.values());
+        let (columns, mut come) = (by_network(5, 1.0).columns(), 0);
+        for (c, inside) in columns.iter().enumerate() {
+            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let (before, after) = (old.column(x, y), new.column(x, y));
+            assert!(*inside || before == after, "column ({x}, {y}) lies outside");
+            let built = |column: &[u8]| column.contains(&Class::Manmade.id());
+            let road = bev[c] & crate::scene::BevLayer::DrivableArea.bit() != 0;
+            assert!(
+                !road || !built(after) || built(before),
+                "built on the road at ({x}, {y})"
+            );
+            come += usize::from(before != after);
+        }
+        assert!(come > 300, "{come}");
+        let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
+        assert_eq!(forms(&drawn(by_network(5, 1.0))), forms(&first));
+        assert_ne!(forms(&drawn(by_network(6, 1.0))), forms(&first));
+        // Much or nothing of what grows, as it is asked for.
+        let grown = |s: &Scene| s.frame().occupancy.class_counts()[usize::from(Class::Vegetation.id())];
+        let (none, much) = (
+            grown(&drawn(by_network(5, 0.0))),
+            grown(&drawn(by_network(5, 1.8))),
+        );
+        assert!(much > 2 * none, "{none} {much}");
     }
 }

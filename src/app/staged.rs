@@ -9,9 +9,10 @@ use super::command::Command;
 use super::compare::CompareMode;
 use super::panels::cameras::thousands;
 use super::panels::toasts::Level;
-use super::scenery::SceneryWish;
+use super::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use super::state::{Tool, UiState};
 use super::theme;
+use crate::editor::Edit;
 use crate::editor::part::{Part, changed_by_class};
 use crate::generation::job::{GenParams, RegionMode};
 use crate::generation::redraw::RedrawMask;
@@ -22,10 +23,6 @@ use crate::scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
 
 /// Classes that the menu of parts lists.
 const MOST_CLASSES: usize = 8;
-/// Where the sliders of densities begin.
-pub const TYPICAL_VEGETATION: f64 = 0.5;
-/// The same for buildings.
-pub const TYPICAL_BUILDING: f64 = 0.6;
 
 /// What is taken of a staged result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,8 +176,10 @@ impl SceneloomApp {
     /// Draws scenery by the seed of `params` and generates on it, as one undo step.
     pub(super) fn generate_on_scenery(&mut self, params: GenParams) {
         let before = self.document.settled_scene().clone();
-        let wish = SceneryWish::of_seed(params.seed);
-        self.apply("Generate", &wish.edits(&before));
+        let Some(edits) = self.scenery_edits(&SceneryWish::of_seed(params.seed), &before) else {
+            return;
+        };
+        self.apply("Generate", &edits);
         let scene = self.document.settled_scene().clone();
         self.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
         let now_s = self.now_s();
@@ -208,7 +207,7 @@ impl SceneloomApp {
         let times = |named: Option<f32>, typical: f64| named.map_or(1.0, |v| f64::from(v) / typical);
         self.put_scenery(SceneryWish {
             seed: scene.seed.wrapping_add(self.state.tools.scenery_draws),
-            setting: self.state.tools.setting,
+            by: self.state.tools.drawer,
             green: times(self.state.named.vegetation, TYPICAL_VEGETATION),
             built: times(self.state.named.building, TYPICAL_BUILDING),
             region: self.state.tools.region,
@@ -217,13 +216,26 @@ impl SceneloomApp {
 
     fn put_scenery(&mut self, wish: SceneryWish) {
         let before = self.document.settled_scene().clone();
-        self.apply("Draw scenery", &wish.edits(&before));
+        let Some(edits) = self.scenery_edits(&wish, &before) else {
+            return;
+        };
+        self.apply("Draw scenery", &edits);
         let after = self.document.settled_scene().clone();
         if after.rev != before.rev {
             let note = format!("Seed {}", wish.seed);
             self.versions.push("Draw scenery".to_owned(), note, after);
             self.stage(before, Some(Again::Scenery(Box::new(wish))));
         }
+    }
+
+    /// What draws scenery; none if that failed, which is said.
+    fn scenery_edits(&mut self, wish: &SceneryWish, scene: &Scene) -> Option<Vec<Edit>> {
+        let now_s = self.now_s();
+        let failed = |e| {
+            let text = format!("No scenery was drawn: {e}");
+            self.toasts.push(Level::Error, text, now_s);
+        };
+        wish.edits(scene).map_err(failed).ok()
     }
 
     /// The state before, which is shown again.

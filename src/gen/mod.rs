@@ -2,6 +2,7 @@
 
 pub mod composite;
 pub mod dataset;
+pub mod drawn_scenery;
 pub mod inversion;
 pub mod job;
 pub mod keep_clear;

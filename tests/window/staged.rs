@@ -4,6 +4,7 @@ use egui::Modifiers;
 use egui_kittest::kittest::Queryable;
 use sceneloom::app::Command;
 use sceneloom::app::compare::CompareMode;
+use sceneloom::app::scenery::Drawer;
 use sceneloom::generation::job::RegionMode;
 use sceneloom::generation::redraw::RedrawMask;
 use sceneloom::generation::world::scenery::Setting;
@@ -159,7 +160,7 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     let mut bench = Bench::new();
     bench.off();
     let before = bench.frame().occupancy.clone();
-    bench.app().state.tools.setting = Some(Setting::OldTown);
+    bench.app().state.tools.drawer = Drawer::Rules(Some(Setting::OldTown));
     let ctx = bench.harness.ctx.clone();
     bench.app().execute(Command::DrawScenery, &ctx);
     bench.steps(3);

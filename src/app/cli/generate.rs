@@ -95,7 +95,7 @@ fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<b
     if params.region != RegionMode::Full || !nothing_known {
         return Ok(false);
     }
-    document.apply_all("Draw scenery", &SceneryWish::of_seed(params.seed).edits(&scene))?;
+    document.apply_all("Draw scenery", &SceneryWish::of_seed(params.seed).edits(&scene)?)?;
     Ok(true)
 }
 

@@ -8,11 +8,18 @@ use serde_json::json;
 use super::region_arg::RegionArg;
 use super::{Common, Outcome, output};
 use crate::app::open;
-use crate::app::scenery::SceneryWish;
+use crate::app::scenery::{Drawer, SceneryWish};
 use crate::editor::Document;
 use crate::formats::project;
 use crate::generation::redraw::RedrawMask;
 use crate::generation::world::scenery::Setting;
+
+/// What draws scenery.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum By {
+    Rules,
+    Network,
+}
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -22,7 +29,10 @@ pub struct Scenery {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
-    /// What kind of place; one that suits the road if left out.
+    /// What draws it: rules for a kind of place, or a network.
+    #[arg(long, value_enum, default_value_t = By::Rules)]
+    by: By,
+    /// What kind of place the rules draw; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
     setting: Option<Setting>,
     /// Number of plants, 1 = usual there; 0 is none.
@@ -54,9 +64,16 @@ impl Scenery {
             Some(RegionArg::Rect(mask)) => mask,
             Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
         };
+        let by = match (self.by, self.setting) {
+            (By::Rules, setting) => Drawer::Rules(setting),
+            (By::Network, None) => Drawer::Network,
+            (By::Network, Some(_)) => {
+                bail!("--setting is for rules, the network chooses what suits the road")
+            }
+        };
         Ok(SceneryWish {
             seed: self.seed,
-            setting: self.setting,
+            by,
             green: self.green,
             built: self.built,
             region,
@@ -67,7 +84,7 @@ impl Scenery {
         let wish = self.wish()?;
         let scene = open::scene(&self.scene)?;
         let before = scene.frame().occupancy.clone();
-        let edits = wish.edits(&scene);
+        let edits = wish.edits(&scene)?;
         let mut document = Document::new(scene);
         document.apply_all("Draw scenery", &edits)?;
         let scene = document.scene();

@@ -6,12 +6,11 @@ use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 use crate::app::bev_image::DRAW_ORDER;
 use crate::app::command::Command;
 use crate::app::icons::{self, Icon, section};
-use crate::app::staged::{TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::app::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::app::theme;
 use crate::app::tools::things::{self, ThingCommand};
 use crate::app::tools::{PaintShape, ToolCommand, panel as tools};
-use crate::generation::world::scenery::Setting;
 use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
@@ -63,21 +62,20 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
 
 /// What kind of place, and the button that draws it.
 fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
-    let name = |setting: Option<Setting>| setting.map_or("Suits the road", Setting::label);
     ui.horizontal(|ui| {
-        let chosen = &mut state.tools.setting;
+        let chosen = &mut state.tools.drawer;
         egui::ComboBox::from_id_salt("setting")
             .width(92.0)
-            .selected_text(name(*chosen))
+            .selected_text(chosen.label())
             .show_ui(ui, |ui| {
-                for setting in std::iter::once(None).chain(Setting::ALL.map(Some)) {
-                    ui.selectable_value(chosen, setting, name(setting));
+                for drawer in Drawer::all() {
+                    ui.selectable_value(chosen, drawer, drawer.label());
                 }
             })
             .response
             .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Kind of place"));
         let hint =
-            "What stands beside the roads, anew by rules, as things; voxels of scenery without a thing go";
+            "What stands beside the roads, anew, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go";
         let draw = ui.button("Draw").on_hover_text(hint);
         draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
         if draw.clicked() {

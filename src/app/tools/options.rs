@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::app::bev_image::DRAW_ORDER;
 use crate::app::canvas_tools;
+use crate::app::scenery::Drawer;
 use crate::app::state::UiState;
 use crate::editor::Edit;
 use crate::editor::arrange::{Clipboard, Pivot, Row};
@@ -16,7 +17,6 @@ use crate::editor::transform::{Kind, Orientation, Snap};
 use crate::editor::voxel_ops::{self, Cell};
 use crate::generation::job::GenParams;
 use crate::generation::redraw::RedrawMask;
-use crate::generation::world::scenery::Setting;
 use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
 use super::Choose;
@@ -155,8 +155,8 @@ pub struct ToolState {
     pub region_strength: f64,
     /// How often cells were drawn anew: each time other noise.
     pub region_draws: u64,
-    /// What kind of place scenery is drawn for; none: one that suits the road.
-    pub setting: Option<Setting>,
+    /// What draws scenery.
+    pub drawer: Drawer,
     /// Times that scenery was drawn.
     pub scenery_draws: u64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
@@ -207,7 +207,7 @@ impl Default for ToolState {
             region_shape: RegionShape::default(),
             region_strength: 1.0,
             region_draws: 0,
-            setting: None,
+            drawer: Drawer::Rules(None),
             scenery_draws: 0,
             variants: BTreeMap::new(),
             layers_locked: 0,

@@ -17,6 +17,7 @@ pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
 pub mod panels;
+pub mod scenery;
 pub mod text;
 
 use std::path::Path;

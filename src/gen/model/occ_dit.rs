@@ -624,7 +624,7 @@ fn positions(rows: usize, columns: usize, width: usize) -> Vec<f32> {
 }
 
 /// [cos | sin] of t * 10000^(-i / half).
-fn timestep_embedding(t: f32, numbers: usize) -> Vec<f32> {
+pub(super) fn timestep_embedding(t: f32, numbers: usize) -> Vec<f32> {
     let half = numbers / 2;
     let angle = |i: usize| f64::from(t) * (-(10000f64.ln()) * i as f64 / half as f64).exp();
     let cos = (0..half).map(|i| angle(i).cos() as f32);

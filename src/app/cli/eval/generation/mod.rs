@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::{Bar, Eval, scene, with_interval};
 use crate::app::cli::generate::full_params;
 use crate::app::cli::progress::Progress;
-use crate::app::scenery::SceneryWish;
+use crate::app::scenery::{Drawer, SceneryWish};
 use crate::editor::Document;
 use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::extractor::Extractor;
@@ -122,9 +122,14 @@ impl Eval {
         let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
         measured.given.add(&given, &truth);
         let told = pipeline.reconstruct(&job.scene)?;
-        let drawn = with_drawn_scenery(&job.scene, common.wrapping_add(i as u64))?;
-        let drawn = pipeline.run(&Job { scene: drawn, params }, &JobCtx::detached())?;
-        let drawn = drawn.occupancy;
+        let seed = common.wrapping_add(i as u64);
+        let mut on_scenery = |by| -> anyhow::Result<VoxelGrid> {
+            let scene = with_drawn_scenery(&job.scene, by, seed)?;
+            let result = pipeline.run(&Job { scene, params }, &JobCtx::detached())?;
+            Ok(result.occupancy)
+        };
+        let drawn = on_scenery(Drawer::Rules(None))?;
+        let learned = on_scenery(Drawer::Network)?;
         let job = Job {
             scene: Arc::new(Scene {
                 background: Arc::default(),
@@ -175,6 +180,7 @@ impl Eval {
             &result.occupancy,
             &given,
             &drawn,
+            &learned,
             &undrafted,
             &naive,
         ];
@@ -194,10 +200,14 @@ fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
     if row == 0 { other } else { world }
 }
 
-/// A scene with its background drawn anew by rules, as the window does it before it generates.
-fn with_drawn_scenery(scene: &Arc<Scene>, seed: u64) -> anyhow::Result<Arc<Scene>> {
+/// A scene with its background drawn anew, as the window does it (by rules) before it generates.
+fn with_drawn_scenery(scene: &Arc<Scene>, by: Drawer, seed: u64) -> anyhow::Result<Arc<Scene>> {
     let mut document = Document::new((**scene).clone());
-    document.apply_all("Draw scenery", &SceneryWish::of_seed(seed).edits(scene))?;
+    let wish = SceneryWish {
+        by,
+        ..SceneryWish::of_seed(seed)
+    };
+    document.apply_all("Draw scenery", &wish.edits(scene)?)?;
     Ok(document.scene().clone())
 }
 

@@ -20,7 +20,7 @@ use crate::scene::{Scene, SensorRig, VoxelGrid};
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
-pub const ROWS: [(&str, &str); 9] = [
+pub const ROWS: [(&str, &str); 10] = [
     ("other_worlds", "what every row is compared with"),
     ("worlds", "as many worlds: the floor"),
     ("through_vae", "the worlds, encoded and decoded"),
@@ -33,6 +33,10 @@ pub const ROWS: [(&str, &str); 9] = [
     (
         "scenery_drawn",
         "from the layouts and a background drawn by rules",
+    ),
+    (
+        "scenery_learned",
+        "the same, the background drawn by the scenery network",
     ),
     ("without_draft", "the same, the draft hidden from the network"),
     ("draft_alone", "the drafts of the layouts"),
