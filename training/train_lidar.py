@@ -36,7 +36,7 @@ def losses(model, b):
     close = valid & hit[:, None] & (gap * b["cos"][:, None] < FRONT_M) & (gap * b["cos"][:, None] > -BEHIND_M) & (gap < 12)
     free = valid & (((gap > 0.5) & ~close) | b["empty"][:, None])
     # A miss of a centimetre at a grazing angle is a decimetre along the ray: such rays ask for exactness.
-    sdf = F.smooth_l1_loss(f[close], target[close], beta=0.02)
+    sdf = F.smooth_l1_loss(f[close], target[close], beta=0.02) if close.any() else f.sum() * 0
     clear = F.relu(CLEAR_M - f[free]).mean() if free.any() else f.sum() * 0
     depth, log_pass, strength, drop, weight, _ = model.render(appearance, b["lookup"], b["origin"], b["d"], b["t"].clamp(max=100), f)
     off = (depth - r).abs()

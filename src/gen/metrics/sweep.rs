@@ -61,7 +61,7 @@ impl SweepFigures {
                 count(&mut self.lost_at[bin]);
             }
             if i % SAMPLED == 0 {
-                self.halves[self.sweeps % 2].push((features(ray, ring), lost));
+                self.halves[self.sweeps % 2].push((loss_features(ray, ring), lost));
             }
         }
         self.sweeps += 1;
@@ -190,7 +190,8 @@ impl SweepFigures {
     }
 }
 
-fn features(ray: &TruthRay, ring: usize) -> Vec<f64> {
+/// What of a ray may tell whether its echo is lost: range, angle, ring, class.
+pub fn loss_features(ray: &TruthRay, ring: usize) -> Vec<f64> {
     let (range_m, cosine) = (f64::from(ray.range_m), f64::from(ray.cos_incidence));
     let mut row = vec![
         1.0,

@@ -10,9 +10,9 @@ use crate::app::cli::output;
 use crate::app::cli::progress::Progress;
 use crate::generation::dataset::world_of;
 use crate::generation::metrics::lidar::{bird_map, jsd, mmd};
-use crate::generation::metrics::logistic::auc;
+use crate::generation::metrics::logistic::{Logistic, auc};
 use crate::generation::metrics::stats::median;
-use crate::generation::metrics::sweep::SweepFigures;
+use crate::generation::metrics::sweep::{SweepFigures, loss_features};
 use crate::generation::model::lidar::field::{Ray, Sampling};
 use crate::generation::model::lidar::sites::physical;
 use crate::generation::model::lidar::{LearnedRay, LidarNet};
@@ -112,14 +112,21 @@ struct Echoes {
     real_strength: Vec<f64>,
     lost: Vec<f64>,     // predicted share, of echoes that were lost
     returned: Vec<f64>, // of those that came back
+    /// What could be known of the same echoes, and whether they were lost; sweeps in turn.
+    known: [(Vec<Vec<f64>>, Vec<bool>); 2],
+    sweeps: usize,
 }
 
 impl Echoes {
     fn add(&mut self, rays: &[Ray], truth: &[TruthRay], answers: &[LearnedRay]) {
+        self.sweeps += 1;
         for ((ray, real), answer) in rays.iter().zip(truth).zip(answers) {
             if real.echo == Echo::OwnBody || surface(ray, real).is_none() || !answer.is_hit() {
                 continue;
             }
+            let known = &mut self.known[self.sweeps % 2];
+            known.0.push(loss_features(real, 0));
+            known.1.push(real.echo == Echo::Lost);
             let share = f64::from(answer.drop_probability());
             if real.echo == Echo::Lost {
                 self.lost.push(share);
@@ -140,6 +147,14 @@ impl Echoes {
         auc(&scores, &lost)
     }
 
+    /// The same of who knows the true class, range and angle: a logistic fit on every other sweep, judged on the rest.
+    fn known_auc(&self) -> Option<f64> {
+        let [(rows, lost), (test, outcomes)] = &self.known;
+        let fit = Logistic::fit(rows, lost)?;
+        let scores: Vec<f64> = test.iter().map(|row| fit.probability(row)).collect();
+        Some(auc(&scores, outcomes))
+    }
+
     fn report(&self) -> Value {
         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
         let middle = median(&self.real_strength);
@@ -151,6 +166,7 @@ impl Echoes {
             "drop_rate": lost / (lost + returned),
             "drop_rate_predicted": (mean(&self.lost) * lost + mean(&self.returned) * returned) / (lost + returned),
             "drop_auc": self.drop_auc(),
+            "drop_auc_of_truth": self.known_auc(),
             "predicted_where_lost": mean(&self.lost),
             "predicted_where_returned": mean(&self.returned),
         })

@@ -24,6 +24,7 @@ use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
 use crate::generation::metrics::extractor::Extractor;
 use crate::generation::metrics::iou::Confusion;
 use crate::generation::metrics::stats::median;
+use crate::generation::model::fine_vae;
 use crate::generation::pipeline::{Ablation, OccPipeline};
 use crate::generation::world::World;
 use crate::generation::world::voxelize::{Vertical, complete};
@@ -40,7 +41,7 @@ const DIVERSITY_FRAMES: usize = 8;
 /// Added to a seed for a draw that has nothing in common with the first.
 const OTHER_SEED: u64 = 1_000_000;
 /// Place of the generated scenes among the rows.
-const GENERATED: usize = 4;
+const GENERATED: usize = 5;
 
 /// All that is measured, frame by frame.
 #[derive(Default)]
@@ -169,6 +170,8 @@ impl Eval {
         measured.likeness.add(&truth, &result.occupancy);
         let vae = &pipeline.models().vae;
         let decoded = vae.decode(&vae.encode(&truth)?)?;
+        let fine = fine_vae()?;
+        let fine = fine.decode(&fine.encode(&truth)?)?;
         let frame = job.scene.frame();
         let naive = draft::draft(&frame.layout, frame.boxes.values());
         let other_truth = &other.frame().occupancy;
@@ -177,6 +180,7 @@ impl Eval {
             &truth,
             &decoded,
             &told,
+            &fine,
             &result.occupancy,
             &given,
             &drawn,

@@ -20,13 +20,17 @@ use crate::scene::{Scene, SensorRig, VoxelGrid};
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
-pub const ROWS: [(&str, &str); 10] = [
+pub const ROWS: [(&str, &str); 11] = [
     ("other_worlds", "what every row is compared with"),
     ("worlds", "as many worlds: the floor"),
     ("through_vae", "the worlds, encoded and decoded"),
     (
         "vae_told",
         "the same, its decoder told the draft with the background",
+    ),
+    (
+        "through_fine",
+        "the worlds, through the fine VAE: the most that refining could reach",
     ),
     ("generated", "from the layouts alone"),
     ("background_given", "from the layouts and the worlds' background"),
