@@ -62,7 +62,7 @@ enum Command {
     Generate(generate::Generate),
     /// Apply edits and regenerate what they touch, by inversion.
     Edit(edit::EditCommand),
-    /// What stands beside the roads, drawn anew by rules: everywhere or in a region.
+    /// What stands beside the roads, drawn anew by rules or by a network: everywhere or in a region.
     Scenery(scenery::Scenery),
     /// Pictures of what the sensors see.
     Render(render::Render),
