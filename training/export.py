@@ -115,7 +115,8 @@ def last_row(weights):
     if not log.exists():
         return {}
     with open(log) as f:
-        return list(csv.DictReader(f))[-1]
+        last = list(csv.DictReader(f))[-1]
+    return {k: v for k, v in last.items() if v != "0.0000"}  # 0: not sampled
 
 
 def main():
@@ -173,7 +174,7 @@ def main():
     (args.weights / "card.json").write_text(json.dumps(card, indent=1) + "\n")
     lines = ["# Weights", "", "Trained on this project's own procedural worlds; no frame of a data set went in. With `--roads` a third of the",
              "layouts are places on public OpenDRIVE files (MIT, MPL-2.0), which are not part of this repository.", "",
-             f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`, which names the earlier weights that `occ_vae` and `occ_dit` began with; logs: the CSV files beside this card.",
+             f"- Data: `{args.data_command}`", "- Recipe: `training/README.md`, which says what each network began with; logs: the CSV files beside this card.",
              "- `f3d.safetensors`: the encoder of `occ_vae` of commit 5750f81, fixed for good: the features of F3D, KID and MMD",
              "  (`src/gen/metrics/extractor.rs`).", ""]
     for kind in kinds:

@@ -37,7 +37,7 @@ def main():
     if meta.get("kind") != "scenery":
         raise SystemExit(f"{args.weights}: expected weights of scenery, found {meta.get('kind')}")
     meta = {k: meta[k] for k in ("kind", "config", "seed", "steps", "samples", "minutes")}
-    out = write_card(args.folder, "scenery", args.weights, tensors, meta, args.data_command, f"{float(meta['minutes']) / 60:.2f} h on one thread")
+    out = write_card(args.folder, "scenery", args.weights, tensors, meta, args.data_command, f"{float(meta['minutes']) / 60:.2f} h")
     net = Scenery(SceneryConfig(**json.loads(meta["config"]))).eval()
     net.load_state_dict({k: v.float() for k, v in load_file(out).items()})
     save_file(golden(net), args.goldens / "parity_scenery.safetensors")

@@ -1,4 +1,4 @@
-"""What both trainings share: device, clock, EMA, checkpoints, CSV."""
+"""What all trainings share: device, clock, EMA, checkpoints, CSV."""
 import copy
 import csv
 import math

@@ -1,5 +1,5 @@
 #!/bin/sh
-# From nothing to the occupancy weights: training/recipe.sh FOLDER [HOURS [WEIGHTS]] (of training; 12 if not given).
+# From nothing to the weights of occupancy and scenery: training/recipe.sh FOLDER [HOURS [WEIGHTS]] (of training; 12 if not given).
 # What is done is not done again, and what was stopped goes on. With WEIGHTS, a folder such as assets/weights, the networks begin
 # with those there. On a graphics card the same command uses it.
 set -eu
@@ -7,7 +7,7 @@ folder=$1 hours=${2:-12} weights=${3:-}
 here=$(cd "$(dirname "$0")" && pwd)
 python=${PYTHON:-python3}
 worlds="sceneloom-worlds --frames 5120 --seed 1 -o DIR/train; sceneloom-worlds --frames 96 --seed 2 -o DIR/val"
-of() { awk "BEGIN { print int(60 * $hours * $1) }"; } # minutes of a share of the hours
+of() { awk "BEGIN { m = int(60 * $hours * $1); print m < 1 ? 1 : m }"; } # minutes of a share of the hours
 train() { # SCRIPT WEIGHTS SHARE ARGUMENTS...
     script=$1 out=$2 minutes=$(of "$3")
     shift 3
@@ -27,9 +27,9 @@ mix='.30 .58 .12' # complete worlds, labels, drafts
 train train_vae.py vae .3 $(begin_with occ_vae) --kernels "$kernels" --mix $mix --anywhere .45 --leaned .35
 train train_dit.py occ_dit .45 $(begin_with occ_dit) --vae "$folder/vae.safetensors"
 train train_vae.py occ_vae .1 --decoder-of "$folder/vae.safetensors" --hears --latent-noise .1 --kernels "$kernels" --mix .40 .55 .05 --anywhere .45 --leaned .2
-train train_vae.py occ_vae_fine .13 $(begin_with occ_vae_fine) --fine --mix .42 .48 .1 --anywhere .45
+train train_vae.py occ_vae_fine .11 $(begin_with occ_vae_fine) --fine --mix .42 .48 .1 --anywhere .45
 
-train train_scenery.py scenery .02 --vae "$folder/vae.safetensors"
+train train_scenery.py scenery .04 --vae "$folder/vae.safetensors"
 
 "$python" "$here/calibrate.py" --vae "$folder/occ_vae.safetensors" --data "$folder" -o "$folder/calibrated.safetensors"
 "$python" "$here/export.py" --vae "$folder/calibrated.safetensors" --fine "$folder/occ_vae_fine.safetensors" \

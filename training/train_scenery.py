@@ -99,6 +99,8 @@ def main():
     frames, held_out = (Packed(folder_of(args.data, name, part)) for part in ("train", "val"))
     model, abar = Scenery().to(device, memory_format=torch.channels_last), alpha_bar()
     run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.999, warmup=100)
+    if run.done():
+        return print(f"{args.output} is done")
     rng = np.random.default_rng([args.seed, run.step])
     meta = {"kind": "scenery", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "frames": len(frames)}
     mean, noted, since = None, run.elapsed(), (run.samples, time.monotonic())

@@ -65,7 +65,7 @@ pub enum Command {
         /// True: everything, from fresh noise.
         full: bool,
     },
-    /// Draws what stands beside the roads anew, by rules.
+    /// Draws what stands beside the roads anew, by what is chosen in the list.
     DrawScenery,
     /// What becomes of a result that waits.
     Decide(super::staged::Verdict),

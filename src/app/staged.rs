@@ -53,7 +53,7 @@ pub enum Verdict {
 pub enum Again {
     /// By the networks.
     Generate(Box<GenParams>),
-    /// By rules.
+    /// As scenery.
     Scenery(Box<SceneryWish>),
 }
 
@@ -167,7 +167,7 @@ impl SceneloomApp {
         }
     }
 
-    /// True for a scene of which nothing is known beside the roads: networks alone would fill it with rubble.
+    /// True for a scene of which nothing is known beside the roads: what networks invent alone is ragged and follows the seed.
     pub(super) fn draws_scenery_first(&self) -> bool {
         let scene = self.document.settled_scene();
         scene.background.is_empty() && !scene.frame().inferred.background && !self.state.tools.things.locked

@@ -119,6 +119,8 @@ pub struct GenReport {
     pub ground_kept: usize,
     /// Voxels that nobody asked for on the road or in a removed box's place, and that were cleared.
     pub invented_cleared: usize,
+    /// Columns that the networks left without ground in a scene that is to be complete, and that were given it.
+    pub holes_closed: usize,
     /// Voxels put under crowns that hung in the air.
     pub stems_added: usize,
     /// Voxels that hung in the air or were of an object without a box, and were taken out.

@@ -1,5 +1,6 @@
 //! How a scene is generated: worker, networks, sensors, worlds.
 
+pub mod close_holes;
 pub mod composite;
 pub mod dataset;
 pub mod drawn_scenery;

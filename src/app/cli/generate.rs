@@ -87,8 +87,8 @@ pub fn sense(scene: &Scene) -> (f64, f64) {
     (lidar_s, start.elapsed().as_secs_f64())
 }
 
-/// Draws what stands beside the roads, where nothing is known of it and everything is generated: networks alone would fill
-/// it with rubble. True if it did.
+/// Draws what stands beside the roads, where nothing is known of it and everything is generated: what
+/// networks invent alone is ragged and follows the seed. True if it did.
 fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<bool> {
     let scene = document.scene().clone();
     let nothing_known = scene.background.is_empty() && !scene.frame().inferred.background;
@@ -123,6 +123,7 @@ impl Generate {
             "peak_rss_mb": output::peak_rss_mb(),
             "scenery_drawn": drawn,
             "objects_kept": result.report.objects_kept,
+            "holes_closed": result.report.holes_closed,
             "stems_added": result.report.stems_added,
             "loose_dropped": result.report.loose_dropped,
             "seed": params.seed,

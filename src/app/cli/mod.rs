@@ -149,7 +149,7 @@ struct Gen {
     /// In what the network's products are computed: f32, or int8, which is faster where the machine has AVX-512 VNNI.
     #[arg(long, value_parser = ["f32", "int8"])]
     precision: Option<String>,
-    /// Leave the networks' output as it is, also where they left out a box that the user placed.
+    /// Leave out the corrections of the networks' output: placed boxes, painted ground, inventions, what hangs, holes.
     #[arg(long)]
     raw: bool,
 }

@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::generation::close_holes::close_holes;
 use crate::generation::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::generation::inversion::Trajectory;
 use crate::generation::job::{
@@ -37,6 +38,8 @@ pub use round_trip::RoundTrip;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
+/// A scene of which at least this share of the columns is asked for is to be complete.
+const COMPLETE: f32 = 0.95;
 
 /// When a long job shows what comes: after its first step, then so seldom that looking on costs a fifth of its time.
 #[derive(Default)]
@@ -259,6 +262,9 @@ impl OccPipeline {
             .map_err(GenError::failed)?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
+            if params.named.completeness.is_none_or(|share| share >= COMPLETE) {
+                report.holes_closed = close_holes(&frame.layout, &mut generated);
+            }
             report.grounded(keep_grounded(
                 frame,
                 &region,

@@ -24,7 +24,7 @@ pub enum Ablation {
     Boxes,
     /// No background: the network invents it.
     Background,
-    /// No draft: its latent is shown as zeros, as training shows one frame in ten (there without the layout too).
+    /// No draft: its latent is shown as zeros, as training shows one frame in four (mostly with the layout).
     Draft,
 }
 

@@ -35,8 +35,8 @@ impl Agreement {
     pub fn bars(&self) -> Vec<Bar> {
         let iou = self.all.iou();
         vec![
-            ("drivable agreement", iou.drivable.unwrap_or(f64::NAN), 0.95),
-            ("vehicle agreement", iou.vehicles.unwrap_or(f64::NAN), 0.92),
+            ("drivable agreement", iou.drivable.unwrap_or(f64::NAN), 0.985),
+            ("vehicle agreement", iou.vehicles.unwrap_or(f64::NAN), 0.975),
         ]
     }
 }

@@ -126,6 +126,10 @@ impl Eval {
         let seed = common.wrapping_add(i as u64);
         let mut on_scenery = |by| -> anyhow::Result<VoxelGrid> {
             let scene = with_drawn_scenery(&job.scene, by, seed)?;
+            let params = GenParams {
+                keep_objects: true, // as it is shown
+                ..params
+            };
             let result = pipeline.run(&Job { scene, params }, &JobCtx::detached())?;
             Ok(result.occupancy)
         };
@@ -204,7 +208,7 @@ fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
     if row == 0 { other } else { world }
 }
 
-/// A scene with its background drawn anew, as the window does it (by rules) before it generates.
+/// A scene with its background drawn anew; the window does it by rules before it generates.
 fn with_drawn_scenery(scene: &Arc<Scene>, by: Drawer, seed: u64) -> anyhow::Result<Arc<Scene>> {
     let mut document = Document::new((**scene).clone());
     let wish = SceneryWish {

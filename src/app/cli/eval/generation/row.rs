@@ -36,13 +36,16 @@ pub const ROWS: [(&str, &str); 11] = [
     ("background_given", "from the layouts and the worlds' background"),
     (
         "scenery_drawn",
-        "from the layouts and a background drawn by rules",
+        "from the layouts and a background drawn by rules, as it is shown",
     ),
     (
         "scenery_learned",
         "the same, the background drawn by the scenery network",
     ),
-    ("without_draft", "the same, the draft hidden from the network"),
+    (
+        "without_draft",
+        "from the layouts alone, the draft hidden from the network",
+    ),
     ("draft_alone", "the drafts of the layouts"),
 ];
 
