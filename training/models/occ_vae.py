@@ -189,7 +189,8 @@ def load_vae(path, device):
 
 def latent_space(path):
     """Names the latents of a VAE: its file's hash, or, where only the decoder was trained on, that of the file it came
-    from. A DiT belongs to a latent space."""
+    from, or the name that shipped weights bear. A DiT belongs to a latent space."""
     with safe_open(path, "pt") as f:
-        name = (f.metadata() or {}).get("latents")
+        meta = f.metadata() or {}
+    name = meta.get("latents") or meta.get("name")
     return name or hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
