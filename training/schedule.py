@@ -15,6 +15,19 @@ def alpha_bar():
     return root**2
 
 
+def noised(abar, target, generator=None):
+    """Targets [B,X,Y,C] at times drawn for a batch: noisy, t [B], v to predict, and a weight [B] that gives their errors of v the
+    weight min(SNR + 1, 5) in x0 space (min-SNR, 2303.09556; finite at SNR 0). Times are stratified over the batch: less noise in the loss."""
+    b = len(target)
+    u = (torch.arange(b) + torch.rand(b, generator=generator)) / b
+    t = (u * STEPS).long().clamp(max=STEPS - 1).to(target.device)
+    a = abar.to(target.device)[t]
+    alpha, sigma = a.sqrt().float().view(b, 1, 1, 1), (1 - a).sqrt().float().view(b, 1, 1, 1)
+    noise = torch.randn(target.shape, generator=generator).to(target.device)
+    snr1 = 1 / (1 - a)  # SNR + 1
+    return alpha * target + sigma * noise, t.float(), alpha * noise - sigma * target, (snr1.clamp(max=5.0) / snr1).float()
+
+
 def ddim_timesteps(n):
     """Trailing spacing: n timesteps from 999 down."""
     return [round(STEPS - i * STEPS / n) - 1 for i in range(n)]

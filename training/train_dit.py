@@ -21,7 +21,7 @@ from loop import Run, pick_device
 from models.occ_dit import CELLS, LAYERS, NAMED, PATCH, DitConfig, OccDit, condition_of
 from models.occ_vae import latent_space, load_vae
 from pack import KINDS, Packed, folder_of, pack
-from schedule import STEPS, alpha_bar, ddim_sample
+from schedule import alpha_bar, ddim_sample, noised
 
 SAVE_MINUTES, NOTE_MINUTES, SAMPLE_MINUTES = 3.0, 10.0, 30.0
 FIRST_OBJECT_LAYER, OBJECT_WEIGHT = 8, 2.0  # the ten object layers follow eight map layers
@@ -62,25 +62,18 @@ def draw_batch(frames, rng, batch, cells, labels):
 
 
 def dit_loss(model, abar, corner, mask, given, target, draft, bev, heading, columns, ground, named, generator=None):
-    """v-prediction, weight min(SNR + 1, 5) in x0 space (min-SNR, 2303.09556; finite at SNR 0); generated cells count fully, those
+    """v-prediction (`schedule.noised`); generated cells count fully, those
     with objects more (they are few, and what a user looks at), kept cells a tenth: at inference they are replayed.
     Returns the loss and the mean square error of v per sample."""
-    b = len(target)
-    # Stratified over the batch: less noise in the loss than independent draws.
-    u = (torch.arange(b) + torch.rand(b, generator=generator)) / b
-    t = (u * STEPS).long().clamp(max=STEPS - 1).to(target.device)
-    a = abar.to(target.device)[t]
-    alpha, sigma = a.sqrt().float().view(b, 1, 1, 1), (1 - a).sqrt().float().view(b, 1, 1, 1)
-    noise = torch.randn(target.shape, generator=generator).to(target.device)
+    noisy, t, truth, balance = noised(abar, target, generator)
     cells = condition_of(mask, target * (1 - mask[..., None]), draft, bev, heading, given, columns, ground)
-    v = model(alpha * target + sigma * noise, t.float(), model.condition(cells, named, corner))
-    error = ((v - (alpha * noise - sigma * target)) ** 2).mean(-1)
+    v = model(noisy, t, model.condition(cells, named, corner))
+    error = ((v - truth) ** 2).mean(-1)
     objects = (bev >> FIRST_OBJECT_LAYER) & ((1 << (LAYERS - FIRST_OBJECT_LAYER)) - 1)
     objects = torch.nn.functional.max_pool2d((objects != 0).float()[:, None], 4)[:, 0]
     weight = (mask + 0.1 * (1 - mask)) * (1 + OBJECT_WEIGHT * objects)
     error = (error * weight).sum((1, 2)) / weight.sum((1, 2))
-    snr1 = 1 / (1 - a)  # SNR + 1
-    return (error * (snr1.clamp(max=5.0) / snr1).float()).mean(), error.detach()
+    return (error * balance).mean(), error.detach()
 
 
 HELD_OUT = {"": (1, 0, 0), "_given": (1, 1, 1), "_bare": (0, 0, 0), "_built": (1, 1, 0)}  # is there a draft, are the groups given?

@@ -15,7 +15,7 @@ from loop import Run, pick_device
 from models.occ_vae import latent_space
 from models.scenery import MAP, NAMED, SIDE, Scenery, layout_of, map_of
 from pack import Packed, folder_of, pack
-from schedule import STEPS, alpha_bar, ddim_sample
+from schedule import alpha_bar, ddim_sample, noised
 
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 10.0
 NO_CONDITION, NO_NUMBER = 0.1, 0.3
@@ -42,19 +42,13 @@ def draw_batch(frames, rng, batch):
 
 
 def loss_of(model, abar, target, layout, ground, mask, named, generator=None):
-    b = len(target)
-    u = (torch.arange(b) + torch.rand(b, generator=generator)) / b
-    t = (u * STEPS).long().clamp(max=STEPS - 1).to(target.device)
-    a = abar.to(target.device)[t]
-    alpha, sigma = a.sqrt().float().view(b, 1, 1, 1), (1 - a).sqrt().float().view(b, 1, 1, 1)
-    noise = torch.randn(target.shape, generator=generator).to(target.device)
+    noisy, t, truth, balance = noised(abar, target, generator)
     context = target * (1 - mask[..., None])
-    v = model(alpha * target + sigma * noise, t.float(), layout, ground, mask, context, named)
-    error = ((v - (alpha * noise - sigma * target)) ** 2).mean(-1)
+    v = model(noisy, t, layout, ground, mask, context, named)
+    error = ((v - truth) ** 2).mean(-1)
     weight = mask + 0.1 * (1 - mask)
     error = (error * weight).sum((1, 2)) / weight.sum((1, 2))
-    snr1 = 1 / (1 - a)  # SNR + 1
-    return (error * (snr1.clamp(max=5.0) / snr1).float()).mean(), error.detach().mean().item()
+    return (error * balance).mean(), error.detach().mean().item()
 
 
 @torch.no_grad()

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_beyond_the_grid_or_without_size_have_none_that_break() {
+    fn a_box_beyond_the_grid_has_none() {
         let far = SceneBox {
             id: BoxId(1),
             class: Class::Car,
