@@ -406,7 +406,7 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
         "--parts",
         "edit,vae",
         "--only",
-        "2 steps;4 steps, int8",
+        "2 steps, no fine stage;4 steps, fine stage 8 steps",
         "--reference-steps",
         "4",
     ];
@@ -431,8 +431,8 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
         let point = edits.iter().find(|p| p["name"] == name).expect("measured");
         point["error"]["median"].as_f64().expect("a number")
     };
-    // The reference has four steps: the same in eight bits lies nearer to it than two steps do.
-    assert!(error("4 steps, int8") < error("2 steps"));
+    // The reference has four steps, and more of the fine stage: as many lie nearer to it than two without it.
+    assert!(error("4 steps, fine stage 8 steps") < error("2 steps, no fine stage"));
     assert_eq!(report["figures"]["untouched_identical_edit"], true);
     assert_eq!(points.iter().filter(|p| p["part"] == "vae").count(), 2);
     assert!(std::fs::read(&plot).expect("a picture").starts_with(b"\x89PNG"));

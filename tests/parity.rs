@@ -7,10 +7,11 @@ use glam::DVec3;
 use safetensors::{Dtype, SafeTensors};
 use sceneloom::generation::model::lidar::field::Ray;
 use sceneloom::generation::model::lidar::{LearnedRay, LidarNet};
+use sceneloom::generation::model::refiner::{Refiner, Rough};
 use sceneloom::generation::model::scenery::{self, SceneryCondition, SceneryNet};
 use sceneloom::generation::model::{
     CELLS, CHANNELS, ColumnHeights, DitCondition, Heard, KeysValues, LATENT, ModelError, OccModels, OccVae,
-    fine_vae, tokens_of,
+    Window, fine_vae, tokens_of,
 };
 use sceneloom::scene::VoxelGrid;
 
@@ -164,6 +165,40 @@ fn scenery_agrees_with_python() {
 #[test]
 fn vae_agrees_with_python() {
     agrees(&models().vae, &Golden::open("parity_vae.safetensors"));
+}
+
+/// `golden` of training/export_refiner.py.
+#[test]
+fn refiner_agrees_with_python() {
+    let golden = Golden::open("parity_refiner.safetensors");
+    let net = Refiner::bundled().expect("the shipped weights load");
+    let window = Window {
+        x: 3,
+        y: 20,
+        rows: 7,
+        columns: 11,
+        side: 50,
+    };
+    let places = 4 * 7 * 11;
+    let [x, fine, told] = [5, 6, 8].map(|stream| uniform(16 * places, stream));
+    let coarse = uniform(places / 4 * CHANNELS, 7);
+    let rough = Rough {
+        fine: &fine,
+        told: &told,
+        coarse: &coarse,
+        window,
+    };
+    let truth = golden.f32("v");
+    for (t, truth) in golden.f32("t").into_iter().zip(truth.chunks_exact(16 * places)) {
+        let v = net.forward(&x, t, &rough).expect("finite input");
+        assert_close(&format!("refiner, step {t}"), v, truth);
+    }
+    let mut bad = x.clone();
+    bad[9] = f32::NAN;
+    for (x, t) in [(&bad[..], 0.0), (&x[1..], 0.0), (&x, 1000.0), (&x, f32::NAN)] {
+        let error = net.forward(x, t, &rough).expect_err("refused").to_string();
+        assert_eq!(error.lines().count(), 1, "{error}");
+    }
 }
 
 #[test]

@@ -8,10 +8,12 @@ use sceneloom::generation::dataset::occupancy_frame;
 use sceneloom::generation::job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use sceneloom::generation::model::layout::net::LayoutNet;
 use sceneloom::generation::model::lidar::LidarNet;
-use sceneloom::generation::model::{OccModels, fine_vae};
+use sceneloom::generation::model::{Heard, OccModels, fine_vae};
 use sceneloom::generation::params::Precision;
 use sceneloom::generation::pipeline::OccPipeline;
 use sceneloom::generation::placement::diffuse::place_with;
+use sceneloom::generation::refine::decode_refined;
+use sceneloom::generation::region::Region;
 use sceneloom::generation::sensors::appearance::{
     Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
 };
@@ -126,6 +128,17 @@ fn vae() {
             Hash::new().f32s(&latent).bytes(labels.to_dense())
         });
     }
+}
+
+#[test]
+fn refined() {
+    let models = OccModels::bundled().expect("the shipped weights");
+    let latent = models.vae.encode(&occupancy_frame(3, 0, |_| None).dense);
+    let (latent, all) = (latent.expect("labels"), Region::full().cells);
+    same_bits("refined", || {
+        let grid = decode_refined(&models, &latent, &all, Heard::default(), (2, 5));
+        Hash::new().bytes(grid.expect("a finite latent").to_dense())
+    });
 }
 
 #[test]

@@ -144,7 +144,7 @@ def main():
         if kind.startswith("occ_dit") and meta["vae"] != name:
             raise SystemExit(f"{path}: trained on the latents of VAE {meta['vae']}, not of {args.vae} ({name})")
         keep = ("kind", "config", "seed", "steps", "samples", "minutes", "vae", "calibrated")
-        meta = {k: meta[k] for k in keep if k in meta} | ({"name": name} if kind == "occ_vae" else {})
+        meta = {k: meta[k] for k in keep if k in meta} | ({} if kind == "occ_dit" else {"name": latent_space(path)})
         out = args.weights / f"{kind}.safetensors"
         save_file(halved(tensors), out, meta)
         log = Path(path).with_suffix(".csv")

@@ -25,13 +25,16 @@ cargo build --release -p sceneloom-worlds --manifest-path "$here/../Cargo.toml"
 kernels='[[[1],[3,1,1,1],[3,1,1,1,1,1,1]],[[3,3,1,1,1,1,1,1],[3,1,1,1],[1,1,1]]]'
 mix='.30 .58 .12' # complete worlds, labels, drafts
 train train_vae.py vae .3 $(begin_with occ_vae) --kernels "$kernels" --mix $mix --anywhere .45 --leaned .35
-train train_dit.py occ_dit .45 $(begin_with occ_dit) --vae "$folder/vae.safetensors"
+train train_dit.py occ_dit .41 $(begin_with occ_dit) --vae "$folder/vae.safetensors"
 train train_vae.py occ_vae .1 --decoder-of "$folder/vae.safetensors" --hears --latent-noise .1 --kernels "$kernels" --mix .40 .55 .05 --anywhere .45 --leaned .2
 train train_vae.py occ_vae_fine .11 $(begin_with occ_vae_fine) --fine --mix .42 .48 .1 --anywhere .45
 
 train train_scenery.py scenery .04 --vae "$folder/vae.safetensors"
 
 "$python" "$here/calibrate.py" --vae "$folder/occ_vae.safetensors" --data "$folder" -o "$folder/calibrated.safetensors"
+train train_refiner.py refiner .04 --vae "$folder/calibrated.safetensors" --fine "$folder/occ_vae_fine.safetensors"
+
 "$python" "$here/export.py" --vae "$folder/calibrated.safetensors" --fine "$folder/occ_vae_fine.safetensors" \
     --dit "$folder/occ_dit.safetensors" --data "$folder" --data-command "$worlds"
 "$python" "$here/export_scenery.py" --weights "$folder/scenery.safetensors" --data-command "$worlds"
+"$python" "$here/export_refiner.py" --weights "$folder/refiner.safetensors" --data-command "$worlds"

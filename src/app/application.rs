@@ -20,6 +20,7 @@ use super::canvas::Canvas;
 use super::checking::Checking;
 use super::compare::Compare;
 use super::dock::Dock;
+use super::drawing::Drawing;
 use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::keymap::Keymap;
@@ -137,6 +138,7 @@ pub struct SceneloomApp {
     pub(super) worker: GenWorker,
     pub(super) dialogs: FileDialogs,
     pub(super) opening: Option<Opening>,
+    pub(super) drawing: Option<Drawing>,
     /// Waits for an answer about unsaved changes.
     pub(super) unsaved: Option<Next>,
     /// Goes on after the scene was saved.
@@ -234,6 +236,7 @@ impl SceneloomApp {
             worker,
             dialogs: FileDialogs::new(config.native_dialogs),
             opening: None,
+            drawing: None,
             unsaved: None,
             after_save: None,
             may_close: false,
@@ -323,6 +326,7 @@ impl SceneloomApp {
             self.adopt(&result, own_step);
         }
         self.take_opened(ctx);
+        self.update_drawing(ctx);
         if let Some((purpose, path)) = self.dialogs.poll() {
             self.file_chosen(purpose, path, ctx);
         }

@@ -235,7 +235,7 @@ impl SceneloomApp {
         self.compare.chosen = None;
     }
 
-    fn fail(&mut self, text: String) {
+    pub(super) fn fail(&mut self, text: String) {
         let now_s = self.now_s();
         self.toasts.push(Level::Error, text, now_s);
     }

@@ -17,6 +17,7 @@ pub mod compare;
 mod damage;
 pub mod dock;
 mod dock_ui;
+mod drawing;
 mod enrich;
 mod execute;
 pub mod export;

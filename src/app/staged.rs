@@ -162,7 +162,7 @@ impl SceneloomApp {
             }
             Again::Scenery(mut wish) => {
                 wish.seed = wish.seed.wrapping_add(1);
-                self.put_scenery(*wish);
+                self.put_scenery(*wish, true);
             }
         }
     }
@@ -205,27 +205,14 @@ impl SceneloomApp {
         let scene = self.document.settled_scene();
         // The sliders' typical values are the usual numbers.
         let times = |named: Option<f32>, typical: f64| named.map_or(1.0, |v| f64::from(v) / typical);
-        self.put_scenery(SceneryWish {
+        let wish = SceneryWish {
             seed: scene.seed.wrapping_add(self.state.tools.scenery_draws),
             by: self.state.tools.drawer,
             green: times(self.state.named.vegetation, TYPICAL_VEGETATION),
             built: times(self.state.named.building, TYPICAL_BUILDING),
             region: self.state.tools.region,
-        });
-    }
-
-    fn put_scenery(&mut self, wish: SceneryWish) {
-        let before = self.document.settled_scene().clone();
-        let Some(edits) = self.scenery_edits(&wish, &before) else {
-            return;
         };
-        self.apply("Draw scenery", &edits);
-        let after = self.document.settled_scene().clone();
-        if after.rev != before.rev {
-            let note = format!("Seed {}", wish.seed);
-            self.versions.push("Draw scenery".to_owned(), note, after);
-            self.stage(before, Some(Again::Scenery(Box::new(wish))));
-        }
+        self.put_scenery(wish, true);
     }
 
     /// What draws scenery; none if that failed, which is said.
@@ -252,8 +239,7 @@ impl SceneloomApp {
             // Things are whole or not there.
             let region = self.state.tools.region;
             if self.step_back().is_some() {
-                self.put_scenery(SceneryWish { region, ..*wish });
-                self.end_staging();
+                self.put_scenery(SceneryWish { region, ..*wish }, false);
             }
             return;
         }

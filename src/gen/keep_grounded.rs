@@ -7,7 +7,7 @@ use super::request::Request;
 use crate::scene::draft::{ground_bin, ground_class};
 use crate::scene::raster::box_cells;
 use crate::scene::support::{
-    self, CROWN, bins_set, by_class, groups, is_known_to_float, main_class, occupied, stem,
+    self, CROWN, bins_set, by_class, groups, is_known_to_float, main_class, occupied, reaches_side, stem,
 };
 use crate::scene::{Class, Frame, GridSpec, VoxelGrid};
 
@@ -61,11 +61,15 @@ pub fn keep_grounded(
         .collect();
     for group in groups(hanging) {
         let new: Vec<_> = group.iter().copied().filter(|c| is_new(&whole, *c)).collect();
-        if new.is_empty() || !is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group) {
+        let class = main_class(&whole, &group);
+        let is_crown = class == Class::Vegetation && group.len() >= CROWN;
+        // Nothing holds a tree from above; whatever else reaches the top of the grid may go on beyond it.
+        let needs_stem = all && is_crown && !reaches_side(&group);
+        let floats = needs_stem || is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group);
+        if new.is_empty() || !floats {
             continue;
         }
-        let class = main_class(&whole, &group);
-        let stem = match class == Class::Vegetation && group.len() >= CROWN {
+        let stem = match is_crown {
             true => stem(&whole, &group),
             false => Vec::new(),
         };
@@ -151,6 +155,15 @@ mod tests {
         // Drawn anew, it goes too; a voxel is no crown.
         let all = keep_grounded(&frame, &Region::full(), true, &request, &mut generated);
         assert_eq!((all.stems, all.dropped), (0, 1));
+        // A crown at the top of the grid hangs from nothing; a wall there may go on beyond.
+        for z in 12..GridSpec::NZ {
+            (0..9).for_each(|c| generated.set(130 + c / 3, 120 + c % 3, z, Class::Vegetation.id()));
+            generated.set(140, 120, z, Class::Manmade.id());
+        }
+        let edited = keep_grounded(&frame, &region, false, &request, &mut generated.clone());
+        assert_eq!(edited, Grounded::default());
+        let all = keep_grounded(&frame, &Region::full(), true, &request, &mut generated);
+        assert_eq!((all.stems, all.dropped), (11, 0));
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub mod params;
 pub mod pipeline;
 pub mod placement;
 pub mod redraw;
+pub mod refine;
 pub mod region;
 pub mod replay;
 pub mod request;

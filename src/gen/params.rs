@@ -118,6 +118,8 @@ pub struct GenParams {
     pub precision: Precision,
     /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
     pub reuse_steps: u32,
+    /// Steps of the fine stage, which redraws in the fine latent what the coarse one decodes to; 0 = none.
+    pub fine_steps: u32,
     /// How much work the result is worth.
     pub quality: Quality,
     /// Densities and completeness asked for.
@@ -144,6 +146,7 @@ impl Default for GenParams {
             halo_tokens: 1,
             precision: Precision::F32,
             reuse_steps: 1,
+            fine_steps: 2,
             quality: Quality::Final,
             named: Named::default(),
             keep_objects: true,
@@ -152,7 +155,7 @@ impl Default for GenParams {
 }
 
 /// Counts, numbers, named numbers, choices.
-type Bits = ([u32; 5], [u64; 4], [Option<u32>; 4], Choices);
+type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
 type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
@@ -167,6 +170,7 @@ impl GenParams {
                 self.halo_columns,
                 self.halo_tokens,
                 self.reuse_steps,
+                self.fine_steps,
             ],
             [
                 self.seed,
@@ -211,6 +215,7 @@ impl GenParams {
         in_range("inversion_iterations", iterations, 0.0, 100.0)?;
         in_range("halo_columns", f64::from(self.halo_columns), 0.0, 200.0)?;
         in_range("halo_tokens", f64::from(self.halo_tokens), 0.0, 25.0)?;
+        in_range("fine_steps", f64::from(self.fine_steps), 0.0, 100.0)?;
         in_range("reuse_steps", f64::from(self.reuse_steps), 1.0, 100.0)
     }
 
@@ -252,7 +257,8 @@ mod tests {
         };
         let same = GenParams { strength: -0.0, ..a };
         assert_eq!((a, hash(&a)), (same, hash(&same)));
-        let changes: [fn(&mut GenParams); 14] = [
+        let changes: [fn(&mut GenParams); 15] = [
+            |p| p.fine_steps = 0,
             |p| p.precision = Precision::Int8,
             |p| p.reuse_steps = 2,
             |p| p.redraw.set(3, 4, true),
@@ -285,7 +291,8 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_refused_in_one_line() {
         assert_eq!(GenParams::default().check(), Ok(()));
-        let changes: [fn(&mut GenParams); 11] = [
+        let changes: [fn(&mut GenParams); 12] = [
+            |p| p.fine_steps = 101,
             |p| p.reuse_steps = 0,
             |p| p.halo_tokens = 26,
             |p| p.steps = 0,

@@ -15,6 +15,8 @@ pub enum Stream {
     Encoder = 2,
     /// Noise that scenery is drawn from.
     Scenery = 3,
+    /// Noise that fine latents are refined from.
+    Refine = 4,
 }
 
 /// The ten-round Philox block function: four words from four counter words and two key words.

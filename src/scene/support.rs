@@ -168,9 +168,7 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
 /// they stand on their own), or by voxels below that no sensor observed.
 pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
     let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
-    let at_edge = |[x, y, z]: [usize; 3]| {
-        x == 0 || y == 0 || x + 1 == GridSpec::NX || y + 1 == GridSpec::NY || z + 1 == GridSpec::NZ
-    };
+    let at_edge = |cell: [usize; 3]| reaches_side(&[cell]) || cell[2] + 1 == GridSpec::NZ;
     let unknown_below = |[x, y, z]: [usize; 3]| {
         let words = unobserved.map(Unobserved::words);
         z > 0 && words.is_some_and(|w| w[x * GridSpec::NY + y] >> (z - 1) & 1 == 1)
@@ -178,6 +176,13 @@ pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, grou
     !group
         .iter()
         .any(|c| (at_edge(*c) && !is_object(*c)) || unknown_below(*c))
+}
+
+/// May something beyond the sides of the grid hold it?
+pub fn reaches_side(group: &[[usize; 3]]) -> bool {
+    let at_side =
+        |[x, y, _]: &[usize; 3]| *x == 0 || *y == 0 || x + 1 == GridSpec::NX || y + 1 == GridSpec::NY;
+    group.iter().any(at_side)
 }
 
 /// Free voxels from the underside of a group down to what is below it, under the voxel that is nearest to its middle.

@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable;
 use sceneloom::app::Command;
 use sceneloom::app::compare::CompareMode;
 use sceneloom::app::scenery::Drawer;
+use sceneloom::editor::Edit;
 use sceneloom::generation::job::RegionMode;
 use sceneloom::generation::redraw::RedrawMask;
 use sceneloom::generation::world::scenery::Setting;
@@ -191,6 +192,30 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     }
     bench.key(Modifiers::COMMAND, egui::Key::Z);
     assert!(bench.frame().occupancy == before);
+}
+
+#[test]
+fn a_network_draws_scenery_while_the_window_goes_on() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.app().state.tools.drawer = Drawer::Network;
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(Command::DrawScenery, &ctx);
+    assert_eq!(bench.history(), ["Open"]);
+    bench.wait_until("the scenery", |b| b.app().staged().is_some());
+    assert_eq!(bench.history(), ["Open", "Draw scenery"]);
+    assert!(!bench.app().document.scene().background.is_empty());
+    bench.steps(3);
+    bench.click("Decline");
+    assert!(bench.app().document.scene().background.is_empty());
+    // Who edits meanwhile keeps the edit, and is told.
+    bench.app().execute(Command::DrawScenery, &ctx);
+    let id = *bench.frame().boxes.keys().next().expect("a box");
+    let edits = vec![Edit::RemoveBox { id }];
+    bench.app().execute(Command::Apply("Delete", edits), &ctx);
+    let told = "The scene changed meanwhile: no scenery was drawn";
+    bench.wait_until("the end", |b| b.harness.query_by_label(told).is_some());
+    assert_eq!(bench.history(), ["Open", "Delete"]);
 }
 
 #[test]

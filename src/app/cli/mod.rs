@@ -149,6 +149,9 @@ struct Gen {
     /// In what the network's products are computed: f32, or int8, which is faster where the machine has AVX-512 VNNI.
     #[arg(long, value_parser = ["f32", "int8"])]
     precision: Option<String>,
+    /// Steps in which what the coarse latent decodes to is refined, down to single voxels; 0 leaves it.
+    #[arg(long, value_name = "N")]
+    fine_steps: Option<u32>,
     /// Leave out the corrections of the networks' output: placed boxes, painted ground, inventions, what hangs, holes.
     #[arg(long)]
     raw: bool,
@@ -190,6 +193,7 @@ impl Gen {
                 _ => default.redraw,
             },
             inversion_iterations: self.inversion_iterations.unwrap_or(default.inversion_iterations),
+            fine_steps: self.fine_steps.unwrap_or(default.fine_steps),
             strength: self.strength,
             keep_objects: !self.raw,
             local: !self.dense && default.local,

@@ -83,6 +83,9 @@ pub struct Bench {
     pub kept_in: Option<PathBuf>,
 }
 
+/// Steps of the reference's fine stage.
+const REFERENCE_FINE_STEPS: u32 = 16;
+
 /// Parameters of the reference for those of a setting.
 pub fn reference_params(base: GenParams, steps: u32) -> GenParams {
     GenParams {
@@ -90,6 +93,7 @@ pub fn reference_params(base: GenParams, steps: u32) -> GenParams {
         local: false,
         reuse_steps: 1,
         inversion_iterations: 0,
+        fine_steps: REFERENCE_FINE_STEPS,
         precision: Precision::F32,
         quality: crate::generation::job::Quality::Preview, // no preview is decoded on the way
         ..base
@@ -119,7 +123,7 @@ impl Bench {
             let of = [
                 label_hash(&frame.source.occupancy),
                 label_hash(&frame.occupancy),
-                u64::from(params.steps),
+                u64::from(params.steps) << 32 | u64::from(params.fine_steps),
                 case.name.bytes().fold(0, |h, b| hash(h ^ u64::from(b))),
                 params.guidance.to_bits(),
                 u64::from(params.region == RegionMode::Full),

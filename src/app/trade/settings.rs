@@ -37,6 +37,11 @@ pub fn name_of(knobs: &StopKnobs, base: &StopKnobs) -> String {
     if knobs.reuse_steps > 1 {
         parts.push(format!("middle every {} steps", knobs.reuse_steps));
     }
+    match knobs.fine_steps {
+        same if same == base.fine_steps => {}
+        0 => parts.push("no fine stage".into()),
+        n => parts.push(format!("fine stage {n} steps")),
+    }
     parts.join(", ")
 }
 
@@ -137,6 +142,34 @@ pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
             "",
         );
     }
+    for steps in [2, 4, 10] {
+        for fine_steps in [0, 1, 2, 8] {
+            add(
+                GenParams {
+                    steps,
+                    fine_steps,
+                    ..base
+                },
+                false,
+                "",
+            );
+        }
+    }
+    for (steps, precision) in [(10, Precision::F32), (20, Precision::Int8)] {
+        for fine_steps in [1, 4, 8] {
+            add(
+                GenParams {
+                    steps,
+                    precision,
+                    fine_steps,
+                    inversion_iterations: 3,
+                    ..base
+                },
+                false,
+                "",
+            );
+        }
+    }
     for guidance in [1.5, 3.0] {
         add(
             GenParams { guidance, ..base },
@@ -211,6 +244,9 @@ pub fn of_scenes(base: GenParams) -> Vec<Setting> {
             reuse_steps: 2,
             ..base
         });
+    }
+    for fine_steps in [0, 1, 2, 8] {
+        add(GenParams { fine_steps, ..base });
     }
     out
 }

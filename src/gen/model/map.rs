@@ -103,6 +103,17 @@ impl Window {
         }
     }
 
+    /// The same place in cells half as large.
+    pub fn halved(self) -> Self {
+        Self {
+            x: 2 * self.x,
+            y: 2 * self.y,
+            rows: 2 * self.rows,
+            columns: 2 * self.columns,
+            side: 2 * self.side,
+        }
+    }
+
     /// Numbers of its cells, row by row.
     pub fn cells(self) -> impl Iterator<Item = usize> {
         (self.x..self.x + self.rows)

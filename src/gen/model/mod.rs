@@ -17,6 +17,7 @@ pub mod map;
 pub mod occ_dit;
 pub mod occ_vae;
 pub mod panels;
+pub mod refiner;
 pub mod scenery;
 pub mod text;
 
@@ -26,8 +27,10 @@ use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
 pub use column_heights::{ColumnHeights, GROUPS, column_heights};
+pub use map::Window;
 pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
 pub use occ_vae::{Heard, OccVae, VaeConfig};
+pub use refiner::Refiner;
 
 use super::weights::{self, WeightFile, WeightsError};
 
@@ -42,6 +45,9 @@ pub const LATENT: usize = CELLS * CHANNELS;
 
 /// File names of the two networks.
 pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
+
+/// File name of the fine VAE.
+const FINE: &str = "occ_vae_fine.safetensors";
 
 /// What a network refuses, or cannot promise any more.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -83,11 +89,16 @@ pub enum ModelError {
     Timestep(f32),
 }
 
-/// The VAE of 100x100x16 latents that ships with the program: it keeps nearly every label, and no network
-/// generates its latents yet.
+/// The VAE of 100x100x16 latents that ships with the program: it keeps nearly every label. [`refiner`] generates its latents.
 pub fn fine_vae() -> Result<OccVae, WeightsError> {
-    let bytes = include_bytes!("../../../assets/weights/occ_vae_fine.safetensors");
-    OccVae::new(WeightFile::parse("occ_vae_fine.safetensors", bytes)?)
+    OccVae::new(fine_file()?)
+}
+
+fn fine_file() -> Result<WeightFile<'static>, WeightsError> {
+    WeightFile::parse(
+        FINE,
+        include_bytes!("../../../assets/weights/occ_vae_fine.safetensors"),
+    )
 }
 
 fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), ModelError> {
@@ -118,8 +129,8 @@ fn check_finite(what: &'static str, values: &[f32]) -> Result<(), ModelError> {
 pub struct ModelCard {
     /// Steps and samples they were trained on, as their files say.
     pub name: String,
-    /// FNV-1a of the VAE's file and of the DiT's.
-    pub hashes: [u64; 2],
+    /// FNV-1a of the VAE's file, of the DiT's and of the refiner's with its fine VAE (0 without one).
+    pub hashes: [u64; 3],
 }
 
 /// Both networks, which belong together: the DiT knows only this VAE's latents.
@@ -128,6 +139,8 @@ pub struct OccModels {
     pub vae: OccVae,
     /// Latents from noise and a layout.
     pub dit: OccDit,
+    /// Draws what the coarse latent has no room for; a folder of weights may lack it.
+    pub refiner: Option<Arc<Refiner>>,
     /// Which weights these are.
     pub card: ModelCard,
 }
@@ -142,17 +155,28 @@ impl OccModels {
         let models = Self::parse(
             include_bytes!("../../../assets/weights/occ_vae.safetensors"),
             include_bytes!("../../../assets/weights/occ_dit.safetensors"),
+            Some(Refiner::bundled()?),
         )?;
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
-    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder.
+    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and `refiner.safetensors` with `occ_vae_fine.safetensors` where it
+    /// has them.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
         let [vae, dit] = FILES.map(|f| weights::read(&folder.join(f)));
-        Ok(Arc::new(Self::parse(&vae?, &dit?)?))
+        let refiner = match folder.join(refiner::FILE).exists() {
+            true => {
+                let [net, fine] = [refiner::FILE, FINE].map(|f| weights::read(&folder.join(f)));
+                let (net, fine) = (net?, fine?);
+                let net = WeightFile::parse(refiner::FILE, &net)?;
+                Some(Arc::new(Refiner::new(net, WeightFile::parse(FINE, &fine)?)?))
+            }
+            false => None,
+        };
+        Ok(Arc::new(Self::parse(&vae?, &dit?, refiner)?))
     }
 
-    fn parse(vae: &[u8], dit: &[u8]) -> Result<Self, WeightsError> {
+    fn parse(vae: &[u8], dit: &[u8], refiner: Option<Arc<Refiner>>) -> Result<Self, WeightsError> {
         let (vae, dit) = (
             WeightFile::parse(FILES[0], vae)?,
             WeightFile::parse(FILES[1], dit)?,
@@ -164,7 +188,7 @@ impl OccModels {
                 told(&vae),
                 told(&dit)
             ),
-            hashes: [vae.hash(), dit.hash()],
+            hashes: [vae.hash(), dit.hash(), refiner.as_ref().map_or(0, |r| r.hash)],
         };
         let (made, found) = (vae.metadata("name"), dit.metadata("vae"));
         if made.is_some() && made != found {
@@ -189,6 +213,7 @@ impl OccModels {
         Ok(Self {
             vae,
             dit: OccDit::new(dit)?,
+            refiner,
             card,
         })
     }

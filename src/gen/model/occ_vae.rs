@@ -206,7 +206,11 @@ impl OccVae {
 
     /// Means and standard deviations of the cells of a window, as if nothing were around it, in units of the
     /// latent's spread over the training set.
-    fn encode_window(&self, grid: &VoxelGrid, window: Window) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
+    pub fn encode_window(
+        &self,
+        grid: &VoxelGrid,
+        window: Window,
+    ) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
         let channels = self.config.latent;
         let features = self.encoder.features(grid, window)?;
         let moments = self.encoder_head.parallel(&features.data, PIECE);

@@ -21,8 +21,9 @@ use crate::generation::keep_clear::{keep_clear, keep_unobserved, observed_still}
 use crate::generation::keep_grounded::keep_grounded;
 use crate::generation::keep_objects::{keep_ground, keep_objects};
 use crate::generation::keep_unchanged::keep_unchanged;
-use crate::generation::model::{DitCondition, GROUPS, Heard, ModelError, OccModels, tokens_of};
+use crate::generation::model::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
 use crate::generation::redraw::{self, RedrawMask};
+use crate::generation::refine::decode_refined;
 use crate::generation::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::generation::replay::edit_with_replay;
 use crate::generation::request::Request;
@@ -210,7 +211,8 @@ impl OccPipeline {
     /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
-        self.source(&job.scene, &job.params, &mut report, ctx)?;
+        let condition = self.condition_of_source(&job.scene);
+        self.source(&job.scene, &condition, &job.params, &mut report, ctx)?;
         Ok(report.network_calls)
     }
 
@@ -253,13 +255,10 @@ impl OccPipeline {
         };
         ctx.progress(Stage::Decode, 0, 1)?;
         let latent = trajectory.latent_f32();
-        let mut generated = report
-            .timed(Stage::Decode, |_| {
-                self.models
-                    .vae
-                    .decode_told(&latent, &region.cells, condition.told())
-            })
-            .map_err(GenError::failed)?;
+        let mut generated = report.timed(Stage::Decode, |_| {
+            let refine = (params.fine_steps, params.seed);
+            decode_refined(&self.models, &latent, &region.cells, condition.told(), refine)
+        })?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
             if params.named.completeness.is_none_or(|share| share >= COMPLETE) {
@@ -347,9 +346,10 @@ impl OccPipeline {
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
         let anew = params.strength > 0.0;
+        let condition_before = self.condition_of_source(&job.scene);
         let (sampler, source) = match anew {
-            true => self.noised(&job.scene, params, &mut report, ctx)?,
-            false => self.inverted(&job.scene, params, &mut report, ctx)?,
+            true => self.noised(&job.scene, &condition_before, params, &mut report, ctx)?,
+            false => self.inverted(&job.scene, &condition_before, params, &mut report, ctx)?,
         };
         let named = params.named.or(&density_of_source(frame));
         let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, named);
@@ -411,24 +411,23 @@ impl OccPipeline {
         ctx.progress(Stage::Decode, 0, 1)?;
         let request = Request::of(frame);
         let observed = observed_still(frame, redraw, &request);
-        let condition_before = self.condition_of_source(&job.scene);
-        let mut generated = report
-            .timed(Stage::Decode, |report| {
-                let vae = &self.models.vae;
-                let decoded = |latent: &[f32], condition: &Condition| {
-                    let heard = Heard {
-                        observed: observed.as_deref(),
-                        ..condition.told()
-                    };
-                    vae.decode_told(latent, &region.cells, heard)
+        let mut generated = report.timed(Stage::Decode, |report| {
+            let refine = (params.fine_steps, params.seed);
+            let decoded = |latent: &[f32], condition: &Condition| {
+                let heard = Heard {
+                    observed: observed.as_deref(),
+                    ..condition.told()
                 };
-                let mut generated = decoded(&edited.latent, &condition)?;
-                let source = decoded(&latent, &condition_before)?;
-                report.unchanged_kept =
-                    keep_unchanged(frame, &region, redraw, &request, &source, &mut generated);
-                Ok(generated)
-            })
-            .map_err(|error: ModelError| GenError::failed(error))?;
+                decode_refined(&self.models, latent, &region.cells, heard, refine)
+            };
+            let (generated, source) = rayon::join(
+                || decoded(&edited.latent, &condition),
+                || decoded(&latent, &condition_before),
+            );
+            let (mut generated, source) = (generated?, source?);
+            report.unchanged_kept = keep_unchanged(frame, &region, redraw, &request, &source, &mut generated);
+            Ok::<_, GenError>(generated)
+        })?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
@@ -459,6 +458,11 @@ impl OccPipeline {
         region: &Region,
         report: &mut GenReport,
     ) -> GenResult {
+        if job.params.fine_steps > 0 && self.models.refiner.is_none() {
+            report
+                .notes
+                .push("no fine stage: the folder of weights has no refiner".into());
+        }
         let painted = &job.scene.frame().painted;
         let occupancy = report.timed(Stage::Composite, |_| {
             composite(source, generated, region, painted)

@@ -35,8 +35,15 @@ impl OccPipeline {
 
     /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
-        let known = self.source(&job.scene, &job.params, &mut GenReport::default(), ctx)?;
-        let mut network = self.network_of_source(&job.scene, &job.params)?;
+        let condition = self.condition_of_source(&job.scene);
+        let known = self.source(
+            &job.scene,
+            &condition,
+            &job.params,
+            &mut GenReport::default(),
+            ctx,
+        )?;
+        let mut network = self.network_of_source(&condition, &job.params)?;
         let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
         round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
             ctx.progress(Stage::Denoise, k, n)
@@ -56,7 +63,8 @@ impl OccPipeline {
             .into_iter()
             .map(f64::from)
             .collect();
-        let mut network = self.network_of_source(scene, params)?;
+        let condition = self.condition_of_source(scene);
+        let mut network = self.network_of_source(&condition, params)?;
         let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {

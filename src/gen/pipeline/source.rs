@@ -82,11 +82,6 @@ impl OccPipeline {
         self.condition(scene, &frame.source.layout, &frame.source.boxes, named)
     }
 
-    pub(super) fn key_of_source(&mut self, scene: &Scene, params: &GenParams) -> SourceKey {
-        let condition = self.condition_of_source(scene);
-        self.key(&scene.frame().source.occupancy, &condition, params)
-    }
-
     pub(super) fn remember(&mut self, source: Source) {
         self.sources.retain(|s| s.key != source.key);
         self.sources.push_front(source);
@@ -109,16 +104,17 @@ impl OccPipeline {
         }
     }
 
-    /// The trajectory of a frame's source: from memory, or inverted now.
+    /// The trajectory of a frame's source, generated from `condition`: from memory, or inverted now.
     pub(super) fn source(
         &mut self,
         scene: &Scene,
+        condition: &Condition,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<Source, GenError> {
         let old = &*scene.frame().source;
-        let key = self.key_of_source(scene, params);
+        let key = self.key(&old.occupancy, condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
             self.remember(known.clone()); // used last, forgotten last
             return Ok(known);
@@ -128,7 +124,7 @@ impl OccPipeline {
             .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
             .map_err(GenError::failed)?;
         let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
-        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(scene, params))?;
+        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(condition, params))?;
         network.keys_values = stored(params.steps);
         let refinement = Refinement::damped(params.inversion_iterations as usize);
         let mut solver = params.solver;
@@ -170,11 +166,12 @@ impl OccPipeline {
     pub(super) fn inverted(
         &mut self,
         scene: &Scene,
+        condition: &Condition,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(Sampler, Source), GenError> {
-        let source = self.source(scene, params, report, ctx)?;
+        let source = self.source(scene, condition, params, report, ctx)?;
         if let Some(inversion) = &source.report {
             report.noise_std = Some(inversion.std);
             report.noise_max_abs = Some(inversion.max_abs);
@@ -193,11 +190,12 @@ impl OccPipeline {
     pub(super) fn noised(
         &mut self,
         scene: &Scene,
+        condition: &Condition,
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(Sampler, Source), GenError> {
-        let key = self.key_of_source(scene, params);
+        let key = self.key(&scene.frame().source.occupancy, condition, params);
         let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
             Some(known) => known.trajectory.latent().to_vec(),
             None => {
@@ -232,17 +230,16 @@ impl OccPipeline {
     /// The network under the condition of a frame's source, for all tokens.
     pub(super) fn network_of_source(
         &mut self,
-        scene: &Scene,
+        condition: &Condition,
         params: &GenParams,
     ) -> Result<Network, GenError> {
-        let condition = self.condition_of_source(scene);
         let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
         let params = GenParams {
             guidance: 1.0,
             reuse_steps: 1,
             ..*params
         };
-        self.network(&condition, None, mask, context, &params)
+        self.network(condition, None, mask, context, &params)
     }
 
     /// A result's own trajectory is that of the scene that adopts it: no inversion next time.

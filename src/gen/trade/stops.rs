@@ -24,6 +24,9 @@ pub struct StopKnobs {
     pub inversion_iterations: u32,
     /// See [`GenParams::reuse_steps`].
     pub reuse_steps: u32,
+    /// See [`GenParams::fine_steps`].
+    #[serde(default)]
+    pub fine_steps: u32,
 }
 
 impl StopKnobs {
@@ -37,6 +40,7 @@ impl StopKnobs {
             halo_tokens: params.halo_tokens,
             inversion_iterations: params.inversion_iterations,
             reuse_steps: params.reuse_steps,
+            fine_steps: params.fine_steps,
         }
     }
 
@@ -50,6 +54,7 @@ impl StopKnobs {
             halo_tokens: self.halo_tokens,
             inversion_iterations: self.inversion_iterations,
             reuse_steps: self.reuse_steps,
+            fine_steps: self.fine_steps,
             ..params
         }
     }
@@ -85,7 +90,7 @@ pub struct Stop {
 #[serde(deny_unknown_fields)]
 pub struct Stops {
     /// Which weights they were measured with: [`ModelCard::hashes`](crate::generation::model::ModelCard).
-    pub weights: [u64; 2],
+    pub weights: [u64; 3],
     /// The machine on which the times were taken.
     pub machine: String,
     /// The build of the program that took them; empty for those that ship.
@@ -105,7 +110,7 @@ impl Stops {
     pub fn bundled() -> Self {
         let text = include_str!("../../../assets/trade/stops.json");
         serde_json::from_str(text).unwrap_or_else(|_| Self {
-            weights: [0; 2],
+            weights: [0; 3],
             machine: String::new(),
             build: String::new(),
             load_per_core: None,
@@ -115,7 +120,7 @@ impl Stops {
     }
 
     /// From what a user's machine was measured to take; refuses other weights and what makes no sense, in one line.
-    pub fn parse(text: &str, weights: [u64; 2]) -> Result<Self, String> {
+    pub fn parse(text: &str, weights: [u64; 3]) -> Result<Self, String> {
         let read: Self = serde_json::from_str(text).map_err(|e| e.to_string())?;
         if read.weights != weights {
             return Err("measured with other weights".into());
@@ -201,7 +206,7 @@ mod tests {
         let stops = Stops::bundled();
         let text = serde_json::to_string(&stops).expect("plain values");
         assert_eq!(Stops::parse(&text, stops.weights), Ok(stops.clone()));
-        assert!(Stops::parse(&text, [1, 2]).is_err());
+        assert!(Stops::parse(&text, [1, 2, 3]).is_err());
         let mut bad = stops.clone();
         bad.stops[0].knobs.steps = 0;
         let refused = |s: &str| {

@@ -59,7 +59,7 @@ impl Trade {
             k if k == last => "accurate".into(),
             k if k == middle => "balanced".into(),
             k if k < middle => numbered("quick", k - 1),
-            k => numbered("fine", k - middle - 1),
+            k => numbered("careful", k - middle - 1),
         };
         let mut stops: Vec<Stop> = Vec::new();
         for (k, i) in kept.iter().enumerate() {

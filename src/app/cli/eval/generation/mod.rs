@@ -54,7 +54,8 @@ struct Measured {
     redrawn: Redrawn,
     /// Of generated scenes and of worlds.
     follow: [Follow; 2],
-    given: Given,
+    /// With the fine stage and without.
+    given: [Given; 2],
 }
 
 impl Eval {
@@ -91,7 +92,8 @@ impl Eval {
             "generated": measured.follow[0].report(),
             "worlds": measured.follow[1].report(),
         });
-        report["background_given"] = measured.given.report();
+        report["background_given"] = measured.given[0].report();
+        report["background_given_coarse"] = measured.given[1].report();
         report["rows"] = json!({});
         for (row, (name, what)) in measured.rows.iter().zip(ROWS) {
             report["rows"][name] = row.report(&measured.rows[0], params.seed)?;
@@ -121,7 +123,16 @@ impl Eval {
             params,
         };
         let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
-        measured.given.add(&given, &truth);
+        let coarse = Job {
+            params: GenParams {
+                fine_steps: 0,
+                ..params
+            },
+            ..job.clone()
+        };
+        let given_coarse = pipeline.run(&coarse, &JobCtx::detached())?.occupancy;
+        measured.given[0].add(&given, &truth);
+        measured.given[1].add(&given_coarse, &truth);
         let told = pipeline.reconstruct(&job.scene)?;
         let seed = common.wrapping_add(i as u64);
         let mut on_scenery = |by| -> anyhow::Result<VoxelGrid> {
@@ -187,6 +198,7 @@ impl Eval {
             &fine,
             &result.occupancy,
             &given,
+            &given_coarse,
             &drawn,
             &learned,
             &undrafted,

@@ -20,7 +20,7 @@ use crate::scene::{Scene, SensorRig, VoxelGrid};
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
-pub const ROWS: [(&str, &str); 11] = [
+pub const ROWS: [(&str, &str); 12] = [
     ("other_worlds", "what every row is compared with"),
     ("worlds", "as many worlds: the floor"),
     ("through_vae", "the worlds, encoded and decoded"),
@@ -34,6 +34,7 @@ pub const ROWS: [(&str, &str); 11] = [
     ),
     ("generated", "from the layouts alone"),
     ("background_given", "from the layouts and the worlds' background"),
+    ("given_coarse", "the same without the fine stage"),
     (
         "scenery_drawn",
         "from the layouts and a background drawn by rules, as it is shown",
