@@ -61,7 +61,7 @@ impl Default for Settings {
             key_preset: "Default".into(),
             keys: Chords::new(),
             workspace: Workspace::default(),
-            quality: "balanced".into(),
+            quality: "careful".into(), // the fastest stop whose inverted noise is like a draw
             dock: None,
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
