@@ -175,6 +175,17 @@ pub(super) struct Tally {
     wall_s: Vec<f64>,
     slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
+    /// Failed cases of which nothing was said: no note, no question, no word named as not understood.
+    silent: usize,
+}
+
+/// What the program said of a case beside doing it.
+#[derive(Default)]
+pub(super) struct Told {
+    /// Anything at all.
+    pub spoke: bool,
+    /// For the report of a failed case.
+    pub details: Value,
 }
 
 /// How many of the slowest cases the report names.
@@ -225,6 +236,15 @@ pub(super) fn place(prompt: &str, seed: u64, how: &How) -> (Scene, Laid) {
     (scene, laid)
 }
 
+/// What was said of a prompt and of the scene that it became.
+fn told_of(prompt: &str, laid: &Laid) -> Told {
+    let (reading, short) = (read(prompt), text::shortfalls(laid));
+    Told {
+        spoke: !(reading.notes.is_empty() && reading.not_understood.is_empty() && short.is_empty()),
+        details: json!({ "notes": reading.notes, "not_understood": reading.not_understood, "shortfalls": short }),
+    }
+}
+
 /// Each box in a few words: class, where its centre is (m), which way it looks (deg), how fast it is (m/s).
 fn in_short(scene: &Scene) -> Vec<String> {
     let boxes = scene.frame().boxes.values();
@@ -238,8 +258,15 @@ fn in_short(scene: &Scene) -> Vec<String> {
 }
 
 impl Tally {
-    /// Judges the scene that came of a case; `told` says of a failed one what was read and where the edit began.
-    pub(super) fn add(&mut self, case: &Case, scene: &Scene, wall_s: f64, told: impl FnOnce() -> Value) {
+    /// Judges the scene that came of a case, of which something may be `wrong` already; `told` is asked of a failed one.
+    pub(super) fn add(
+        &mut self,
+        case: &Case,
+        scene: &Scene,
+        wall_s: f64,
+        mut wrong: Vec<String>,
+        told: impl FnOnce() -> Told,
+    ) {
         self.cases += 1;
         self.wall_s.push(wall_s);
         self.slowest.push((wall_s, case.text.clone()));
@@ -251,7 +278,6 @@ impl Tally {
             layout: &frame.layout,
             boxes: &boxes,
         };
-        let mut wrong: Vec<String> = Vec::new();
         for (class, number) in &case.counts {
             let found = judge.count(class);
             let (low, high) = match number {
@@ -292,15 +318,19 @@ impl Tally {
         self.drivable = sum(self.drivable, judge.on_drivable());
         self.headings = sum(self.headings, judge.headings());
         if !wrong.is_empty() {
-            let after = in_short(scene);
-            self.failed
-                .push(json!({ "text": case.text, "wrong": wrong, "after": after, "told": told() }));
+            let (after, told) = (in_short(scene), told());
+            self.silent += usize::from(!told.spoke);
+            self.failed.push(json!({
+                "text": case.text, "wrong": wrong, "after": after, "silent": !told.spoke, "told": told.details,
+            }));
         }
     }
 
     pub(super) fn report(&self) -> Value {
         json!({
             "cases": self.cases,
+            "wholly_right": share(self.cases - self.failed.len(), self.cases),
+            "silently_wrong": share(self.silent, self.cases),
             "counts_exact": with_interval(&self.counts),
             "relations_satisfied": with_interval(&self.relations),
             "style_and_road": with_interval(&self.style),
@@ -339,7 +369,9 @@ impl Eval {
             let seed = TEST_SEED + case.line;
             let Some(base) = &case.base else {
                 let (scene, laid) = place(&case.text, seed, &how);
-                prompts.add(case, &scene, laid.wall_s, || Value::Null);
+                prompts.add(case, &scene, laid.wall_s, Vec::new(), || {
+                    told_of(&case.text, &laid)
+                });
                 continue;
             };
             let (scene, _) = place(base, seed, &how);
@@ -347,11 +379,12 @@ impl Eval {
             let reading = read_edit(&case.text, &text::open_scene(&scene), seed);
             let wall_s = started.elapsed().as_secs_f64();
             let asked = reading.questions.first().map(|q| q.candidates.len());
+            let mut wrong = Vec::new();
             if case.asks.is_some() || asked.is_some() {
                 let good = asked == case.asks;
                 edits.asks.push(f64::from(u8::from(good)));
                 if !good {
-                    edits.failed.push(json!({ "text": case.text, "wrong": [format!("asked {asked:?}, expected {:?}", case.asks)] }));
+                    wrong.push(format!("asked {asked:?}, expected {:?}", case.asks));
                 }
             }
             let list: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
@@ -360,8 +393,13 @@ impl Eval {
             document
                 .apply_all("Edit by text", &list)
                 .with_context(|| format!("{:?}", case.text))?;
-            let told = || json!({ "before": before, "phrases": reading.phrases, "notes": reading.notes, "not_understood": reading.not_understood, "questions": reading.questions });
-            edits.add(case, document.scene(), wall_s, told);
+            let silent =
+                reading.notes.is_empty() && reading.not_understood.is_empty() && reading.questions.is_empty();
+            let told = || Told {
+                spoke: !silent,
+                details: json!({ "before": before, "phrases": reading.phrases, "notes": reading.notes, "not_understood": reading.not_understood, "questions": reading.questions }),
+            };
+            edits.add(case, document.scene(), wall_s, wrong, told);
         }
         let both = |f: fn(&Tally) -> f64| f(&prompts).min(f(&edits));
         let bars: Vec<Bar> = vec![

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::layout::{Case, Tally, place};
+use super::layout::{Case, Tally, Told, place};
 use super::{Eval, TEST_SEED};
 use crate::app::cli::progress::Progress;
 use crate::app::prompting::{How, Placer};
@@ -48,7 +48,7 @@ impl Eval {
                 progress.at(name, i, n);
                 let seed = TEST_SEED + case.line;
                 let (scene, laid) = place(&case.text, seed, &how);
-                tally.add(case, &scene, laid.wall_s, || Value::Null);
+                tally.add(case, &scene, laid.wall_s, Vec::new(), Told::default);
                 figures.add(&RoadMap::new(&laid.road.layout), &laid.placement.boxes);
                 objects += laid.placement.boxes.len();
                 if let Some(d) = &laid.diffused {
