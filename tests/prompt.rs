@@ -199,3 +199,44 @@ fn odd_prompts_get_one_clear_answer() {
         assert!(!error.contains("panicked"), "{text:.40}: {error}");
     }
 }
+
+/// Sentences that nobody has mended rules for: what is read of them does not get worse, and little goes wrong without a word.
+#[test]
+fn dev_sentences_are_read_no_worse() {
+    for (file, part, right, silent) in [
+        ("exam_13", "edited", 0.9, 0.04),
+        ("everyday", "edited", 0.55, 0.1),
+        ("everyday", "made", 0.7, 0.05),
+    ] {
+        let path = format!("tests/words/dev/{file}.jsonl");
+        let judged = sceneloom(&[
+            "eval",
+            "layout",
+            "--prompts",
+            &path,
+            "--placer-prompts",
+            "0",
+            "--json",
+        ]);
+        assert_eq!(judged.status.code(), Some(0));
+        let found = &report(&judged)[part];
+        let share = |name: &str| found[name]["share"].as_f64().expect("a share");
+        assert!(
+            share("wholly_right") >= right,
+            "{file}, {part}: {}",
+            found["wholly_right"]
+        );
+        assert!(
+            share("silently_wrong") <= silent,
+            "{file}, {part}: {}",
+            found["silently_wrong"]
+        );
+    }
+    let nowhere = sceneloom(&["eval", "layout", "--prompts", "nowhere.jsonl"]);
+    let error = String::from_utf8_lossy(&nowhere.stderr);
+    assert_eq!(
+        (nowhere.status.code(), error.lines().count()),
+        (Some(2), 1),
+        "{error}"
+    );
+}

@@ -8,7 +8,7 @@ chmod 700 "$work"
 app= server= window=
 trap 'kill $app $server 2>/dev/null; rm -rf "$work"' EXIT
 if ! xdotool getmouselocation >/dev/null 2>&1; then
-    Xvfb "$DISPLAY" -screen 0 2560x1440x24 >/dev/null 2>&1 &
+    Xvfb "$DISPLAY" -screen 0 2560x1440x24 -noreset >/dev/null 2>&1 &
     server=$!
     # A busy machine takes its time.
     for _ in $(seq 100); do

@@ -41,6 +41,8 @@ impl SceneloomApp {
         });
         match thread {
             Ok(_) => {
+                let now_s = self.now_s();
+                self.toasts.push(Level::Info, "The network draws scenery", now_s);
                 self.drawing = Some(Drawing {
                     wish,
                     before,

@@ -8,7 +8,8 @@ use crate::generation::model::scenery::SceneryNet;
 use crate::generation::redraw::RedrawMask;
 use crate::generation::region::COLUMNS_PER_CELL;
 use crate::generation::world::scenery::{self, Setting, Side, Style};
-use crate::scene::{Background, Class, Form, GridSpec, Scene, ThingId};
+use crate::scene::raster::box_cells;
+use crate::scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
 
 use super::around;
 
@@ -132,7 +133,9 @@ impl SceneryWish {
             Class::Vegetation => self.green > 0.0,
             _ => self.built > 0.0,
         };
-        Ok(drawn.iter().filter(|t| wanted(&t.form)).cloned().collect())
+        let paved = Paved::of(scene);
+        let fits = |form: &Form| wanted(form) && paved.leaves_room(form);
+        Ok(drawn.iter().filter(|t| fits(&t.form)).cloned().collect())
     }
 
     fn style(&self, scene: &Scene, setting: Option<Setting>) -> Style {
@@ -159,6 +162,58 @@ impl SceneryWish {
                 self.region.is_empty() || self.region.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
             })
             .collect()
+    }
+}
+
+/// Columns on which nothing that a network draws may stand.
+struct Paved {
+    /// Road, car park and boxes.
+    driven: Vec<bool>,
+    /// These and walkways.
+    all: Vec<bool>,
+}
+
+impl Paved {
+    /// Share of a building, hedge or wall that may lie on paving: its edge is drawn to half a metre.
+    const MOST: f64 = 0.04;
+
+    fn of(scene: &Scene) -> Self {
+        let frame = scene.frame();
+        let held = |bits: u32| {
+            frame
+                .layout
+                .cells()
+                .iter()
+                .map(|c| c & bits != 0)
+                .collect::<Vec<bool>>()
+        };
+        let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+        let [mut driven, mut all] = [held(road), held(road | BevLayer::Walkway.bit())];
+        for b in frame.boxes.values() {
+            box_cells(b, 0.0, |x, y| {
+                driven[x * GridSpec::NY + y] = true;
+                all[x * GridSpec::NY + y] = true;
+            });
+        }
+        Self { driven, all }
+    }
+
+    /// Trees by their trunk, since crowns may overhang; poles and signs may stand on a walkway.
+    fn leaves_room(&self, form: &Form) -> bool {
+        let (taken, at) = match form {
+            Form::Tree(t) => (&self.all, Some(t.position_m)),
+            Form::Post(p) => (&self.driven, Some(p.position_m)),
+            _ => (&self.all, None),
+        };
+        if let Some(at) = at {
+            return GridSpec::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * GridSpec::NY + y]);
+        }
+        let (mut on, mut columns) = (0, 0);
+        around::columns(form, 0.0, |x, y| {
+            on += usize::from(taken[x * GridSpec::NY + y]);
+            columns += 1;
+        });
+        on as f64 <= Self::MOST * f64::from(columns)
     }
 }
 
@@ -279,6 +334,16 @@ mod tests {
             come += usize::from(before != after);
         }
         assert!(come > 300, "{come}");
+        let paved = Paved::of(&scene);
+        for form in first
+            .background
+            .iter()
+            .map(|t| &t.form)
+            .filter(|f| matches!(f, Form::Building(_)))
+        {
+            let old = scene.background.iter().any(|t| t.form == *form);
+            assert!(old || paved.leaves_room(form), "{form:?}");
+        }
         let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
         assert_eq!(forms(&drawn(by_network(5, 1.0))), forms(&first));
         assert_ne!(forms(&drawn(by_network(6, 1.0))), forms(&first));

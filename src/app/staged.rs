@@ -201,6 +201,13 @@ impl SceneloomApp {
         if self.document.is_dragging() {
             return;
         }
+        // Drawn again, it takes the place of what waits.
+        if matches!(
+            self.staged().and_then(|s| s.again.as_ref()),
+            Some(Again::Scenery(_))
+        ) {
+            self.step_back();
+        }
         self.state.tools.scenery_draws += 1;
         let scene = self.document.settled_scene();
         // The sliders' typical values are the usual numbers.

@@ -289,7 +289,7 @@ fn weight_files() {
 
 #[test]
 fn prompts() {
-    let text = String::from_utf8(file("tests/data/prompts.jsonl")).expect("UTF-8");
+    let text = String::from_utf8(file("tests/words/dev/prompts.jsonl")).expect("UTF-8");
     let prompts = text.lines().step_by(6).filter_map(|l| {
         let value: serde_json::Value = serde_json::from_str(l).ok()?;
         Some(value.get("text")?.as_str()?.as_bytes().to_vec())

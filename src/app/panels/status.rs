@@ -129,7 +129,8 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
 /// How many findings there are; a click lists them.
 fn found(ui: &mut Ui, errors: usize, warnings: usize, commands: &mut Vec<Command>) {
     let color = if errors > 0 { theme::bad() } else { theme::warn() };
-    let text = format!("{} findings", errors + warnings);
+    let found = errors + warnings;
+    let text = format!("{found} finding{}", if found == 1 { "" } else { "s" });
     let button = egui::Button::new(egui::RichText::new(text).color(color)).frame(false);
     let hint = format!("Checks: {errors} errors, {warnings} warnings");
     let response = ui.add(button).on_hover_text(&hint);

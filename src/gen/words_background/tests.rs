@@ -442,7 +442,7 @@ fn new_things_stand_where_they_were_wanted() {
 /// houses, parks and walls.
 #[test]
 fn the_sentences_of_the_other_reader_are_left_alone() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/words/dev");
     let (mut all, mut taken) = (0, Vec::new());
     for entry in std::fs::read_dir(folder).expect("the folder") {
         let path = entry.expect("an entry").path();

@@ -1,6 +1,7 @@
-//! `eval layout`: prompts and text edits of `tests/data/prompts.jsonl`, each placed and judged on the map.
+//! `eval layout`: prompts and text edits of `tests/words`, each placed and judged on the map.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Context;
@@ -18,85 +19,28 @@ use crate::generation::text::edit::read_edit;
 use crate::generation::text::read;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
-/// Files of `tests/data` with what stands in them.
-macro_rules! sets {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../../tests/data/", $name)))),*]
-    };
-}
+/// Where the sets that are judged lie, in the source tree.
+const SETS: &str = "tests/words/dev";
 
-/// The prompts, in sets that were written one after another; the grammar was mended after each was judged once.
-const SETS: &[(&str, &str)] = sets![
-    "names.jsonl",
-    "strangers_36.jsonl",
-    "causes_z.jsonl",
-    "causes_k.jsonl",
-    "causes_o.jsonl",
-    "strangers_24.jsonl",
-    "prompts.jsonl",
-    "strangers.jsonl",
-    "strangers_2.jsonl",
-    "strangers_3.jsonl",
-    "strangers_4.jsonl",
-    "exam.jsonl",
-    "strangers_5.jsonl",
-    "strangers_6.jsonl",
-    "strangers_7.jsonl",
-    "exam_3.jsonl",
-    "strangers_8.jsonl",
-    "exam_4.jsonl",
-    "strangers_9.jsonl",
-    "strangers_10.jsonl",
-    "strangers_11.jsonl",
-    "strangers_12.jsonl",
-    "strangers_13.jsonl",
-    "strangers_16.jsonl",
-    "causes_words_l.jsonl",
-    "strangers_15.jsonl",
-    "causes_words_m.jsonl",
-    "exam_5.jsonl",
-    "exam_6.jsonl",
-    "exam_7.jsonl",
-    "exam_8.jsonl",
-    "strangers_14.jsonl",
-    "causes.jsonl",
-    "causes_2.jsonl",
-    "strangers_23.jsonl",
-    "causes_m.jsonl",
-    "strangers_25.jsonl",
-    "causes_q.jsonl",
-    "strangers_26.jsonl",
-    "causes_p.jsonl",
-    "strangers_27.jsonl",
-    "strangers_28.jsonl",
-    "strangers_29.jsonl",
-    "causes_s.jsonl",
-    "strangers_31.jsonl",
-    "causes_u.jsonl",
-    "strangers_32.jsonl",
-    "causes_w.jsonl",
-    "strangers_33.jsonl",
-    "causes_x.jsonl",
-    "exam_9.jsonl",
-    "exam_10.jsonl",
-    "exam_11.jsonl",
-    "exam_12.jsonl",
-    "exam_13.jsonl",
-    "causes_crossing.jsonl",
-    "causes_exam12.jsonl",
-    "strangers_30.jsonl",
-    "causes_t.jsonl",
-    "strangers_34.jsonl",
-    "strangers_38.jsonl",
-    "causes_zb.jsonl",
-    "strangers_37.jsonl",
-    "causes_za.jsonl",
-    "strangers_35.jsonl",
-    "causes_y.jsonl",
-    "composed.jsonl",
-    "wrapped.jsonl",
-    "variants.jsonl",
-];
+/// Files of `path` with what stands in them: itself, or all `.jsonl` of a folder, in the order of their names.
+fn sets(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
+    let mut files = vec![path.to_owned()];
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).with_context(|| format!("read {}", path.display()))?;
+        let all: Result<Vec<_>, _> = entries.map(|e| e.map(|e| e.path())).collect();
+        files = all.with_context(|| format!("read {}", path.display()))?;
+        files.retain(|f| f.extension().is_some_and(|e| e == "jsonl"));
+        files.sort();
+        anyhow::ensure!(!files.is_empty(), "{}: no .jsonl files in it", path.display());
+    }
+    let read = |file: PathBuf| {
+        let text = std::fs::read_to_string(&file);
+        let text =
+            text.with_context(|| format!("read {} (--prompts names other sentences)", file.display()))?;
+        Ok((file.display().to_string(), text))
+    };
+    files.into_iter().map(read).collect()
+}
 
 fn cases_of(name: &str, text: &str) -> anyhow::Result<Vec<Case>> {
     text.lines()
@@ -350,17 +294,8 @@ impl Eval {
     /// Prompts and text edits, judged by [`Judge`].
     pub(super) fn layout(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
         let mut cases: Vec<Case> = Vec::new();
-        match &self.prompts {
-            Some(path) => {
-                let text =
-                    std::fs::read_to_string(path).with_context(|| format!("read {}", path.display()))?;
-                cases.extend(cases_of(&path.display().to_string(), &text)?);
-            }
-            None => {
-                for (name, text) in SETS {
-                    cases.extend(cases_of(name, text)?);
-                }
-            }
+        for (name, text) in sets(self.prompts.as_deref().unwrap_or(Path::new(SETS)))? {
+            cases.extend(cases_of(&name, &text)?);
         }
         let how = How::default();
         let (mut prompts, mut edits) = (Tally::default(), Tally::default());

@@ -57,7 +57,7 @@ pub struct Eval {
     /// Worlds on which a removal is compared with one of 1000 steps (editing); minutes each.
     #[arg(long, value_name = "N", default_value_t = 0)]
     reference_frames: usize,
-    /// Other prompts to judge (layout), one JSON object a line as in `tests/data/prompts.jsonl`.
+    /// Sentences to judge (layout): a file of one JSON object a line, or a folder of such files; tests/words/dev if none is named.
     #[arg(long, value_name = "FILE")]
     prompts: Option<PathBuf>,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
