@@ -4,7 +4,7 @@
 use crate::generation::job::GenError;
 use crate::generation::model::refiner::{Refiner, Rough};
 use crate::generation::model::{CHANNELS, Heard, OccModels, Window};
-use crate::generation::region::{CELLS_PER_SIDE, dilate, pieces};
+use crate::generation::region::{CELLS_PER_SIDE, pieces};
 use crate::generation::rng::{Stream, normal};
 use crate::generation::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use crate::scene::VoxelGrid;
@@ -14,7 +14,7 @@ use crate::scene::VoxelGrid;
 const AROUND: usize = 2;
 
 /// What a coarse latent (50x50x8) decodes to in some cells, by a decoder that hears `heard`; refined in `steps` steps, if in any and by
-/// any network.
+/// any network. The other cells stay free.
 pub fn decode_refined(
     models: &OccModels,
     latent: &[f32],
@@ -31,23 +31,6 @@ pub fn decode_refined(
     let Some(net) = models.refiner.as_deref().filter(|_| steps > 0) else {
         return rough(cells);
     };
-    let rough = rough(&dilate(
-        cells,
-        CELLS_PER_SIDE,
-        AROUND + net.vae.encoder_reach().div_ceil(2),
-    ))?;
-    refine(net, latent, (&rough, heard.draft), cells, (steps, seed))
-}
-
-/// Labels of some coarse cells (50x50), refined in `steps` steps from `rough`, which a coarse `latent` (50x50x8) decoded to, and the draft
-/// that was asked for; the other cells stay free. `rough` must hold the cells around them too.
-pub fn refine(
-    net: &Refiner,
-    latent: &[f32],
-    (rough, draft): (&VoxelGrid, Option<&VoxelGrid>),
-    cells: &[bool],
-    (steps, seed): (u32, u64),
-) -> Result<VoxelGrid, GenError> {
     let sampler = Sampler::standard(SolverKind::Ddim, steps as usize, Guidance::NONE)?;
     let numbers = net.vae.config().latent;
     let mut fine = vec![0.0; 4 * cells.len() * numbers];
@@ -55,28 +38,29 @@ pub fn refine(
         let Some(window) = Window::around(&part, AROUND) else {
             continue;
         };
-        let places: Vec<usize> = window.halved().cells().collect();
-        let encoded = |grid| {
-            net.vae
-                .encode_window(grid, window.halved())
-                .map_err(GenError::failed)
+        let mut seen = vec![false; cells.len()];
+        window.cells().for_each(|cell| seen[cell] = true);
+        let encoded = |grid: &VoxelGrid| {
+            let found = net.vae.encode_window(grid, window.halved());
+            found.map(|(latent, _)| latent).map_err(GenError::failed)
         };
-        let encoded_rough = encoded(rough)?.0;
-        let told = match draft {
-            Some(draft) => encoded(draft)?.0,
-            None => vec![0.0; encoded_rough.len()],
+        let rough = encoded(&rough(&seen)?)?;
+        let told = match heard.draft {
+            Some(draft) => encoded(draft)?,
+            None => vec![0.0; rough.len()],
         };
         let coarse: Vec<f32> = window
             .cells()
             .flat_map(|c| latent[c * CHANNELS..][..CHANNELS].iter().copied())
             .collect();
+        let places: Vec<usize> = window.halved().cells().collect();
         let noise = places.iter().flat_map(|place| {
             (0..numbers).map(|channel| normal(seed, Stream::Refine, *place as u32, channel as u32, 0))
         });
         let mut refining = Refining {
             net,
             rough: Rough {
-                fine: &encoded_rough,
+                fine: &rough,
                 told: &told,
                 coarse: &coarse,
                 window,
@@ -155,6 +139,25 @@ mod tests {
             (2, 7),
         );
         assert_eq!(none.expect("nothing to do").iter_set().count(), 0);
+    }
+
+    /// A bend sees what lies in its corner too: its cells get the labels that they have in the rectangle around it.
+    #[test]
+    fn a_bend_is_refined_as_its_rectangle() {
+        let models = OccModels::bundled().expect("weights");
+        let latent: Vec<f32> = (0..LATENT).map(|i| (i as f32 * 0.7).sin()).collect();
+        let refined = |inside: &dyn Fn(usize, usize) -> bool| {
+            let cells: Vec<bool> = (0..SIDE * SIDE).map(|c| inside(c / SIDE, c % SIDE)).collect();
+            decode_refined(&models, &latent, &cells, Heard::default(), (2, 7)).expect("a finite latent")
+        };
+        let rectangle = |x: usize, y: usize| (10..20).contains(&x) && (10..20).contains(&y);
+        let bend = |x: usize, y: usize| rectangle(x, y) && (x < 12 || y < 12);
+        let (part, whole) = (refined(&bend), refined(&rectangle));
+        let per_cell = GridSpec::NX / SIDE;
+        for (x, y) in (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY)) {
+            let same = part.column(x, y) == whole.column(x, y);
+            assert!(same || !bend(x / per_cell, y / per_cell), "({x}, {y})");
+        }
     }
 
     #[test]

@@ -176,6 +176,12 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     assert_eq!(bench.history(), ["Open", "Draw scenery"]);
     let second = things(&mut bench);
     assert_ne!(first, second);
+    // So does drawing again while it waits.
+    bench.app().execute(Command::DrawScenery, &ctx);
+    bench.steps(3);
+    assert_eq!(bench.history(), ["Open", "Draw scenery"]);
+    assert_ne!(things(&mut bench), second);
+    let second = things(&mut bench);
     // Only what lies in a region is taken.
     bench.app().state.tools.region = RedrawMask::of_rect([0.0, -40.0].into(), [40.0, 40.0].into());
     bench.steps(2);
