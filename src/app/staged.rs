@@ -201,19 +201,18 @@ impl SceneloomApp {
         if self.document.is_dragging() {
             return;
         }
+        self.state.tools.scenery_draws += 1;
+        let mut seed = self.document.settled_scene().seed;
+        seed = seed.wrapping_add(self.state.tools.scenery_draws);
         // Drawn again, it takes the place of what waits.
-        if matches!(
-            self.staged().and_then(|s| s.again.as_ref()),
-            Some(Again::Scenery(_))
-        ) {
+        if let Some(Again::Scenery(waits)) = self.staged().and_then(|s| s.again.clone()) {
+            seed = waits.seed.wrapping_add(1);
             self.step_back();
         }
-        self.state.tools.scenery_draws += 1;
-        let scene = self.document.settled_scene();
         // The sliders' typical values are the usual numbers.
         let times = |named: Option<f32>, typical: f64| named.map_or(1.0, |v| f64::from(v) / typical);
         let wish = SceneryWish {
-            seed: scene.seed.wrapping_add(self.state.tools.scenery_draws),
+            seed,
             by: self.state.tools.drawer,
             green: times(self.state.named.vegetation, TYPICAL_VEGETATION),
             built: times(self.state.named.building, TYPICAL_BUILDING),
