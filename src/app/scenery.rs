@@ -225,6 +225,7 @@ mod tests {
     use crate::app::open;
     use crate::editor::Document;
     use crate::scene::VoxelGrid;
+    use crate::scene::background::{Building, Tree, TreeKind};
 
     fn wish(seed: u64) -> SceneryWish {
         SceneryWish {
@@ -302,6 +303,48 @@ mod tests {
     }
 
     #[test]
+    fn what_a_network_draws_leaves_paths_and_boxes_free() {
+        let scene = open::from_template("straight", 7).expect("a template");
+        let (frame, paved) = (scene.frame(), Paved::of(&scene));
+        let centre = |c: usize| {
+            let column = DVec2::new((c / GridSpec::NY) as f64, (c % GridSpec::NY) as f64);
+            (column + 0.5) * GridSpec::VOXEL_M - 40.0
+        };
+        let cells = frame.layout.cells();
+        let found = |has: BevLayer, not: u32| {
+            let at = cells.iter().position(|c| c & has.bit() != 0 && c & not == 0);
+            centre(at.expect("a column of that layer"))
+        };
+        let road = found(BevLayer::DrivableArea, 0);
+        let walkway = found(BevLayer::Walkway, BevLayer::DrivableArea.bit());
+        let grass = centre(cells.iter().position(|c| *c == 0).expect("grass"));
+        let parked = frame.boxes.values().next().expect("a box").center_m.truncate();
+        let house = |at: DVec2| Form::Building(Building::rectangle(at, DVec2::splat(0.9), DVec2::X, 5.0));
+        let tree = |at: DVec2| {
+            Form::Tree(Tree {
+                position_m: at,
+                height_m: 6.0,
+                crown_radius_m: 3.0,
+                kind: TreeKind::Broadleaf,
+            })
+        };
+        for (place, at, free) in [
+            ("road", road, false),
+            ("walkway", walkway, false),
+            ("box", parked, false),
+            ("grass", grass, true),
+        ] {
+            assert_eq!(paved.leaves_room(&house(at)), free, "a house on {place}");
+            assert_eq!(paved.leaves_room(&tree(at)), free, "a tree on {place}");
+        }
+        // A crown may hang over a walkway.
+        let beside = cells.iter().enumerate().position(|(c, layers)| {
+            *layers == 0 && !paved.all[c] && (1..4).any(|k| paved.all.get(c + k).is_some_and(|p| *p))
+        });
+        assert!(paved.leaves_room(&tree(centre(beside.expect("a verge")))));
+    }
+
+    #[test]
     fn a_network_draws_in_a_region_and_keeps_the_road_free() {
         let scene = open::from_template("straight", 7).expect("a template");
         let region = RedrawMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
@@ -334,16 +377,6 @@ mod tests {
             come += usize::from(before != after);
         }
         assert!(come > 300, "{come}");
-        let paved = Paved::of(&scene);
-        for form in first
-            .background
-            .iter()
-            .map(|t| &t.form)
-            .filter(|f| matches!(f, Form::Building(_)))
-        {
-            let old = scene.background.iter().any(|t| t.form == *form);
-            assert!(old || paved.leaves_room(form), "{form:?}");
-        }
         let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
         assert_eq!(forms(&drawn(by_network(5, 1.0))), forms(&first));
         assert_ne!(forms(&drawn(by_network(6, 1.0))), forms(&first));
