@@ -45,6 +45,25 @@ def write_card(folder, kind, path, tensors, meta, data_command, time_text):
     return out
 
 
+def export_net(doc, kind, net_of, golden, kept=()):
+    """The command line of a network that is exported by itself: weights, card and, of the shipped weights, its golden. `net_of(config)` is the
+    network, `kept` what its file says beside the usual."""
+    p = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--weights", type=Path, required=True)
+    p.add_argument("--data-command", required=True, help="how the data were made, for the card")
+    p.add_argument("--folder", type=Path, default=ROOT / "assets/weights")
+    p.add_argument("--goldens", type=Path, default=ROOT / "tests/reference")
+    args = p.parse_args()
+    tensors, meta = read(args.weights)
+    if meta.get("kind") != kind:
+        raise SystemExit(f"{args.weights}: expected weights of {kind}, found {meta.get('kind')}")
+    meta = {k: meta[k] for k in ("kind", "config", "seed", "steps", "samples", "minutes", *kept)}
+    out = write_card(args.folder, kind, args.weights, tensors, meta, args.data_command, f"{float(meta['minutes']) / 60:.2f} h")
+    net = net_of(json.loads(meta["config"])).eval()
+    net.load_state_dict({k: v.float() for k, v in load_file(out).items()})
+    save_file(golden(net), args.goldens / f"parity_{kind}.safetensors")
+
+
 @torch.no_grad()
 def golden(net, frames):
     """Two tasks on held-out frames: objects on a given road (map shown), a road under given objects (no map)."""

@@ -1,4 +1,5 @@
 """What all trainings share: device, clock, EMA, checkpoints, CSV."""
+import argparse
 import copy
 import csv
 import math
@@ -7,6 +8,7 @@ import re
 import time
 from pathlib import Path
 
+import numpy as np
 import torch
 from safetensors.torch import save_file
 
@@ -122,3 +124,55 @@ class Run:
                 writer.writeheader()
             writer.writerow(row)
         print("  ".join(f"{k} {v}" for k, v in row.items()), flush=True)
+
+
+SAVE_MINUTES = 3.0
+
+
+def diffusion_arguments(doc, batch, held_out):
+    """The arguments that trainers of small diffusions share."""
+    p = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards")
+    p.add_argument("--vae", required=True, help="weights that the data were or will be packed with")
+    p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
+    p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
+    p.add_argument("--batch", type=int, default=batch)
+    p.add_argument("--lr", type=float, default=2e-3)
+    p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
+    p.add_argument("--held-out", type=int, default=held_out)
+    p.add_argument("--seed", type=int, default=0)
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--resume", action="store_true")
+    return p
+
+
+def train_diffusion(model, args, meta, device, dtype, batches, loss_of, figures, note_minutes):
+    """Trains a small diffusion until its time is up. `batches(rng)` yields tuples of tensors, `loss_of(model, *batch)` gives a loss and the error
+    of v, `figures(ema)` what is noted of the held-out frames."""
+    run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.999, warmup=100)
+    if run.done():
+        return print(f"{args.output} is done")
+    mean, noted, since = None, run.elapsed(), (run.samples, time.monotonic())
+
+    def rate():
+        return (run.samples - since[0]) / (time.monotonic() - since[1])
+
+    def note():
+        run.note(figures(run.ema) | {"train_v": mean, "per_s": rate()})
+        run.save(meta)
+
+    for batch in batches(np.random.default_rng([args.seed, run.step])):
+        with torch.autocast(device.type, dtype, enabled=dtype is not None):
+            loss, v = loss_of(model, *(part.to(device) for part in batch))
+        run.update(loss, args.batch)
+        mean = v if mean is None else mean * 0.99 + v * 0.01
+        if run.step % 100 == 0:
+            print(f"step {run.step} {run.elapsed():.1f} min {rate():.1f}/s v {mean:.4f}", flush=True)
+        if run.done():
+            break
+        if run.elapsed() - noted > note_minutes:
+            note()
+            noted, since = run.elapsed(), (run.samples, time.monotonic())
+        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
+            run.save(meta)
+    note()

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import torch
 from safetensors.numpy import save_file
+from torch import nn
 
 from calibrate import figures, search
 from data import GRIDS, Places, Streamed, draw_given, leaned, named, turned, turned_heading, with_background
@@ -15,7 +16,9 @@ from muon import orthogonalised
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import CONDITION, DitConfig, OccDit, condition_of, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
+from models.refiner import Refiner
 from pack import columns_of
+from pack_refiner import ARRAYS, PackedPairs
 from schedule import alpha_bar, ddim_sample
 
 
@@ -232,12 +235,35 @@ def calibration_undoes_a_bias():
     assert (after > before).all() and shift[0] - shift[17] < -0.3, (before, after, shift)
 
 
+def a_refiner_sees_one_place_in_all_its_latents():
+    with tempfile.TemporaryDirectory() as folder:
+        shard = Path(folder) / "shard"
+        shard.mkdir()
+        # Every fine cell says which coarse cell it is of.
+        coarse = np.arange(2500, dtype=np.float16).reshape(1, 1, 50, 50, 1).repeat(2, 1)
+        fine = coarse.repeat(2, 2).repeat(2, 3)
+        for name in ARRAYS:
+            np.save(shard / f"{name}.npy", coarse if name == "coarse" else fine)
+        pairs = PackedPairs(folder)
+        *latents, cells = pairs.read(1, (7, 20), 12)
+        assert len(pairs) == 2 and cells.shape == (12, 12, 1) and cells[0, 0, 0] == 7 * 50 + 20
+        for latent in latents:
+            assert (latent == cells.repeat(2, 0).repeat(2, 1)).all()
+    net, (x, rough, told, small) = Refiner(), (torch.randn(1, n, n, c) for n, c in ((24, 16), (24, 16), (24, 16), (12, 8)))
+    nn.init.normal_(net.head.weight)
+    before, moved = net(x, torch.tensor([500.0]), rough, told, small), rough.clone()
+    moved[0, 2, 2] += 1
+    after = net(x, torch.tensor([500.0]), moved, told, small)
+    changed = (before != after).any(-1)[0]
+    assert changed[2, 2] and not changed[12:].any() and not changed[:, 12:].any(), "it sees 8 m and no more"
+
+
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../shared/reference")
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
     for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, a_window_hears_what_its_part_of_the_frame_says,
-                 columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias):
+                 columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias, a_refiner_sees_one_place_in_all_its_latents):
         test()
         print(test.__name__, "ok")

@@ -1,22 +1,18 @@
 """Trains the diffusion that refines: python train_refiner.py --data DIR --vae W.safetensors --fine W.safetensors --minutes M -o W.safetensors [--resume]"""
-import argparse
 import json
-import time
-from pathlib import Path
 
 import numpy as np
 import torch
 
 import losses
 from data import Frames, as_tensor, prefetch
-from loop import Run, pick_device
+from loop import diffusion_arguments, pick_device, train_diffusion
 from models.occ_vae import latent_space, load_vae
 from models.refiner import Refiner
 from pack import pack
 from pack_refiner import KINDS, PackedPairs, name_of, pack_refiner
 from schedule import alpha_bar, ddim_sample, noised
 
-SAVE_MINUTES, NOTE_MINUTES = 3.0, 8.0
 NOT_TOLD = 0.2  # share of samples that do not hear the draft
 
 
@@ -38,7 +34,7 @@ def figures(model, vae, abar, pairs, frames, device, count, steps=4):
     generator, out = torch.Generator().manual_seed(1), {"v": []}
     confusion = {f"{kind}_{what}": losses.Confusion() for kind in KINDS for what in ("rough", "refined")}
     for at in range(min(2 * count, len(pairs))):
-        fine, *seen = (torch.from_numpy(part[None]).float().to(device) for part in pairs.read(at))
+        fine, *seen = (torch.from_numpy(np.array(part)[None]).float().to(device) for part in pairs.read(at))
         out["v"] += [loss_of(model, abar, fine, *seen, generator)[1] for _ in range(4)]
         made = ddim_sample(lambda x, t: model(x, t, *seen), torch.randn(fine.shape, generator=generator).to(device), steps)
         truth = as_tensor([frames.read(at // 2, KINDS[at % 2])])
@@ -49,21 +45,10 @@ def figures(model, vae, abar, pairs, frames, device, count, steps=4):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards")
-    p.add_argument("--vae", required=True, help="coarse VAE, as it ships: its decoder counts too")
-    p.add_argument("--fine", required=True, help="fine VAE")
-    p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
-    p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
-    p.add_argument("--frames", type=int, default=1200, help="frames that are packed for it, 1.3 MB each")
-    p.add_argument("--batch", type=int, default=16)
+    p = diffusion_arguments(__doc__, batch=16, held_out=8)
+    p.add_argument("--fine", required=True, help="fine VAE; of the coarse one, its decoder counts too: take them as they ship")
+    p.add_argument("--frames", type=int, default=1200, help="frames that are packed for it, 1.6 MB each")
     p.add_argument("--cells", type=int, default=20, help="coarse cells along a side of what a step sees")
-    p.add_argument("--lr", type=float, default=2e-3)
-    p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
-    p.add_argument("--held-out", type=int, default=8)
-    p.add_argument("--seed", type=int, default=0)
-    p.add_argument("--threads", type=int, default=2)
-    p.add_argument("--resume", action="store_true")
     args = p.parse_args()
     torch.manual_seed(args.seed)
     device, dtype = pick_device(args.threads)
@@ -72,35 +57,12 @@ def main():
     pairs, held_out, frames = PackedPairs(folders["train"]), PackedPairs(folders["val"]), Frames(args.data / "val")
     vae = load_vae(args.fine, device)
     model, abar = Refiner().to(device, memory_format=torch.channels_last), alpha_bar()
-    run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.999, warmup=100)
-    if run.done():
-        return print(f"{args.output} is done")
-    rng = np.random.default_rng([args.seed, run.step])
     meta = {"kind": "refiner", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "frames": len(pairs) // 2,
             "vaes": name_of(args.vae, args.fine), "fine": latent_space(args.fine)}
-    mean, noted, since = None, run.elapsed(), (run.samples, time.monotonic())
-
-    def note():
-        rate = (run.samples - since[0]) / (time.monotonic() - since[1])
-        run.note(figures(run.ema, vae, abar, held_out, frames, device, args.held_out) | {"train_v": mean, "per_s": rate})
-        run.save(meta)
-
-    for parts in prefetch(lambda: draw_batch(pairs, rng, args.batch, args.cells)):
-        with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, v = loss_of(model, abar, *(p.to(device) for p in parts))
-        run.update(loss, args.batch)
-        mean = v if mean is None else mean * 0.99 + v * 0.01
-        if run.step % 100 == 0:
-            rate = (run.samples - since[0]) / (time.monotonic() - since[1])
-            print(f"step {run.step} {run.elapsed():.1f} min {rate:.1f}/s v {mean:.4f}", flush=True)
-        if run.done():
-            break
-        if run.elapsed() - noted > NOTE_MINUTES:
-            note()
-            noted, since = run.elapsed(), (run.samples, time.monotonic())
-        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
-            run.save(meta)
-    note()
+    train_diffusion(model, args, meta, device, dtype, note_minutes=8.0,
+                    batches=lambda rng: prefetch(lambda: draw_batch(pairs, rng, args.batch, args.cells)),
+                    loss_of=lambda model, *batch: loss_of(model, abar, *batch),
+                    figures=lambda ema: figures(ema, vae, abar, held_out, frames, device, args.held_out))
 
 
 if __name__ == "__main__":

@@ -2,22 +2,18 @@
 
 Of what pack.py makes of a data set only layouts, columns and named numbers are read; the VAE is there to find it.
 """
-import argparse
 import json
-import time
-from pathlib import Path
 
 import numpy as np
 import torch
 
 from data import draw_masks, prefetch
-from loop import Run, pick_device
+from loop import diffusion_arguments, pick_device, train_diffusion
 from models.occ_vae import latent_space
 from models.scenery import MAP, NAMED, SIDE, Scenery, layout_of, map_of
 from pack import Packed, folder_of, pack
 from schedule import alpha_bar, ddim_sample, noised
 
-SAVE_MINUTES, NOTE_MINUTES = 3.0, 10.0
 NO_CONDITION, NO_NUMBER = 0.1, 0.3
 
 
@@ -73,53 +69,18 @@ def figures(model, abar, held_out, device, count):
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/ shards")
-    p.add_argument("--vae", required=True, help="weights that the data were or will be packed with")
-    p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
-    p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
-    p.add_argument("--batch", type=int, default=8)
-    p.add_argument("--lr", type=float, default=2e-3)
-    p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
-    p.add_argument("--held-out", type=int, default=24)
-    p.add_argument("--seed", type=int, default=0)
-    p.add_argument("--threads", type=int, default=2)
-    p.add_argument("--resume", action="store_true")
-    args = p.parse_args()
+    args = diffusion_arguments(__doc__, batch=8, held_out=24).parse_args()
     torch.manual_seed(args.seed)
     device, dtype = pick_device(args.threads)
     pack(args.data, args.vae, device, dtype)
     name = latent_space(args.vae)
     frames, held_out = (Packed(folder_of(args.data, name, part)) for part in ("train", "val"))
     model, abar = Scenery().to(device, memory_format=torch.channels_last), alpha_bar()
-    run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.999, warmup=100)
-    if run.done():
-        return print(f"{args.output} is done")
-    rng = np.random.default_rng([args.seed, run.step])
     meta = {"kind": "scenery", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data, "frames": len(frames)}
-    mean, noted, since = None, run.elapsed(), (run.samples, time.monotonic())
-
-    def note():
-        rate = (run.samples - since[0]) / (time.monotonic() - since[1])
-        run.note(figures(run.ema, abar, held_out, device, args.held_out) | {"train_v": mean, "per_s": rate})
-        run.save(meta)
-
-    for parts in prefetch(lambda: draw_batch(frames, rng, args.batch)):
-        with torch.autocast(device.type, dtype, enabled=dtype is not None):
-            loss, v = loss_of(model, abar, *(p.to(device) for p in parts))
-        run.update(loss, args.batch)
-        mean = v if mean is None else mean * 0.99 + v * 0.01
-        if run.step % 100 == 0:
-            rate = (run.samples - since[0]) / (time.monotonic() - since[1])
-            print(f"step {run.step} {run.elapsed():.1f} min {rate:.1f}/s v {mean:.4f}", flush=True)
-        if run.done():
-            break
-        if run.elapsed() - noted > NOTE_MINUTES:
-            note()
-            noted, since = run.elapsed(), (run.samples, time.monotonic())
-        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
-            run.save(meta)
-    note()
+    train_diffusion(model, args, meta, device, dtype, note_minutes=10.0,
+                    batches=lambda rng: prefetch(lambda: draw_batch(frames, rng, args.batch)),
+                    loss_of=lambda model, *batch: loss_of(model, abar, *batch),
+                    figures=lambda ema: figures(ema, abar, held_out, device, args.held_out))
 
 
 if __name__ == "__main__":
