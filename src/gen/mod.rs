@@ -28,6 +28,7 @@ pub mod solver;
 pub mod text;
 pub mod trade;
 pub mod weights;
+pub mod words;
 pub mod words_background;
 pub mod worker;
 pub mod world;

@@ -67,7 +67,9 @@ impl<'de> Deserialize<'de> for BoxName {
 }
 
 /// The colour of a box in camera pictures. Nothing else follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Paint {
     /// White.

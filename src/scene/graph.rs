@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::{BoxLabel, Class, SceneBox};
 
 /// Whether an object moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum ObjectState {
     /// Drives, rides or walks.
@@ -23,7 +25,9 @@ impl ObjectState {
 }
 
 /// Larger or smaller than usual for the class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeHint {
     /// Smaller than usual.
@@ -62,7 +66,9 @@ impl ObjectNode {
 }
 
 /// Which lane or strip, as seen from the ego vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum LaneRole {
     /// The lane that the ego vehicle drives in.

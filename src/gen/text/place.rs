@@ -676,7 +676,7 @@ fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f6
 }
 
 /// True if the relation binds an object to a lane role that only holds for standing things.
-pub(super) fn stands(relation: RelationKind) -> bool {
+pub fn stands(relation: RelationKind) -> bool {
     matches!(
         relation,
         RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking

@@ -15,8 +15,14 @@ use crate::app::prompting::{How, Laid, lay_out};
 use crate::app::text;
 use crate::editor::Document;
 use crate::generation::metrics::stats::median;
+use crate::generation::text::description::Description;
 use crate::generation::text::edit::read_edit;
 use crate::generation::text::read;
+use crate::generation::words::carry_out::carry_out;
+use crate::generation::words::describe::describe;
+use crate::generation::words::notation;
+use crate::generation::words::reading::Reading;
+use crate::generation::words::stage::OpenScene;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// Where the sets that are judged lie, in the source tree.
@@ -78,6 +84,9 @@ pub(super) struct Case {
     /// The edit must ask back with so many candidates.
     #[serde(default)]
     asks: Option<usize>,
+    /// What the text says, in notation.
+    #[serde(default)]
+    reading: Option<String>,
     /// Line in its file, from 0: seeds hang on it.
     #[serde(skip)]
     pub line: u64,
@@ -165,8 +174,17 @@ fn mean(values: &[f64]) -> f64 {
 
 pub(super) fn place(prompt: &str, seed: u64, how: &How) -> (Scene, Laid) {
     let started = Instant::now();
-    let reading = read(prompt);
-    let mut laid = lay_out(prompt, &reading.description, seed, how);
+    place_description(prompt, &read(prompt).description, started, seed, how)
+}
+
+fn place_description(
+    prompt: &str,
+    description: &Description,
+    started: Instant,
+    seed: u64,
+    how: &How,
+) -> (Scene, Laid) {
+    let mut laid = lay_out(prompt, description, seed, how);
     laid.wall_s = started.elapsed().as_secs_f64();
     let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
     let frame = Frame::new(laid.road.layout.clone(), boxes, crate::scene::VoxelGrid::new());
@@ -290,6 +308,61 @@ impl Tally {
     }
 }
 
+/// A prompt by the reading that stands beside it: what its carrying out alone is worth.
+fn given_prompt(tally: &mut Tally, case: &Case, reading: &Reading, seed: u64, how: &How) {
+    let started = Instant::now();
+    let (description, remarks) = describe(reading);
+    let (scene, laid) = place_description(&case.text, &description, started, seed, how);
+    let short = text::shortfalls(&laid);
+    let told = || Told {
+        spoke: !(remarks.is_empty() && short.is_empty()),
+        details: json!({ "reading": notation::write(reading), "remarks": remarks, "shortfalls": short }),
+    };
+    tally.add(case, &scene, laid.wall_s, Vec::new(), told);
+}
+
+/// The same of an edit.
+fn given_edit(
+    tally: &mut Tally,
+    case: &Case,
+    base: &str,
+    reading: &Reading,
+    seed: u64,
+    how: &How,
+) -> anyhow::Result<()> {
+    let (scene, _) = place(base, seed, how);
+    let started = Instant::now();
+    let frame = scene.frame();
+    let open = OpenScene {
+        boxes: &frame.boxes,
+        layout: &frame.layout,
+        prompt: &scene.prompt,
+    };
+    let outcome = carry_out(reading, &open, seed);
+    let wall_s = started.elapsed().as_secs_f64();
+    let asked = outcome.questions.first().map(|q| q.candidates.len());
+    let mut wrong = Vec::new();
+    if case.asks.is_some() || asked.is_some() {
+        let good = asked == case.asks;
+        tally.asks.push(f64::from(u8::from(good)));
+        if !good {
+            wrong.push(format!("asked {asked:?}, expected {:?}", case.asks));
+        }
+    }
+    let list: Vec<_> = outcome.edits.iter().flat_map(text::edits).collect();
+    let before = in_short(&scene);
+    let mut document = Document::new(scene);
+    document
+        .apply_all("Edit by text", &list)
+        .with_context(|| format!("{:?}", case.text))?;
+    let told = || Told {
+        spoke: !(outcome.remarks.is_empty() && outcome.questions.is_empty()),
+        details: json!({ "before": before, "reading": notation::write(reading), "remarks": outcome.remarks, "questions": outcome.questions }),
+    };
+    tally.add(case, document.scene(), wall_s, wrong, told);
+    Ok(())
+}
+
 impl Eval {
     /// Prompts and text edits, judged by [`Judge`].
     pub(super) fn layout(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
@@ -302,6 +375,14 @@ impl Eval {
         for (i, case) in cases.iter().enumerate() {
             progress.at("layout", i, cases.len());
             let seed = TEST_SEED + case.line;
+            if let Some(line) = case.reading.as_ref().filter(|_| self.given_readings) {
+                let reading = notation::parse(line).with_context(|| format!("{:?}", case.text))?;
+                match &case.base {
+                    None => given_prompt(&mut prompts, case, &reading, seed, &how),
+                    Some(base) => given_edit(&mut edits, case, base, &reading, seed, &how)?,
+                }
+                continue;
+            }
             let Some(base) = &case.base else {
                 let (scene, laid) = place(&case.text, seed, &how);
                 prompts.add(case, &scene, laid.wall_s, Vec::new(), || {

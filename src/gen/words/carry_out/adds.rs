@@ -1,0 +1,340 @@
+//! New things: their places are found around what stands there already.
+
+use glam::DVec3;
+
+use super::super::plan::Plan;
+use super::super::reading::{Quantity, Relation, Thing};
+use super::super::remark::Remark;
+use super::super::resolve::Spare;
+use super::super::stage::Stage;
+use crate::generation::text::description::{Anchor, Count, Description, ObjectSpec, Stated};
+use crate::generation::text::edit::TextEdit;
+use crate::generation::text::holds::{Target, holds};
+use crate::generation::text::place::{Placement, place_from};
+use crate::generation::text::to_graph::to_graph;
+use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind};
+use crate::scene::{BoxId, BoxLabel, Class, Paint, SceneBox};
+
+/// Where a plan puts things.
+pub(super) struct Arranged {
+    pub(super) new: Vec<SceneBox>,
+    pub(super) left_out: Vec<String>,
+    pub(super) unmet: Vec<RelationKind>,
+}
+
+impl Stage<'_> {
+    pub(super) fn add(&mut self, things: &[Thing]) {
+        let (there, new): (Vec<&Thing>, Vec<&Thing>) = things
+            .iter()
+            .partition(|t| t.places.iter().any(|p| p.relation == Relation::There));
+        for t in there {
+            self.add_there(t);
+        }
+        let mut list: Vec<Thing> = Vec::new();
+        for t in new {
+            let bare = t.places.is_empty() && matches!(t.quantity, Quantity::N(_));
+            let alike = if bare { self.joined_by(t) } else { Vec::new() };
+            if alike.is_empty() {
+                list.push(t.clone());
+            } else {
+                self.add_like(t, &alike);
+            }
+        }
+        if !list.is_empty() {
+            let plan = self.plan(&list);
+            self.put(plan);
+        }
+    }
+
+    /// Boxes of the same kind that small things and people join where nothing else is said.
+    fn joined_by(&self, t: &Thing) -> Vec<BoxId> {
+        let class = t.noun.classes()[0];
+        let joins = matches!(class, Class::TrafficCone | Class::Barrier | Class::Pedestrian)
+            || t.state == Some(ObjectState::Parked);
+        let same = |b: &&SceneBox| b.class == class && t.state.is_none_or(|s| self.does(b, s));
+        if joins {
+            self.boxes.values().filter(same).map(|b| b.id).collect()
+        } else {
+            Vec::new()
+        }
+    }
+
+    fn plan(&mut self, things: &[Thing]) -> Plan {
+        let mut plan = Plan::default();
+        let mut find = |t: &Thing| -> Result<Vec<SceneBox>, ()> {
+            let asked = self.out.questions.len();
+            let remarks = self.out.remarks.len();
+            match self.that(t, Spare::Nearest) {
+                Some(ids) => Ok(ids.iter().map(|id| self.boxes[id]).collect()),
+                None if self.out.questions.len() > asked => Err(()),
+                // (what is not there is added, and that is said)
+                None => {
+                    self.out
+                        .remarks
+                        .truncate(remarks.max(self.out.remarks.len().min(remarks + 1)));
+                    Ok(Vec::new())
+                }
+            }
+        };
+        plan.add(things, &mut find);
+        plan
+    }
+
+    /// Places what a plan holds.
+    fn put(&mut self, plan: Plan) {
+        if plan.asked {
+            return;
+        }
+        let mut relaxed = plan.specs.clone();
+        let follows = relaxed
+            .iter_mut()
+            .flat_map(|s| &mut s.relations)
+            .filter(|r| r.relation == RelationKind::Following && matches!(r.anchor, Anchor::Object(_)));
+        let mut any = false;
+        for r in follows {
+            r.relation = RelationKind::Behind;
+            any = true;
+        }
+        let mut found = self.arrange(&plan.specs, &plan.held, None);
+        if any && !(found.left_out.is_empty() && found.unmet.is_empty()) {
+            found = self.arrange(&relaxed, &plan.held, None);
+        }
+        let wanted = found.new.len() + found.left_out.len();
+        let mut last = Vec::new();
+        for b in &found.new {
+            let object = SceneBox {
+                id: self.next_id(),
+                ..*b
+            };
+            last.push(object.id);
+            self.push(TextEdit::Add { object });
+        }
+        if let Some(why) = found.left_out.first() {
+            self.remark(Remark::LeftOut {
+                placed: found.new.len(),
+                wanted,
+                why: why.clone(),
+            });
+        }
+        if !found.unmet.is_empty() {
+            self.remark(Remark::Unmet {
+                relations: found.unmet.iter().map(|r| r.name()).collect(),
+            });
+        }
+        if !last.is_empty() {
+            self.last = last;
+            self.last_noun = None;
+            if let Some(b) = self.last.first().and_then(|id| self.boxes.get(id)) {
+                self.last_noun = Some(super::super::nouns::Noun::of_class(b.class));
+            }
+        }
+    }
+
+    /// Finds places; `from` is the box that is moved there, which does not stand in its own way.
+    pub(super) fn arrange(
+        &mut self,
+        specs: &[ObjectSpec],
+        held: &[Option<Vec<SceneBox>>],
+        from: Option<&SceneBox>,
+    ) -> Arranged {
+        let mut d = Description {
+            foreground: specs.to_vec(),
+            ..Description::default()
+        };
+        self.lanes_that_are_there(&mut d);
+        let mut graphed = to_graph(&d, self.seed);
+        let mut locked: Vec<u32> = Vec::new();
+        let mut stay: Vec<BoxId> = from.map(|b| b.id).into_iter().collect();
+        for (i, boxes) in held.iter().enumerate() {
+            let nodes = graphed.nodes.get(i).cloned().unwrap_or_default();
+            for (node, b) in nodes.iter().zip(boxes.iter().flatten()) {
+                if let Some(n) = graphed.graph.nodes.iter_mut().find(|n| n.id == *node) {
+                    n.locked = Some(Locked::Box(*b));
+                    locked.push(*node);
+                    stay.push(b.id);
+                }
+            }
+        }
+        let others: Vec<SceneBox> = self
+            .boxes
+            .values()
+            .filter(|b| !stay.contains(&b.id))
+            .copied()
+            .collect();
+        let p: Placement = place_from(
+            &graphed.graph,
+            self.layout,
+            self.seed,
+            &graphed.sizes_m,
+            &others,
+            from,
+        );
+        Arranged {
+            new: p
+                .boxes
+                .iter()
+                .filter(|b| !locked.contains(&b.id.0))
+                .copied()
+                .collect(),
+            left_out: p.left_out.into_iter().map(|l| l.1).collect(),
+            unmet: p
+                .unmet
+                .iter()
+                .map(|i| graphed.graph.edges[*i])
+                .filter(|e| !locked.contains(&e.from))
+                .map(|e| e.relation)
+                .collect(),
+        }
+    }
+
+    /// "The left lane" of a street with one lane each way is the oncoming one.
+    fn lanes_that_are_there(&self, d: &mut Description) {
+        let has = |role: LaneRole| self.map.points.iter().any(|p| p.role == role);
+        if has(LaneRole::Left) || !has(LaneRole::Oncoming) {
+            return;
+        }
+        for r in d.foreground.iter_mut().flat_map(|o| &mut o.relations) {
+            if r.anchor == Anchor::Lane(LaneRole::Left) {
+                r.anchor = Anchor::Lane(LaneRole::Oncoming);
+            }
+        }
+    }
+
+    /// More of a kind stand where all of that kind stand.
+    pub(super) fn add_like(&mut self, t: &Thing, others: &[BoxId]) {
+        let mut plan = self.plan(std::slice::from_ref(t));
+        let on = |relation, anchor| Stated {
+            relation,
+            anchor,
+            and: None,
+            distance_m: None,
+            span: super::super::plan::nowhere(),
+        };
+        let crosses = |id: &BoxId| {
+            let on = |b| holds(&self.map, RelationKind::On, b, &Target::Crossing, None, None);
+            self.boxes.get(id).is_some_and(on)
+        };
+        let people = t.noun.classes()[0] == Class::Pedestrian;
+        let spec = &mut plan.specs[0];
+        if !spec.relations.is_empty() || others.is_empty() {
+            self.put(plan);
+            return;
+        }
+        if people && others.iter().all(crosses) {
+            spec.relations.push(on(RelationKind::On, Anchor::Crossing));
+        } else {
+            let roles: Vec<Option<LaneRole>> = others.iter().map(|id| self.role(*id)).collect();
+            let same = roles[0].filter(|r| roles.iter().all(|x| *x == Some(*r)));
+            let lot = roles
+                .contains(&Some(LaneRole::Carpark))
+                .then_some(LaneRole::Carpark);
+            if let Some(role) = same.or(lot.filter(|_| t.state == Some(ObjectState::Parked))) {
+                spec.relations.push(on(RelationKind::On, Anchor::Lane(role)));
+            }
+        }
+        self.put(plan);
+    }
+
+    /// Where something was taken away; without any, where what was spoken of last stands.
+    fn add_there(&mut self, t: &Thing) {
+        let rest: Vec<_> = t
+            .places
+            .iter()
+            .filter(|p| p.relation != Relation::There)
+            .cloned()
+            .collect();
+        let t = Thing {
+            places: rest,
+            ..t.clone()
+        };
+        let spots = std::mem::take(&mut self.gone);
+        if spots.is_empty() {
+            let near = self.last.first().copied();
+            match near.and_then(|id| self.role(id)) {
+                Some(_) => self.add_like(&t, &near.into_iter().collect::<Vec<_>>()),
+                None => {
+                    self.remark(Remark::NoSpot);
+                    let plan = self.plan(&[t]);
+                    self.put(plan);
+                }
+            }
+            return;
+        }
+        let wanted = super::super::plan::count_of(t.quantity).n as usize;
+        let put = self.put_at(&t, &spots, wanted);
+        if put < wanted {
+            let more = Thing {
+                quantity: Quantity::N((wanted - put) as u32),
+                ..t
+            };
+            let stood = self.last.clone();
+            self.add_like(&more, &stood);
+        }
+    }
+
+    /// New things in the places of old boxes; answers how many.
+    pub(super) fn put_at(&mut self, t: &Thing, spots: &[SceneBox], wanted: usize) -> usize {
+        let mut last = Vec::new();
+        for old in spots.iter().take(wanted) {
+            let id = self.next_id();
+            let Some(new) = in_place_of(old, t, id) else {
+                continue;
+            };
+            let object = self.clear_of_others(new).unwrap_or(new);
+            last.push(id);
+            self.push(TextEdit::Add { object });
+        }
+        let n = last.len();
+        self.last = last;
+        n
+    }
+
+    pub(super) fn as_spec(&self, b: &SceneBox) -> ObjectSpec {
+        ObjectSpec {
+            class: b.class,
+            noun: b.class.label(),
+            count: Count::exactly(1),
+            state: None,
+            size: None,
+            color: None,
+            attributes: Vec::new(),
+            size_m: Some(b.size_m.to_array()),
+            relations: Vec::new(),
+            span: super::super::plan::nowhere(),
+        }
+    }
+}
+
+/// The name and paint that a thing gives a box.
+pub(super) fn label_of(t: &Thing) -> BoxLabel {
+    let paint: Option<Paint> = match t.paint {
+        Some(super::super::reading::PaintWish::Is(p)) => Some(p),
+        _ => None,
+    };
+    BoxLabel {
+        name: t.noun.label(),
+        paint,
+    }
+}
+
+/// A box of another kind where one stands or stood.
+pub(super) fn in_place_of(old: &SceneBox, t: &Thing, id: BoxId) -> Option<SceneBox> {
+    let class = t.noun.classes()[0];
+    let size_m = DVec3::from_array(t.noun.size_m().or(class.typical_size_m())?);
+    let base_m = old.center_m.z - old.size_m.z / 2.0;
+    let speed = match t.state {
+        Some(ObjectState::Moving) => Stage::pace(class),
+        Some(_) => 0.0,
+        None if old.velocity_mps.length() > 0.5 => old.velocity_mps.length().min(Stage::pace(class).max(0.0)),
+        None => 0.0,
+    };
+    Some(SceneBox {
+        id,
+        class,
+        size_m,
+        center_m: old.center_m.truncate().extend(base_m + size_m.z / 2.0),
+        velocity_mps: old.heading() * speed,
+        label: label_of(t),
+        ..*old
+    })
+}

@@ -1,0 +1,242 @@
+//! Boxes that stay where they are and become something else: another kind, paint, state, heading, or each other.
+
+use glam::DVec2;
+
+use super::super::reading::{Look, Quantity, Thing, Turn};
+use super::super::remark::Remark;
+use super::super::resolve::{Spare, words_of};
+use super::super::stage::Stage;
+use super::adds::in_place_of;
+use crate::generation::text::edit::TextEdit;
+use crate::generation::text::holds::overlap_m;
+use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+use crate::scene::{BoxId, BoxLabel, SceneBox};
+
+impl Stage<'_> {
+    /// One for one; where a number is said, those too many go and those too few stand by the others.
+    pub(super) fn replace(&mut self, who: &[Thing], things: &[Thing]) {
+        let ids = match self.those(who, Spare::Farthest) {
+            Some(ids) => ids,
+            None => {
+                // (what is replaced may have gone by an act before)
+                let gone = std::mem::take(&mut self.gone);
+                let class = |b: &SceneBox| who.iter().any(|w| w.noun.classes().contains(&b.class));
+                let spots: Vec<SceneBox> = gone.into_iter().filter(class).collect();
+                if let (Some(t), false) = (things.first(), spots.is_empty()) {
+                    let n = super::super::plan::count_of(t.quantity).n as usize;
+                    self.put_at(t, &spots, n);
+                }
+                return;
+            }
+        };
+        let mut left: Vec<BoxId> = ids;
+        let mut made = Vec::new();
+        for (k, t) in things.iter().enumerate() {
+            let wanted = match t.quantity {
+                Quantity::N(n) => n as usize,
+                Quantity::Range(a, _) => a as usize,
+                Quantity::Some | Quantity::Many | Quantity::All | Quantity::Unsaid => left.len(),
+                _ => 1,
+            };
+            let last = k + 1 == things.len();
+            let n = wanted.min(left.len());
+            let mine: Vec<BoxId> = left.drain(..n).collect();
+            for id in &mine {
+                self.become_kind(*id, t);
+            }
+            made.extend(&mine);
+            if wanted > n {
+                let more = Thing {
+                    quantity: Quantity::N((wanted - n) as u32),
+                    ..t.clone()
+                };
+                let by = if mine.is_empty() { made.clone() } else { mine };
+                self.add_like(&more, &by);
+                made.extend(self.last.clone());
+            }
+            if last {
+                for id in left.drain(..) {
+                    self.push(TextEdit::Remove { id });
+                }
+            }
+        }
+        self.last = made;
+        self.last_noun = things.first().map(|t| t.noun);
+    }
+
+    fn become_kind(&mut self, id: BoxId, t: &Thing) {
+        let Some(old) = self.boxes.get(&id).copied() else {
+            return;
+        };
+        let Some(new) = in_place_of(&old, t, id) else {
+            return;
+        };
+        let object = self.clear_of_others(new).unwrap_or(new);
+        let hit = self
+            .boxes
+            .values()
+            .find(|o| o.id != id && overlap_m(&object, o, 0.0) > 0.0);
+        if let Some(o) = hit {
+            let (id, other) = (id.0, Some(o.id.0));
+            self.remark(Remark::Overlaps { id, other });
+        }
+        self.push(TextEdit::Replace { id, object });
+        if !t.places.is_empty() {
+            self.moved_to(id, &t.places);
+        }
+    }
+
+    pub(super) fn set(&mut self, who: &[Thing], look: &Look) {
+        let Some(ids) = self.those(who, Spare::Nearest) else {
+            return;
+        };
+        let mut paint = look.paint;
+        if let Some(of) = &look.paint_of {
+            let last = self.last.clone();
+            // ("the same colour as the other one")
+            let Some(model) = self.that(of, Spare::Nearest).and_then(|ids| ids.first().copied()) else {
+                return;
+            };
+            self.last = last;
+            paint = self.boxes.get(&model).and_then(|b| b.label.paint);
+            if paint.is_none() {
+                self.remark(Remark::Nobody {
+                    what: format!("painted {}", words_of(of)),
+                });
+                return;
+            }
+        }
+        for id in ids {
+            self.set_one(id, look, paint);
+        }
+    }
+
+    fn set_one(&mut self, id: BoxId, look: &Look, paint: Option<crate::scene::Paint>) {
+        let Some(b) = self.boxes.get(&id).copied() else {
+            return;
+        };
+        if paint.is_some() && b.label.paint != paint {
+            self.push(TextEdit::Label {
+                id,
+                label: BoxLabel { paint, ..b.label },
+            });
+        }
+        if let Some(size) = look.size {
+            let factor = if size == SizeHint::Large { 1.18 } else { 0.85 };
+            let b = self.boxes[&id];
+            let base_m = b.center_m.z - b.size_m.z / 2.0;
+            let size_m = b.size_m * factor;
+            let center_m = b.center_m.truncate().extend(base_m + size_m.z / 2.0);
+            self.push(TextEdit::Replace {
+                id,
+                object: SceneBox {
+                    size_m,
+                    center_m,
+                    ..b
+                },
+            });
+        }
+        let Some(state) = look.state else { return };
+        let b = self.boxes[&id];
+        if state == ObjectState::Parked && b.class.is_vehicle() && !self.does(&b, ObjectState::Parked) {
+            // (what parks stands at the edge of the road, on its side)
+            let role = if b.center_m.y > 1.0 {
+                LaneRole::LeftRoadside
+            } else {
+                LaneRole::RightRoadside
+            };
+            self.park(id, role);
+            return;
+        }
+        let moves = b.velocity_mps.length() > 0.5;
+        if (state == ObjectState::Moving) == moves {
+            return;
+        }
+        let speed = if state == ObjectState::Moving {
+            Self::pace(b.class)
+        } else {
+            0.0
+        };
+        self.push(TextEdit::Replace {
+            id,
+            object: SceneBox {
+                velocity_mps: b.heading() * speed,
+                ..b
+            },
+        });
+    }
+
+    pub(super) fn swap(&mut self, one: &Thing, other: &Thing) {
+        let first = self
+            .that(one, Spare::Nearest)
+            .and_then(|ids| ids.first().copied());
+        if let Some(a) = first {
+            self.speak_of(&[a], Some(one.noun));
+        }
+        let second = self.that(other, Spare::Nearest);
+        let second = second.and_then(|ids| ids.into_iter().find(|id| Some(*id) != first));
+        let (Some(a), Some(b)) = (first, second) else {
+            return;
+        };
+        let (Some(one), Some(two)) = (self.boxes.get(&a).copied(), self.boxes.get(&b).copied()) else {
+            return;
+        };
+        let at = |what: &SceneBox, place: &SceneBox| {
+            let moves = place.velocity_mps.length() > 0.5;
+            let speed = if moves { Self::pace(what.class) } else { 0.0 };
+            let base_m = place.center_m.z - place.size_m.z / 2.0;
+            SceneBox {
+                center_m: place.center_m.truncate().extend(base_m + what.size_m.z / 2.0),
+                yaw_rad: place.yaw_rad,
+                velocity_mps: DVec2::from_angle(place.yaw_rad) * speed,
+                ..*what
+            }
+        };
+        self.boxes.remove(&a);
+        self.boxes.remove(&b);
+        let first = at(&one, &two);
+        let first = self.clear_of_others(first).unwrap_or(first);
+        self.boxes.insert(a, first);
+        let second = at(&two, &one);
+        let second = self.clear_of_others(second).unwrap_or(second);
+        self.push(TextEdit::Replace { id: a, object: first });
+        self.push(TextEdit::Replace {
+            id: b,
+            object: second,
+        });
+        self.last = vec![a, b];
+    }
+
+    pub(super) fn turned(&mut self, who: &[Thing], turn: &Turn) {
+        let Some(ids) = self.those(who, Spare::Nearest) else {
+            return;
+        };
+        for id in ids {
+            let Some(b) = self.boxes.get(&id).copied() else {
+                continue;
+            };
+            let p = b.center_m.truncate();
+            let yaw_rad = match turn {
+                Turn::Around => {
+                    // A driver changes to the lane that leads there.
+                    let drives = b.velocity_mps.length() > 0.5 && b.class != crate::scene::Class::Pedestrian;
+                    if drives && self.to_other_direction(id) {
+                        continue;
+                    }
+                    b.yaw_rad + std::f64::consts::PI
+                }
+                Turn::Left(degrees) => b.yaw_rad + degrees.to_radians(),
+                Turn::Along => self.map.nearest(p).map_or(0.0, |l| l.dir.to_angle()),
+                Turn::To(places) => {
+                    self.moved_to(id, places);
+                    continue;
+                }
+            };
+            self.push(TextEdit::Move {
+                id,
+                center_m: b.center_m,
+                yaw_rad,
+            });
+        }
+    }
+}

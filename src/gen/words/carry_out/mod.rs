@@ -1,0 +1,239 @@
+//! Carries out a reading on a scene: act by act, each on what the one before left.
+
+mod adds;
+mod changes;
+mod crossing;
+mod moves;
+
+use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
+use super::remark::Remark;
+use super::resolve::{Spare, words_of};
+use super::stage::{OpenScene, Outcome, Stage};
+use crate::generation::text::description::{Description, TimeOfDay, Weather};
+use crate::generation::text::edit::TextEdit;
+use crate::scene::{BoxId, SceneBox};
+
+/// Most acts that are carried out.
+pub const MOST_ACTS: usize = 100;
+
+/// What becomes of a scene; the same for the same reading, scene and seed.
+pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome {
+    let boxes: Vec<SceneBox> = scene.boxes.values().copied().collect();
+    let with = crossing::with_crossing(reading, scene.layout, &boxes);
+    let scene = OpenScene {
+        layout: with.as_ref().map_or(scene.layout, |w| &w.layout),
+        ..*scene
+    };
+    let mut stage = Stage::new(&scene, seed);
+    for (i, act) in reading.acts.iter().enumerate() {
+        stage.act = i;
+        stage.out.done.resize(i + 1, super::stage::Done::default());
+        if i >= MOST_ACTS {
+            stage.remark(Remark::TooMuch);
+            break;
+        }
+        let (before, asked) = (stage.out.edits.len(), stage.out.questions.len());
+        let remarks = stage.out.remarks.len();
+        if let Some(w) = with.as_ref().filter(|w| w.act == i) {
+            stage.push(TextEdit::Crossing {
+                outline_m: w.outline_m.clone(),
+            });
+        }
+        stage.act(&act.what, reading);
+        let silent = stage.out.edits.len() == before
+            && stage.out.questions.len() == asked
+            && stage.out.remarks.len() == remarks;
+        if silent && !matches!(act.what, What::Leave { .. }) {
+            stage.remark(Remark::Already);
+        }
+    }
+    stage.out
+}
+
+impl Stage<'_> {
+    fn act(&mut self, what: &What, reading: &Reading) {
+        match what {
+            What::Add { things } => self.add(things),
+            What::Remove { who } => self.remove(who, reading),
+            What::No { who } => {
+                for t in who {
+                    let t = Thing {
+                        quantity: Quantity::All,
+                        ..t.clone()
+                    };
+                    let spared = if t.other {
+                        self.spoken_of(reading)
+                    } else {
+                        Vec::new()
+                    };
+                    let mut ids = self.fitting(&t);
+                    ids.retain(|id| !spared.contains(id));
+                    self.take(&ids);
+                }
+            }
+            What::Keep { who } => self.keep(who),
+            What::Leave { who } => {
+                for t in who {
+                    let ids = self.fitting(t);
+                    if ids.is_empty() {
+                        self.remark(Remark::Nobody { what: words_of(t) });
+                    } else {
+                        self.speak_of(&ids, Some(t.noun));
+                    }
+                }
+            }
+            What::Replace { who, things } => self.replace(who, things),
+            What::Move { who, to } => self.moved(who, to),
+            What::Turn { who, turn } => self.turned(who, turn),
+            What::Set { who, look } => self.set(who, look),
+            What::Count { who, amount } => {
+                for t in who {
+                    self.count(t, *amount);
+                }
+            }
+            What::Swap { one, other } => self.swap(one, other),
+            What::Time { what } => self.conditions(Some(*what), None),
+            What::Weather { what } => self.conditions(None, Some(*what)),
+            What::Has {
+                what: Feature::Crossing,
+                places,
+            } => self.add_crossing(places),
+            What::Lacks {
+                what: Feature::Crossing,
+            } => self.erase_crossing(),
+            What::Has { .. } | What::Lacks { .. } => self.remark(Remark::NotInEdits { what: "the sidewalk" }),
+            What::Road { .. }
+            | What::Lanes { .. }
+            | What::OneWay
+            | What::Narrow
+            | What::Wide
+            | What::OwnLane { .. } => self.remark(Remark::NotInEdits { what: "the road" }),
+            What::Env { .. } => self.remark(Remark::NotInEdits {
+                what: "the surroundings",
+            }),
+            What::Density { .. } => self.remark(Remark::NotInEdits {
+                what: "how busy it is",
+            }),
+        }
+    }
+
+    fn take(&mut self, ids: &[BoxId]) {
+        if !ids.is_empty() {
+            self.gone.clear();
+        }
+        for id in ids {
+            self.push(TextEdit::Remove { id: *id });
+        }
+    }
+
+    fn remove(&mut self, who: &[Thing], reading: &Reading) {
+        let Some(mut ids) = self.those(who, Spare::Farthest) else {
+            return;
+        };
+        // "everything but the bus": what the same text says to stay does.
+        let stays: Vec<BoxId> = reading
+            .acts
+            .iter()
+            .filter_map(|a| match &a.what {
+                What::Leave { who } => Some(who),
+                _ => None,
+            })
+            .flatten()
+            .filter(|t| who.iter().all(|w| w.noun != t.noun || w.paint != t.paint))
+            .flat_map(|t| self.fitting(t))
+            .collect();
+        ids.retain(|id| !stays.contains(id));
+        self.take(&ids);
+    }
+
+    /// Boxes that other acts of the text speak of.
+    fn spoken_of(&self, reading: &Reading) -> Vec<BoxId> {
+        let mut ids = self.last.clone();
+        for a in &reading.acts {
+            let who = match &a.what {
+                What::Leave { who } | What::Keep { who } | What::Set { who, .. } | What::Move { who, .. } => {
+                    who
+                }
+                _ => continue,
+            };
+            ids.extend(who.iter().flat_map(|t| self.fitting(t)));
+        }
+        for done in &self.out.done {
+            ids.extend(&done.added);
+            ids.extend(&done.changed);
+        }
+        ids
+    }
+
+    fn keep(&mut self, who: &[Thing]) {
+        // (a number of a kind: so many of it stay)
+        let Some(ids) = self.those(who, Spare::Nearest) else {
+            return;
+        };
+        let others: Vec<BoxId> = self
+            .boxes
+            .keys()
+            .filter(|id| !ids.contains(id))
+            .copied()
+            .collect();
+        self.take(&others);
+        self.last = ids;
+    }
+
+    fn count(&mut self, t: &Thing, amount: Amount) {
+        let fits = self.fitting(&Thing {
+            quantity: Quantity::All,
+            ..t.clone()
+        });
+        let (least, most) = match amount {
+            Amount::To(a, b) => (a as usize, b as usize),
+            Amount::Times(f) => {
+                let n = (fits.len() as f64 * f.clamp(0.0, 100.0)).round() as usize;
+                (n, n)
+            }
+        };
+        if fits.is_empty() && matches!(amount, Amount::Times(_)) {
+            self.remark(Remark::Nobody { what: words_of(t) });
+            return;
+        }
+        if fits.len() > most {
+            let n = fits.len() - most;
+            let which = Thing {
+                quantity: Quantity::N(n as u32),
+                ..t.clone()
+            };
+            if let Some(gone) = self.that(&which, Spare::Farthest) {
+                self.take(&gone);
+            }
+            self.last = fits
+                .into_iter()
+                .filter(|id| self.boxes.contains_key(id))
+                .collect();
+        } else if fits.len() < least {
+            let n = (least - fits.len()).min(400) as u32;
+            let new = Thing {
+                quantity: Quantity::N(n),
+                ..t.clone()
+            };
+            self.add_like(&new, &fits);
+        } else {
+            self.last = fits;
+        }
+    }
+
+    fn conditions(&mut self, time: Option<TimeOfDay>, weather: Option<Weather>) {
+        let words: Vec<String> = self.prompt.split(',').map(|w| w.trim().to_owned()).collect();
+        let has = |name: &str| words.iter().any(|w| w == name);
+        use crate::generation::text::description::Environment;
+        let d = Description {
+            time_of_day: time.or(TimeOfDay::ALL.iter().copied().find(|t| has(t.name()))),
+            weather: weather.or(Weather::ALL.iter().copied().find(|t| has(t.name()))),
+            environment: Environment::ALL.iter().copied().find(|t| has(t.name())),
+            ..Description::default()
+        };
+        let prompt = d.style();
+        if prompt != self.prompt {
+            self.push(TextEdit::Style { prompt });
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! From words to what they ask: readers turn a text into a [`Reading`](reading::Reading), plain values that know no scene;
+//! the resolver finds the things that are meant in a scene and asks back; the executor carries out. `README.md` walks one
+//! sentence through.
+
+pub mod carry_out;
+pub mod describe;
+mod named;
+pub mod notation;
+pub mod nouns;
+mod plan;
+pub mod reading;
+pub mod remark;
+mod resolve;
+pub mod stage;
+
+pub use super::text::tokens;

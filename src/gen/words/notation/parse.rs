@@ -1,0 +1,418 @@
+//! Notation to values.
+
+use super::super::nouns::Noun;
+use super::super::reading::{
+    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Pick, Place, Quantity, Reading,
+    Relation, Thing, Turn, Way, What,
+};
+use super::{SIZES, STATES, anchors, paint, plain};
+use crate::generation::text::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::scene::graph::{ObjectState, SizeHint};
+
+/// Why a line is no reading.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{found:?} where {expected} should be, after {after:?}")]
+pub struct NotationError {
+    /// The token that does not fit; empty at the end.
+    pub found: String,
+    /// What would.
+    pub expected: String,
+    /// The tokens before.
+    pub after: String,
+}
+
+/// Longest line that is read, bytes.
+const LONGEST: usize = 20_000;
+/// Deepest nesting of things in places of things.
+const DEEPEST: usize = 6;
+
+/// The reading of a line.
+///
+/// # Errors
+///
+/// If a token does not fit; the error names it.
+pub fn parse(line: &str) -> Result<Reading, NotationError> {
+    let spaced: String = line
+        .chars()
+        .take(LONGEST)
+        .flat_map(|c| match c {
+            '(' | ')' | ';' => vec![' ', c, ' '],
+            c => vec![c],
+        })
+        .collect();
+    let mut p = Parser {
+        tokens: spaced.split_whitespace().collect(),
+        at: 0,
+        deep: 0,
+    };
+    let mut reading = Reading::default();
+    while p.at < p.tokens.len() {
+        reading.acts.push(p.act()?.into());
+        if p.at < p.tokens.len() {
+            p.expect(";")?;
+        }
+    }
+    Ok(reading)
+}
+
+struct Parser<'t> {
+    tokens: Vec<&'t str>,
+    at: usize,
+    deep: usize,
+}
+
+type Parsed<T> = Result<T, NotationError>;
+
+impl<'t> Parser<'t> {
+    fn peek(&self) -> &'t str {
+        self.tokens.get(self.at).copied().unwrap_or("")
+    }
+
+    fn wrong<T>(&self, expected: &str) -> Parsed<T> {
+        Err(NotationError {
+            found: self.peek().into(),
+            expected: expected.into(),
+            after: self.tokens[self.at.saturating_sub(5)..self.at].join(" "),
+        })
+    }
+
+    /// Takes the token if it is this one.
+    fn takes(&mut self, token: &str) -> bool {
+        let is = self.peek() == token;
+        self.at += usize::from(is);
+        is
+    }
+
+    fn expect(&mut self, token: &str) -> Parsed<()> {
+        if self.takes(token) {
+            Ok(())
+        } else {
+            self.wrong(token)
+        }
+    }
+
+    /// Takes the token if `of` knows it.
+    fn maybe<T>(&mut self, of: impl FnOnce(&str) -> Option<T>) -> Option<T> {
+        let found = of(self.peek());
+        self.at += usize::from(found.is_some());
+        found
+    }
+
+    fn must<T>(&mut self, expected: &str, of: impl FnOnce(&str) -> Option<T>) -> Parsed<T> {
+        match self.maybe(of) {
+            Some(found) => Ok(found),
+            None => self.wrong(expected),
+        }
+    }
+
+    fn whole(&mut self) -> Parsed<u32> {
+        self.must("a whole number", whole)
+    }
+
+    fn number(&mut self) -> Parsed<f64> {
+        self.must("a number", |t| {
+            t.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0)
+        })
+    }
+
+    fn metres(&mut self) -> Option<f64> {
+        self.maybe(|t| measure(t, "m"))
+    }
+
+    fn list(&mut self) -> Parsed<Vec<Thing>> {
+        let mut things = vec![self.thing()?];
+        while self.takes("and") {
+            things.push(self.thing()?);
+        }
+        Ok(things)
+    }
+
+    fn act(&mut self) -> Parsed<What> {
+        let verb = self.peek();
+        self.at += 1;
+        Ok(match verb {
+            "add" => What::Add { things: self.list()? },
+            "no" => What::No { who: self.list()? },
+            "remove" => What::Remove { who: self.list()? },
+            "keep" => What::Keep { who: self.list()? },
+            "leave" if self.takes("rest") => What::Leave { who: Vec::new() },
+            "leave" => What::Leave { who: self.list()? },
+            "replace" => {
+                let who = self.list()?;
+                self.expect("with")?;
+                let things = self.list()?;
+                What::Replace { who, things }
+            }
+            "swap" => {
+                let one = Box::new(self.thing()?);
+                self.expect("and")?;
+                let other = Box::new(self.thing()?);
+                What::Swap { one, other }
+            }
+            "move" => {
+                let who = self.list()?;
+                let to = self.destination()?;
+                What::Move { who, to }
+            }
+            "turn" => {
+                let who = self.list()?;
+                let turn = self.turn()?;
+                What::Turn { who, turn }
+            }
+            "set" => {
+                let who = self.list()?;
+                let look = self.look()?;
+                What::Set { who, look }
+            }
+            "count" => {
+                let who = self.list()?;
+                let amount = self.count()?;
+                What::Count { who, amount }
+            }
+            "time" => What::Time {
+                what: self.must("a time of day", |t| {
+                    TimeOfDay::ALL.iter().copied().find(|x| x.name() == t)
+                })?,
+            },
+            "weather" => What::Weather {
+                what: self.must("a weather", |t| {
+                    Weather::ALL.iter().copied().find(|x| x.name() == t)
+                })?,
+            },
+            "road" => What::Road {
+                what: self.must("a kind of road", |t| {
+                    Road::ALL.iter().copied().find(|x| plain(x.name()) == t)
+                })?,
+            },
+            "env" => What::Env {
+                what: self.must("surroundings", |t| {
+                    Environment::ALL.iter().copied().find(|x| x.name() == t)
+                })?,
+            },
+            "density" => What::Density {
+                what: self.must("a density", |t| {
+                    Density::ALL.iter().copied().find(|x| x.name() == t)
+                })?,
+            },
+            "has" => What::Has {
+                what: self.must("crossing or sidewalk", Feature::of)?,
+                places: self.places()?,
+            },
+            "lacks" => What::Lacks {
+                what: self.must("crossing or sidewalk", Feature::of)?,
+            },
+            "lanes" => What::Lanes { n: self.whole()? },
+            "one_way" => What::OneWay,
+            "narrow" => What::Narrow,
+            "wide" => What::Wide,
+            "own_lane" => What::OwnLane {
+                what: self.must("left, right or middle", LaneSide::of)?,
+            },
+            _ => {
+                self.at -= 1;
+                return self.wrong("a verb");
+            }
+        })
+    }
+
+    fn destination(&mut self) -> Parsed<Destination> {
+        if self.takes("to") {
+            let places = self.places()?;
+            return if places.is_empty() {
+                self.wrong("(")
+            } else {
+                Ok(Destination::To(places))
+            };
+        }
+        self.expect("by")?;
+        if self.takes("times") {
+            return Ok(Destination::Times(self.number()?));
+        }
+        for (lane, sign) in [("lane_left", 1), ("lane_right", -1)] {
+            if self.takes(lane) {
+                let n = self.maybe(whole).unwrap_or(1).min(20);
+                return Ok(Destination::Lanes(sign * n as i32));
+            }
+        }
+        let way = self.must("a way to move", Way::of)?;
+        let metres = self.metres();
+        Ok(Destination::By { way, metres })
+    }
+
+    fn turn(&mut self) -> Parsed<Turn> {
+        if self.takes("around") {
+            return Ok(Turn::Around);
+        }
+        if self.takes("along") {
+            return Ok(Turn::Along);
+        }
+        for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+            if self.takes(side) {
+                let degrees = self.maybe(|t| measure(t, "deg")).unwrap_or(90.0);
+                return Ok(Turn::Left(sign * degrees));
+            }
+        }
+        self.expect("to")?;
+        let places = self.places()?;
+        if places.is_empty() {
+            self.wrong("(")
+        } else {
+            Ok(Turn::To(places))
+        }
+    }
+
+    fn look(&mut self) -> Parsed<Look> {
+        let mut look = Look::default();
+        loop {
+            if let Some(x) = self.maybe(size) {
+                look.size = Some(x);
+            } else if let Some(x) = self.maybe(state) {
+                look.state = Some(x);
+            } else if let Some(x) = self.maybe(paint) {
+                look.paint = Some(x);
+            } else if self.takes("paint_of") {
+                look.paint_of = Some(Box::new(self.thing()?));
+            } else if look == Look::default() {
+                return self.wrong("a look");
+            } else {
+                return Ok(look);
+            }
+        }
+    }
+
+    fn count(&mut self) -> Parsed<Amount> {
+        if self.takes("times") {
+            return Ok(Amount::Times(self.number()?));
+        }
+        self.expect("to")?;
+        let least = self.whole()?;
+        let most = if self.takes("..") { self.whole()? } else { least };
+        Ok(Amount::To(least, most.max(least)))
+    }
+
+    fn thing(&mut self) -> Parsed<Thing> {
+        if self.deep >= DEEPEST {
+            return self.wrong("no deeper nesting");
+        }
+        self.deep += 1;
+        let thing = self.thing_within();
+        self.deep -= 1;
+        thing
+    }
+
+    fn thing_within(&mut self) -> Parsed<Thing> {
+        let mut t = Thing::new(Noun::Thing);
+        let the = self.takes("the");
+        t.quantity = match self.peek() {
+            "all" => Quantity::All,
+            "half" => Quantity::Half,
+            "some" => Quantity::Some,
+            "many" => Quantity::Many,
+            _ if the => Quantity::The,
+            _ => Quantity::Unsaid,
+        };
+        self.at += usize::from(!matches!(t.quantity, Quantity::The | Quantity::Unsaid));
+        t.other = self.takes("other");
+        if let Some(n) = self.maybe(whole) {
+            t.quantity = if the {
+                Quantity::TheN(n)
+            } else if self.takes("..") {
+                let most = self.whole()?;
+                Quantity::Range(n.min(most), most.max(n))
+            } else {
+                Quantity::N(n)
+            };
+        }
+        t.pick = self.maybe(Pick::of);
+        if self.takes("nth") {
+            t.nth = Some(self.whole()?);
+        }
+        t.size = self.maybe(size);
+        t.state = self.maybe(state);
+        t.paint = self.maybe(paint_wish);
+        t.noun = match self.maybe(Noun::of) {
+            Some(noun) => noun,
+            None if t.other => Noun::Thing,
+            None => return self.wrong("a noun"),
+        };
+        t.id = self.maybe(|x| x.strip_prefix('#').and_then(|n| n.parse().ok()));
+        while self.peek() == "(" {
+            if self.tokens.get(self.at + 1) == Some(&"except") {
+                self.at += 2;
+                t.except.extend(self.list()?);
+                self.expect(")")?;
+            } else {
+                t.places.push(self.place()?);
+            }
+        }
+        Ok(t)
+    }
+
+    fn places(&mut self) -> Parsed<Vec<Place>> {
+        let mut places = Vec::new();
+        while self.peek() == "(" {
+            places.push(self.place()?);
+        }
+        Ok(places)
+    }
+
+    fn anchor(&mut self) -> Parsed<Anchor> {
+        match self.maybe(|t| anchors().find(|(name, _)| *name == t)) {
+            Some((_, anchor)) => Ok(anchor),
+            None => Ok(Anchor::Thing(Box::new(self.thing()?))),
+        }
+    }
+
+    fn place(&mut self) -> Parsed<Place> {
+        self.expect("(")?;
+        let relation = self.must("a relation", Relation::of)?;
+        let mut place = Place {
+            relation,
+            to: None,
+            and: None,
+            metres: None,
+        };
+        if !matches!(
+            relation,
+            Relation::There | Relation::InLine | Relation::SideBySide
+        ) {
+            place.to = Some(self.anchor()?);
+        }
+        if relation == Relation::Between && self.takes("and") {
+            place.and = Some(self.anchor()?);
+        }
+        place.metres = self.metres();
+        if relation == Relation::At && place.metres.is_none() {
+            return self.wrong("metres");
+        }
+        self.expect(")")?;
+        Ok(place)
+    }
+}
+
+fn whole(t: &str) -> Option<u32> {
+    (!t.is_empty() && t.bytes().all(|b| b.is_ascii_digit()))
+        .then(|| t.parse().ok())
+        .flatten()
+}
+
+fn measure(t: &str, unit: &str) -> Option<f64> {
+    let number = t.strip_suffix(unit)?;
+    let starts = number.starts_with(|c: char| c.is_ascii_digit());
+    number.parse().ok().filter(|x: &f64| starts && x.is_finite())
+}
+
+fn state(t: &str) -> Option<ObjectState> {
+    STATES.into_iter().find(|x| x.0 == t).map(|x| x.1)
+}
+
+fn size(t: &str) -> Option<SizeHint> {
+    SIZES.into_iter().find(|x| x.0 == t).map(|x| x.1)
+}
+
+fn paint_wish(t: &str) -> Option<PaintWish> {
+    match t.strip_prefix("not_") {
+        Some(name) => paint(name).map(PaintWish::Not),
+        None => paint(t).map(PaintWish::Is),
+    }
+}

@@ -1,0 +1,169 @@
+//! Values to notation.
+
+use super::super::reading::{
+    Amount, Anchor, Destination, Look, PaintWish, Place, Quantity, Reading, Thing, Turn, What,
+};
+use super::{SIZES, STATES, anchors, plain};
+use crate::scene::graph::{ObjectState, SizeHint};
+
+/// The line of a reading; `parse` of it gives the same reading.
+pub fn write(reading: &Reading) -> String {
+    let acts: Vec<String> = reading.acts.iter().map(|a| act(&a.what)).collect();
+    acts.join(" ; ")
+}
+
+fn act(what: &What) -> String {
+    match what {
+        What::Add { things } => format!("add {}", list(things)),
+        What::No { who } => format!("no {}", list(who)),
+        What::Remove { who } => format!("remove {}", list(who)),
+        What::Keep { who } => format!("keep {}", list(who)),
+        What::Leave { who } if who.is_empty() => "leave rest".into(),
+        What::Leave { who } => format!("leave {}", list(who)),
+        What::Replace { who, things } => format!("replace {} with {}", list(who), list(things)),
+        What::Move { who, to } => format!("move {} {}", list(who), destination(to)),
+        What::Turn { who, turn } => format!("turn {} {}", list(who), turned(turn)),
+        What::Set { who, look } => format!("set {} {}", list(who), looks(look)),
+        What::Count { who, amount } => format!("count {} {}", list(who), count(*amount)),
+        What::Swap { one, other } => format!("swap {} and {}", thing(one), thing(other)),
+        What::Time { what } => format!("time {}", what.name()),
+        What::Weather { what } => format!("weather {}", what.name()),
+        What::Road { what } => format!("road {}", plain(what.name())),
+        What::Env { what } => format!("env {}", what.name()),
+        What::Density { what } => format!("density {}", what.name()),
+        What::Has { what, places: at } if at.is_empty() => format!("has {}", what.name()),
+        What::Has { what, places: at } => format!("has {} {}", what.name(), places(at)),
+        What::Lacks { what } => format!("lacks {}", what.name()),
+        What::Lanes { n } => format!("lanes {n}"),
+        What::OneWay => "one_way".into(),
+        What::Narrow => "narrow".into(),
+        What::Wide => "wide".into(),
+        What::OwnLane { what } => format!("own_lane {}", what.name()),
+    }
+}
+
+fn list(things: &[Thing]) -> String {
+    let things: Vec<String> = things.iter().map(thing).collect();
+    things.join(" and ")
+}
+
+fn destination(to: &Destination) -> String {
+    match to {
+        Destination::To(at) => format!("to {}", places(at)),
+        Destination::By { way, metres } => {
+            let far = metres.map_or(String::new(), |m| format!(" {m}m"));
+            format!("by {}{far}", way.name())
+        }
+        Destination::Times(n) => format!("by times {n}"),
+        Destination::Lanes(n) => {
+            let side = if *n > 0 { "lane_left" } else { "lane_right" };
+            match n.abs() {
+                1 => format!("by {side}"),
+                n => format!("by {side} {n}"),
+            }
+        }
+    }
+}
+
+fn turned(turn: &Turn) -> String {
+    match turn {
+        Turn::Around => "around".into(),
+        Turn::Along => "along".into(),
+        Turn::To(at) => format!("to {}", places(at)),
+        Turn::Left(degrees) => {
+            let side = if *degrees < 0.0 { "right" } else { "left" };
+            match degrees.abs() {
+                90.0 => side.into(),
+                d => format!("{side} {d}deg"),
+            }
+        }
+    }
+}
+
+fn looks(look: &Look) -> String {
+    let mut out: Vec<String> = Vec::new();
+    out.extend(look.size.map(|s| size(s).into()));
+    out.extend(look.state.map(|s| state(s).into()));
+    out.extend(look.paint.map(|p| p.name().into()));
+    out.extend(look.paint_of.as_ref().map(|t| format!("paint_of {}", thing(t))));
+    out.join(" ")
+}
+
+fn count(amount: Amount) -> String {
+    match amount {
+        Amount::To(a, b) if a == b => format!("to {a}"),
+        Amount::To(a, b) => format!("to {a} .. {b}"),
+        Amount::Times(n) => format!("times {n}"),
+    }
+}
+
+/// A thing in notation.
+pub fn thing(t: &Thing) -> String {
+    let mut out: Vec<String> = Vec::new();
+    let (before, after): (Vec<String>, Vec<String>) = match t.quantity {
+        Quantity::Unsaid => (vec![], vec![]),
+        Quantity::The => (vec!["the".into()], vec![]),
+        Quantity::TheN(n) => (vec!["the".into()], vec![n.to_string()]),
+        Quantity::All => (vec!["all".into()], vec![]),
+        Quantity::Half => (vec!["half".into()], vec![]),
+        Quantity::Some => (vec!["some".into()], vec![]),
+        Quantity::Many => (vec!["many".into()], vec![]),
+        Quantity::N(n) => (vec![], vec![n.to_string()]),
+        Quantity::Range(a, b) => (vec![], vec![a.to_string(), "..".into(), b.to_string()]),
+    };
+    out.extend(before);
+    out.extend(t.other.then(|| "other".into()));
+    out.extend(after);
+    out.extend(t.pick.map(|p| p.name().into()));
+    out.extend(t.nth.map(|n| format!("nth {n}")));
+    out.extend(t.size.map(|s| size(s).into()));
+    out.extend(t.state.map(|s| state(s).into()));
+    out.extend(t.paint.map(|p| match p {
+        PaintWish::Is(p) => p.name().into(),
+        PaintWish::Not(p) => format!("not_{}", p.name()),
+    }));
+    out.push(t.noun.name().into());
+    out.extend(t.id.map(|id| format!("#{id}")));
+    if !t.places.is_empty() {
+        out.push(places(&t.places));
+    }
+    if !t.except.is_empty() {
+        out.push(format!("( except {} )", list(&t.except)));
+    }
+    out.join(" ")
+}
+
+fn places(at: &[Place]) -> String {
+    let at: Vec<String> = at.iter().map(place).collect();
+    at.join(" ")
+}
+
+fn place(p: &Place) -> String {
+    let mut out = vec!["(".to_string(), p.relation.name().into()];
+    out.extend(p.to.as_ref().map(anchor));
+    if let Some(second) = &p.and {
+        out.push("and".into());
+        out.push(anchor(second));
+    }
+    out.extend(p.metres.map(|m| format!("{m}m")));
+    out.push(")".into());
+    out.join(" ")
+}
+
+fn anchor(a: &Anchor) -> String {
+    match a {
+        Anchor::Thing(t) => thing(t),
+        other => anchors()
+            .find(|(_, x)| x == other)
+            .map_or("ego", |(name, _)| name)
+            .into(),
+    }
+}
+
+fn state(s: ObjectState) -> &'static str {
+    STATES.into_iter().find(|x| x.1 == s).map_or("waiting", |x| x.0)
+}
+
+fn size(s: SizeHint) -> &'static str {
+    SIZES.into_iter().find(|x| x.1 == s).map_or("large", |x| x.0)
+}

@@ -1,0 +1,419 @@
+//! What a sentence asks of a scene, as plain values: the same from every reader. Nothing here knows a scene. The JSON of
+//! these types has a published schema (`sceneloom prompt --schema`); `notation` is their one-line form.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::named::named;
+use super::nouns::Noun;
+use super::tokens::Span;
+use crate::generation::text::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::scene::Paint;
+use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+
+/// All that a text asks for, in order.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reading {
+    /// What is to be done.
+    pub acts: Vec<Act>,
+}
+
+/// One thing to do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Act {
+    /// What.
+    #[serde(flatten)]
+    pub what: What,
+    /// Bytes of the text that say it, if the reader knows them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<Span>,
+    /// How sure the reader is, 0 to 1.
+    #[serde(default = "sure", skip_serializing_if = "is_sure")]
+    pub confidence: f64,
+}
+
+fn sure() -> f64 {
+    1.0
+}
+
+fn is_sure(x: &f64) -> bool {
+    *x >= 1.0
+}
+
+impl From<What> for Act {
+    fn from(what: What) -> Self {
+        Self {
+            what,
+            span: None,
+            confidence: 1.0,
+        }
+    }
+}
+
+/// What is to be done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "act", rename_all = "snake_case")]
+pub enum What {
+    /// New things.
+    Add {
+        /// Which.
+        things: Vec<Thing>,
+    },
+    /// There shall be none of these.
+    No {
+        /// Of which.
+        who: Vec<Thing>,
+    },
+    /// These go.
+    Remove {
+        /// Which.
+        who: Vec<Thing>,
+    },
+    /// All but these go.
+    Keep {
+        /// Which stay.
+        who: Vec<Thing>,
+    },
+    /// These stay as they are; an empty list is all that is not spoken of.
+    Leave {
+        /// Which.
+        who: Vec<Thing>,
+    },
+    /// New things stand where these are.
+    Replace {
+        /// Which go.
+        who: Vec<Thing>,
+        /// Which come.
+        things: Vec<Thing>,
+    },
+    /// These go elsewhere.
+    Move {
+        /// Which.
+        who: Vec<Thing>,
+        /// Where to.
+        to: Destination,
+    },
+    /// These are turned.
+    Turn {
+        /// Which.
+        who: Vec<Thing>,
+        /// How.
+        turn: Turn,
+    },
+    /// These look or do otherwise.
+    Set {
+        /// Which.
+        who: Vec<Thing>,
+        /// What changes.
+        look: Look,
+    },
+    /// So many of these there shall be.
+    Count {
+        /// Of which.
+        who: Vec<Thing>,
+        /// How many.
+        amount: Amount,
+    },
+    /// Two change places.
+    Swap {
+        /// One.
+        one: Box<Thing>,
+        /// The other.
+        other: Box<Thing>,
+    },
+    /// Time of day.
+    Time {
+        /// Which.
+        what: TimeOfDay,
+    },
+    /// Weather.
+    Weather {
+        /// Which.
+        what: Weather,
+    },
+    /// Kind of road.
+    Road {
+        /// Which.
+        what: Road,
+    },
+    /// Surroundings.
+    Env {
+        /// Which.
+        what: Environment,
+    },
+    /// How busy it is.
+    Density {
+        /// Which.
+        what: Density,
+    },
+    /// The road has it.
+    Has {
+        /// What.
+        what: Feature,
+        /// Where.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        places: Vec<Place>,
+    },
+    /// The road has none.
+    Lacks {
+        /// What.
+        what: Feature,
+    },
+    /// Lanes in both directions together.
+    Lanes {
+        /// How many.
+        n: u32,
+    },
+    /// Traffic in our direction only.
+    OneWay,
+    /// A narrow road.
+    Narrow,
+    /// A wide road.
+    Wide,
+    /// The lane that the ego vehicle drives in, of those of its direction.
+    OwnLane {
+        /// Which.
+        what: LaneSide,
+    },
+}
+
+named!(
+    /// Parts of a road.
+    Feature { Crossing = "crossing", Sidewalk = "sidewalk" }
+);
+named!(
+    /// One of the lanes of a direction.
+    LaneSide { Left = "left", Right = "right", Middle = "middle" }
+);
+named!(
+    /// Which one of several, seen from the ego vehicle.
+    Pick {
+        Nearest = "nearest", Farthest = "farthest", Leftmost = "leftmost", Rightmost = "rightmost",
+        Frontmost = "frontmost", Rearmost = "rearmost", Largest = "largest", Smallest = "smallest",
+    }
+);
+named!(
+    /// How a thing stands to another, or to a part of the road.
+    Relation {
+        There = "there", Like = "like", InLine = "in_line", SideBySide = "side_by_side", On = "on",
+        Blocking = "blocking", Crossing = "crossing", Waiting = "waiting", Between = "between",
+        Following = "following", Ahead = "ahead", Behind = "behind", Left = "left", Right = "right",
+        NextTo = "next_to", Near = "near", Far = "far", At = "at", Across = "across", Oncoming = "oncoming",
+        SameWay = "same_way", Facing = "facing", FacingAway = "facing_away",
+    }
+);
+named!(
+    /// A direction to move in, as the ego vehicle sees it.
+    Way { Left = "left", Right = "right", Forward = "forward", Back = "back", Nearer = "nearer", Away = "away" }
+);
+
+/// How many.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Not said.
+    #[default]
+    Unsaid,
+    /// A certain one: "the car".
+    The,
+    /// So many certain ones: "the two cars".
+    TheN(u32),
+    /// All that fit.
+    All,
+    /// Half of those that fit.
+    Half,
+    /// A few.
+    Some,
+    /// A lot.
+    Many,
+    /// So many, whichever.
+    N(u32),
+    /// At least and at most so many.
+    Range(u32, u32),
+}
+
+impl Quantity {
+    /// True if it means something that is there, or was spoken of.
+    pub fn is_definite(self) -> bool {
+        matches!(self, Self::The | Self::TheN(_) | Self::All | Self::Half)
+    }
+}
+
+/// A paint, or any but one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PaintWish {
+    /// This one.
+    Is(Paint),
+    /// Any other.
+    Not(Paint),
+}
+
+/// Things, new ones or some that are there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thing {
+    /// What they are.
+    pub noun: Noun,
+    /// How many.
+    #[serde(default, skip_serializing_if = "is_unsaid")]
+    pub quantity: Quantity,
+    /// Not those that were spoken of before.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub other: bool,
+    /// Which of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pick: Option<Pick>,
+    /// The first, the second (1, 2, ...) seen from the ego vehicle; 0 is the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nth: Option<u32>,
+    /// Smaller or larger than usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<SizeHint>,
+    /// What they do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<ObjectState>,
+    /// Their paint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paint: Option<PaintWish>,
+    /// The number of a box of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<u32>,
+    /// Where they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub places: Vec<Place>,
+    /// Those that are not meant.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub except: Vec<Thing>,
+}
+
+fn is_unsaid(q: &Quantity) -> bool {
+    *q == Quantity::Unsaid
+}
+
+impl Thing {
+    /// A thing of which only the kind is said.
+    pub fn new(noun: Noun) -> Self {
+        Self {
+            noun,
+            quantity: Quantity::Unsaid,
+            other: false,
+            pick: None,
+            nth: None,
+            size: None,
+            state: None,
+            paint: None,
+            id: None,
+            places: Vec::new(),
+            except: Vec::new(),
+        }
+    }
+
+    /// The same in a number.
+    pub fn with(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+}
+
+/// Where something is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// How it stands.
+    pub relation: Relation,
+    /// To what.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Anchor>,
+    /// The second one of `between`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub and: Option<Anchor>,
+    /// How far, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub metres: Option<f64>,
+}
+
+/// What a place is described by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Anchor {
+    /// The ego vehicle.
+    Ego,
+    /// A pedestrian crossing.
+    Crossing,
+    /// A junction.
+    Junction,
+    /// A lane or strip.
+    Lane(LaneRole),
+    /// The other side of the road than where it is.
+    OtherSide,
+    /// The other lane than where it is.
+    OtherLane,
+    /// The others of the same group.
+    EachOther,
+    /// A thing: there, named before, or new if it has a number.
+    Thing(Box<Thing>),
+}
+
+/// Where something moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Destination {
+    /// To where this holds.
+    To(Vec<Place>),
+    /// That way.
+    By {
+        /// Which.
+        way: Way,
+        /// How far, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        metres: Option<f64>,
+    },
+    /// So many lanes to the left; to the right if negative.
+    Lanes(i32),
+    /// So many times as far from the ego vehicle.
+    Times(f64),
+}
+
+/// How something is turned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Turn {
+    /// Half a turn.
+    Around,
+    /// To the left, degrees; to the right if negative.
+    Left(f64),
+    /// Along its lane.
+    Along,
+    /// So that this holds.
+    To(Vec<Place>),
+}
+
+/// What something looks like or does from now on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Look {
+    /// Size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<SizeHint>,
+    /// What it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub state: Option<ObjectState>,
+    /// Paint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paint: Option<Paint>,
+    /// The paint of another thing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paint_of: Option<Box<Thing>>,
+}
+
+/// How many there shall be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Amount {
+    /// Between these.
+    To(u32, u32),
+    /// So many times as many.
+    Times(f64),
+}

@@ -1,0 +1,505 @@
+//! Which boxes of a scene a thing of a reading means. One that fits several is asked back, never guessed.
+
+use super::notation;
+use super::nouns::Noun;
+use super::reading::{Anchor, PaintWish, Pick, Place, Quantity, Relation, Thing};
+use super::remark::Remark;
+use super::stage::{Question, Stage};
+use crate::generation::text::holds::{Target, ego, holds, in_role, role_of};
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
+use crate::scene::{BoxId, SceneBox};
+
+/// Which of too many are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spare {
+    /// The nearest to the ego vehicle are meant.
+    Nearest,
+    /// The farthest: of what is removed.
+    Farthest,
+}
+
+/// How a relation is measured; `None` if boxes of a scene cannot be told by it.
+pub fn kind_of(relation: Relation, anchor: &Anchor, state: Option<ObjectState>) -> Option<RelationKind> {
+    use RelationKind as K;
+    let strip = matches!(
+        anchor,
+        Anchor::Lane(
+            LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark
+        )
+    );
+    Some(match relation {
+        Relation::On if strip && state == Some(ObjectState::Parked) => K::ParkedOn,
+        Relation::On => K::On,
+        Relation::Blocking => K::Blocking,
+        Relation::Crossing => K::Crossing,
+        Relation::Waiting => K::WaitingAt,
+        Relation::Between => K::Between,
+        Relation::Following => K::Following,
+        Relation::Ahead => K::InFrontOf,
+        Relation::Behind => K::Behind,
+        Relation::Left => K::LeftOf,
+        Relation::Right => K::RightOf,
+        Relation::NextTo => K::NextTo,
+        Relation::Near | Relation::At => K::Near,
+        Relation::Far => K::FarFrom,
+        Relation::Across => K::Across,
+        Relation::Oncoming => K::OppositeDirection,
+        Relation::SameWay => K::SameDirection,
+        Relation::Facing => K::Facing,
+        Relation::FacingAway => K::FacingAway,
+        Relation::There | Relation::Like | Relation::InLine | Relation::SideBySide => return None,
+    })
+}
+
+impl Stage<'_> {
+    /// The boxes that several things mean together; `None` after a question or where nothing fits.
+    pub(super) fn those(&mut self, who: &[Thing], spare: Spare) -> Option<Vec<BoxId>> {
+        let mut all = Vec::new();
+        let mut missing = false;
+        for t in who {
+            match self.that(t, spare) {
+                Some(ids) => all.extend(ids),
+                None => missing = true,
+            }
+        }
+        let mut seen = std::collections::BTreeSet::new();
+        all.retain(|id| seen.insert(*id));
+        if all.is_empty() || missing && who.len() == 1 {
+            return None;
+        }
+        self.speak_of(&all, who.first().map(|t| t.noun));
+        Some(all)
+    }
+
+    pub(super) fn speak_of(&mut self, ids: &[BoxId], noun: Option<Noun>) {
+        self.last = ids.to_vec();
+        if let Some(noun) = noun.filter(|n| !matches!(n, Noun::It | Noun::One)) {
+            self.last_noun = Some(noun);
+        }
+    }
+
+    /// The boxes that a thing means.
+    pub(super) fn that(&mut self, t: &Thing, spare: Spare) -> Option<Vec<BoxId>> {
+        let words = words_of(t);
+        let mut fits = self.fitting(t);
+        if fits.is_empty() {
+            fits = self.fitting_loosely(t);
+        }
+        if fits.is_empty() {
+            if let Some(one) = self.only_one(t) {
+                let place = self.candidate(&self.boxes[&one]).place;
+                self.remark(Remark::OnlyOne { what: words, place });
+                return Some(vec![one]);
+            }
+            self.remark(Remark::Nobody { what: words });
+            return None;
+        }
+        if let Some(nth) = t.nth {
+            fits.sort_by(|a, b| self.range_m(*a).total_cmp(&self.range_m(*b)));
+            let at = if nth == 0 {
+                fits.len() - 1
+            } else {
+                nth as usize - 1
+            };
+            let Some(id) = fits.get(at) else {
+                let (found, wanted) = (fits.len(), nth as usize);
+                self.remark(Remark::TooFew {
+                    what: words,
+                    found,
+                    wanted,
+                });
+                return None;
+            };
+            return Some(vec![*id]);
+        }
+        if let Some(pick) = t.pick {
+            let n = match t.quantity {
+                Quantity::N(n) | Quantity::TheN(n) => n as usize,
+                Quantity::All => fits.len(),
+                _ => 1,
+            };
+            fits.sort_by(|a, b| rank(&self.boxes[a], pick).total_cmp(&rank(&self.boxes[b], pick)));
+            fits.truncate(n.max(1));
+            return Some(fits);
+        }
+        match t.quantity {
+            _ if t.id.is_some() => Some(fits),
+            Quantity::All | Quantity::Many => Some(fits),
+            Quantity::Unsaid if fits.len() == 1 || t.noun == Noun::It => Some(fits),
+            Quantity::Unsaid => Some(fits),
+            Quantity::Half => {
+                let n = fits.len() / 2;
+                Some(self.so_many(fits, n, spare, &words))
+            }
+            Quantity::Some => {
+                let n = fits.len().min(3);
+                Some(self.so_many(fits, n, spare, &words))
+            }
+            Quantity::N(n) | Quantity::Range(n, _) => self.counted(fits, n as usize, spare, &words),
+            Quantity::TheN(n) if fits.len() > n as usize => {
+                let fits = self.likely(fits, t);
+                if fits.len() > n as usize {
+                    self.ask(t, &fits);
+                    return None;
+                }
+                Some(fits)
+            }
+            Quantity::TheN(n) => self.counted(fits, n as usize, spare, &words),
+            Quantity::The if t.noun == Noun::It => Some(fits),
+            Quantity::The => {
+                let fits = self.likely(fits, t);
+                if fits.len() > 1 {
+                    self.ask(t, &fits);
+                    return None;
+                }
+                Some(fits)
+            }
+        }
+    }
+
+    fn ask(&mut self, t: &Thing, fits: &[BoxId]) {
+        let candidates = fits.iter().map(|id| self.candidate(&self.boxes[id])).collect();
+        self.out.questions.push(Question {
+            text: format!("{} {}: which?", fits.len(), plural(&words_of(t))),
+            act: self.act,
+            thing: notation::thing(t),
+            candidates,
+        });
+    }
+
+    fn counted(&mut self, fits: Vec<BoxId>, wanted: usize, spare: Spare, words: &str) -> Option<Vec<BoxId>> {
+        if fits.len() < wanted {
+            let found = fits.len();
+            self.remark(Remark::TooFew {
+                what: plural(words),
+                found,
+                wanted,
+            });
+        }
+        Some(self.so_many(fits, wanted, spare, words))
+    }
+
+    /// So many of those that fit, by distance.
+    fn so_many(&mut self, mut fits: Vec<BoxId>, n: usize, spare: Spare, words: &str) -> Vec<BoxId> {
+        if fits.len() > n {
+            fits.sort_by(|a, b| self.range_m(*a).total_cmp(&self.range_m(*b)));
+            let which = match spare {
+                Spare::Nearest => "nearest",
+                Spare::Farthest => {
+                    fits.reverse();
+                    "farthest"
+                }
+            };
+            fits.truncate(n);
+            self.remark(Remark::Chosen {
+                what: plural(words),
+                which,
+            });
+        }
+        fits
+    }
+
+    pub(super) fn range_m(&self, id: BoxId) -> f64 {
+        self.boxes
+            .get(&id)
+            .map_or(0.0, |b| b.center_m.truncate().length())
+    }
+
+    /// Of several that fit, those that a listener would take: spoken of last, in our lane, called by nothing else.
+    fn likely(&self, fits: Vec<BoxId>, t: &Thing) -> Vec<BoxId> {
+        let one = |test: &dyn Fn(&BoxId) -> bool| -> Option<Vec<BoxId>> {
+            let found: Vec<BoxId> = fits.iter().copied().filter(|id| test(id)).collect();
+            (found.len() == 1).then_some(found)
+        };
+        if !self.last.is_empty()
+            && !t.other
+            && let Some(found) = one(&|id| self.last.contains(id))
+        {
+            return found;
+        }
+        let before_us = t.places.iter().any(|p| {
+            p.to == Some(Anchor::Ego)
+                && p.metres.is_none()
+                && matches!(p.relation, Relation::Ahead | Relation::Behind)
+        });
+        if before_us
+            && let Some(found) =
+                one(&|id| in_role(&self.map, LaneRole::Ego, self.boxes[id].center_m.truncate()))
+        {
+            return found;
+        }
+        if t.noun.is_plain() && t.paint.is_none() {
+            let plain: Vec<BoxId> = fits
+                .iter()
+                .copied()
+                .filter(|id| self.boxes[id].label.name.is_empty())
+                .collect();
+            if !plain.is_empty() && plain.len() < fits.len() {
+                return plain;
+            }
+        }
+        fits
+    }
+
+    /// The only box of the kind, where more was said of it than holds: never if a paint or a size speaks against it.
+    fn only_one(&self, t: &Thing) -> Option<BoxId> {
+        if t.quantity != Quantity::The
+            || t.other
+            || t.noun == Noun::Thing
+            || t.places.is_empty() && t.state.is_none()
+        {
+            return None;
+        }
+        let bare = Thing {
+            places: Vec::new(),
+            state: None,
+            ..t.clone()
+        };
+        let fits = self.fitting(&bare);
+        match fits.as_slice() {
+            [one] => Some(*one),
+            _ => None,
+        }
+    }
+
+    fn fitting_loosely(&self, t: &Thing) -> Vec<BoxId> {
+        let waits = t.state == Some(ObjectState::Waiting) || t.state == Some(ObjectState::Moving);
+        let walks = t.noun.classes() == Noun::Person.classes();
+        if !(waits && walks && !t.places.is_empty()) && t.size.is_none() {
+            return Vec::new();
+        }
+        // (who stands by the bus may take a step; "the big truck" may be no larger than others)
+        self.fitting(&Thing {
+            state: if walks { None } else { t.state },
+            size: None,
+            ..t.clone()
+        })
+    }
+
+    /// All boxes that a thing fits, whatever its number.
+    pub(super) fn fitting(&self, t: &Thing) -> Vec<BoxId> {
+        self.fitting_deep(t, 0)
+    }
+
+    fn fitting_deep(&self, t: &Thing, depth: u8) -> Vec<BoxId> {
+        if let Some(id) = t.id {
+            return self
+                .boxes
+                .contains_key(&BoxId(id))
+                .then_some(BoxId(id))
+                .into_iter()
+                .collect();
+        }
+        let mut fit = self.of_noun(t);
+        if t.other {
+            fit.retain(|b| !self.last.contains(&b.id));
+        }
+        match t.paint {
+            Some(PaintWish::Is(p)) => fit.retain(|b| b.label.paint == Some(p)),
+            Some(PaintWish::Not(p)) => fit.retain(|b| b.label.paint != Some(p)),
+            None => {}
+        }
+        if let Some(state) = t.state {
+            fit.retain(|b| self.does(b, state));
+        }
+        if let Some(size) = t.size {
+            fit = by_size(fit, size);
+        }
+        for p in &t.places {
+            fit.retain(|b| self.stands(b, p, t.state, depth));
+        }
+        if depth == 0 {
+            let not: Vec<BoxId> = t.except.iter().flat_map(|e| self.fitting_deep(e, 1)).collect();
+            fit.retain(|b| !not.contains(&b.id));
+        }
+        fit.into_iter().map(|b| b.id).collect()
+    }
+
+    /// Boxes of the kind. A special noun means those that are so called; without any, those that are called nothing.
+    fn of_noun(&self, t: &Thing) -> Vec<&SceneBox> {
+        let noun = match t.noun {
+            Noun::It => {
+                return self.last.iter().filter_map(|id| self.boxes.get(id)).collect();
+            }
+            Noun::One => self.last_noun.unwrap_or(Noun::Thing),
+            Noun::Thing if t.other && !self.last.is_empty() => Noun::Thing,
+            noun => noun,
+        };
+        let all: Vec<&SceneBox> = self
+            .boxes
+            .values()
+            .filter(|b| noun.classes().contains(&b.class))
+            .collect();
+        if noun.is_plain() {
+            return all;
+        }
+        let called = |name: &str| -> Vec<&SceneBox> {
+            all.iter()
+                .copied()
+                .filter(|b| b.label.name.as_str() == name)
+                .collect()
+        };
+        let own = called(noun.label().as_str());
+        if !own.is_empty() { own } else { called("") }
+    }
+
+    /// True if a box stands as a place says.
+    fn stands(&self, b: &SceneBox, p: &Place, state: Option<ObjectState>, depth: u8) -> bool {
+        let Some(to) = &p.to else {
+            return true;
+        };
+        let Some(kind) = kind_of(p.relation, to, state) else {
+            return p.relation != Relation::Like || self.alike(b, to, depth);
+        };
+        let at = |target: &Target, and: Option<&SceneBox>| {
+            holds(&self.map, kind, b, target, and, p.metres) || loosely(&self.map, kind, b, target, p.metres)
+        };
+        match to {
+            Anchor::Ego => match (side_of_ego(kind, b), p.metres) {
+                (Some(held), None) => held,
+                _ => at(&Target::Thing(ego()), self.seconds(p, depth).first()),
+            },
+            Anchor::Lane(role) => at(&Target::Lane(*role), None),
+            Anchor::Crossing => at(&Target::Crossing, None),
+            Anchor::Junction => at(&Target::Junction, None),
+            Anchor::OtherSide | Anchor::OtherLane | Anchor::EachOther => true,
+            Anchor::Thing(_) if depth >= 3 => false,
+            Anchor::Thing(t) => {
+                let others = self.fitting_deep(t, depth + 1);
+                let seconds = self.seconds(p, depth);
+                let mut between = seconds.clone();
+                if kind == RelationKind::Between && between.is_empty() {
+                    between = others.iter().map(|id| self.boxes[id]).collect();
+                }
+                others.iter().filter(|id| **id != b.id).any(|id| {
+                    let target = Target::Thing(self.boxes[id]);
+                    match kind {
+                        RelationKind::Between => between
+                            .iter()
+                            .any(|s| s.id != *id && s.id != b.id && at(&target, Some(s))),
+                        _ => at(&target, None),
+                    }
+                })
+            }
+        }
+    }
+
+    fn seconds(&self, p: &Place, depth: u8) -> Vec<SceneBox> {
+        match &p.and {
+            Some(Anchor::Ego) => vec![ego()],
+            Some(Anchor::Thing(t)) if depth < 3 => self
+                .fitting_deep(t, depth + 1)
+                .iter()
+                .map(|id| self.boxes[id])
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn alike(&self, b: &SceneBox, to: &Anchor, depth: u8) -> bool {
+        let Anchor::Thing(t) = to else { return true };
+        let own = role_of(&self.map, b);
+        self.fitting_deep(t, depth + 1)
+            .iter()
+            .any(|id| *id != b.id && role_of(&self.map, &self.boxes[id]) == own)
+    }
+}
+
+/// In words a car 30 m ahead in the left lane is on the left.
+fn side_of_ego(kind: RelationKind, b: &SceneBox) -> Option<bool> {
+    let (x, y) = (b.center_m.x, b.center_m.y);
+    match kind {
+        RelationKind::LeftOf => Some(y > 1.0),
+        RelationKind::RightOf => Some(y < -1.0),
+        RelationKind::InFrontOf => Some(x > 3.0 && y.abs() < x.max(3.0)),
+        RelationKind::Behind => Some(x < -0.5 && y.abs() < (-x).max(3.0)),
+        _ => None,
+    }
+}
+
+/// What people call so though it is only nearly so.
+fn loosely(
+    map: &crate::generation::text::lanes::LaneMap<'_>,
+    kind: RelationKind,
+    b: &SceneBox,
+    to: &Target,
+    metres: Option<f64>,
+) -> bool {
+    use RelationKind as K;
+    let near = || holds(map, K::Near, b, to, None, metres);
+    let stands = b.velocity_mps.length() < 0.5;
+    match (kind, to) {
+        (K::WaitingAt, Target::Crossing | Target::Junction) => stands && near(),
+        (K::On | K::Crossing, Target::Crossing) => holds(map, K::Crossing, b, to, None, metres),
+        (K::Crossing, Target::Lane(_)) => holds(map, K::On, b, &Target::Crossing, None, metres),
+        (K::Near | K::On, Target::Junction) => {
+            let close = |c: glam::DVec2| c.distance(b.center_m.truncate()) < 24.0;
+            b.center_m.x > 2.0 && map.junction.is_some_and(close)
+        }
+        (K::Blocking, Target::Lane(_)) => holds(map, K::On, b, to, None, metres),
+        (K::NextTo, Target::Thing(_)) => near(),
+        (K::Following, Target::Thing(o)) if o.id.0 == u32::MAX => {
+            b.center_m.x < 0.0 && b.center_m.y.abs() < 2.5
+        }
+        (K::On, Target::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)) => false,
+        _ => false,
+    }
+}
+
+fn by_size(fit: Vec<&SceneBox>, size: SizeHint) -> Vec<&SceneBox> {
+    let volume = |b: &SceneBox| b.size_m.x * b.size_m.y * b.size_m.z;
+    let usual = |b: &SceneBox| b.class.typical_size_m().map_or(1.0, |s| s[0] * s[1] * s[2]);
+    fit.into_iter()
+        .filter(|b| match size {
+            SizeHint::Large => volume(b) > 1.12 * usual(b),
+            SizeHint::Small => volume(b) < 0.9 * usual(b),
+        })
+        .collect()
+}
+
+/// What is picked has the lowest rank.
+fn rank(b: &SceneBox, pick: Pick) -> f64 {
+    let p = b.center_m.truncate();
+    let volume = b.size_m.x * b.size_m.y * b.size_m.z;
+    match pick {
+        Pick::Nearest => p.length(),
+        Pick::Farthest => -p.length(),
+        Pick::Leftmost => -p.y,
+        Pick::Rightmost => p.y,
+        Pick::Frontmost => -p.x,
+        Pick::Rearmost => p.x,
+        Pick::Largest => -volume,
+        Pick::Smallest => volume,
+    }
+}
+
+/// A thing in words, without number and places: `parked red car`.
+pub fn words_of(t: &Thing) -> String {
+    let mut out: Vec<String> = Vec::new();
+    out.extend(t.state.map(|s| match s {
+        ObjectState::Moving => "moving".into(),
+        ObjectState::Parked => "parked".into(),
+        ObjectState::Waiting => "standing".into(),
+    }));
+    out.extend(t.paint.map(|p| match p {
+        PaintWish::Is(p) => p.name().into(),
+        PaintWish::Not(p) => format!("not {}", p.name()),
+    }));
+    out.push(match t.id {
+        Some(id) => format!("box {id}"),
+        None => t.noun.words(),
+    });
+    out.join(" ")
+}
+
+/// The plural of a noun phrase in words.
+pub fn plural(words: &str) -> String {
+    match words.rsplit_once(' ').map_or(words, |w| w.1) {
+        "person" => format!("{}people", words.trim_end_matches("person")),
+        "man" | "woman" | "policeman" => format!("{}en", words.trim_end_matches("an")),
+        "child" => format!("{words}ren"),
+        "bus" | "minibus" => format!("{words}es"),
+        "it" => "of them".into(),
+        _ => format!("{words}s"),
+    }
+}

@@ -1,0 +1,251 @@
+//! The scene while a reading is carried out: boxes as they are by now, what was spoken of, and what came of it.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::nouns::Noun;
+use super::remark::Remark;
+use crate::generation::text::edit::TextEdit;
+use crate::generation::text::holds::{in_role, overlap_m, role_of};
+use crate::generation::text::lanes::LaneMap;
+use crate::scene::graph::{LaneRole, ObjectState};
+use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+
+/// An open scene, as far as words need it.
+#[derive(Clone, Copy, Debug)]
+pub struct OpenScene<'a> {
+    /// Boxes by id, ego frame.
+    pub boxes: &'a BTreeMap<BoxId, SceneBox>,
+    /// Map.
+    pub layout: &'a BevLayout,
+    /// Its conditions in words: `night, rain`.
+    pub prompt: &'a str,
+}
+
+/// A box that a question names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Its id.
+    pub id: BoxId,
+    /// Its class.
+    pub class: &'static str,
+    /// Where it stands, in words.
+    pub place: String,
+}
+
+/// Things that fit where one was meant.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Question {
+    /// `3 parked cars: which?`
+    pub text: String,
+    /// Which act of the reading asks, and which thing in it (in the order of the line): an answer puts an id there.
+    pub act: usize,
+    /// The thing in notation.
+    pub thing: String,
+    /// The boxes that fit.
+    pub candidates: Vec<Candidate>,
+}
+
+/// What an act did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Done {
+    /// Boxes that it put in.
+    pub added: Vec<BoxId>,
+    /// Boxes that it took away, as they were.
+    pub removed: Vec<SceneBox>,
+    /// Boxes that it changed.
+    pub changed: Vec<BoxId>,
+    /// Something of the scene other than boxes changed: conditions, a crossing.
+    pub scene: bool,
+}
+
+impl Done {
+    /// True if nothing changed.
+    pub fn is_nothing(&self) -> bool {
+        self.added.is_empty() && self.removed.is_empty() && self.changed.is_empty() && !self.scene
+    }
+}
+
+/// All that came of a reading.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Outcome {
+    /// Changes, in order.
+    pub edits: Vec<TextEdit>,
+    /// What must be answered first; what the other acts did stands.
+    pub questions: Vec<Question>,
+    /// What could not be done as it was said, by act.
+    pub remarks: Vec<(usize, Remark)>,
+    /// What each act did.
+    pub done: Vec<Done>,
+}
+
+/// A scene that acts work on, one after the other.
+pub struct Stage<'a> {
+    pub(super) map: LaneMap<'a>,
+    pub(super) layout: &'a BevLayout,
+    pub(super) boxes: BTreeMap<BoxId, SceneBox>,
+    pub(super) prompt: String,
+    pub(super) seed: u64,
+    pub(super) act: usize,
+    /// What was spoken of last, and the kind of it.
+    pub(super) last: Vec<BoxId>,
+    pub(super) last_noun: Option<Noun>,
+    /// Where something was taken away last.
+    pub(super) gone: Vec<SceneBox>,
+    pub(super) out: Outcome,
+}
+
+impl<'a> Stage<'a> {
+    pub(super) fn new(scene: &OpenScene<'a>, seed: u64) -> Self {
+        Self {
+            map: LaneMap::new(scene.layout),
+            layout: scene.layout,
+            boxes: scene.boxes.clone(),
+            prompt: scene.prompt.to_owned(),
+            seed,
+            act: 0,
+            last: Vec::new(),
+            last_noun: None,
+            gone: Vec::new(),
+            out: Outcome::default(),
+        }
+    }
+
+    pub(super) fn remark(&mut self, remark: Remark) {
+        let entry = (self.act, remark);
+        if !self.out.remarks.contains(&entry) {
+            self.out.remarks.push(entry);
+        }
+    }
+
+    fn done(&mut self) -> &mut Done {
+        while self.out.done.len() <= self.act {
+            self.out.done.push(Done::default());
+        }
+        &mut self.out.done[self.act]
+    }
+
+    /// Carries out one change.
+    pub(super) fn push(&mut self, edit: TextEdit) {
+        match &edit {
+            TextEdit::Remove { id } => {
+                let Some(b) = self.boxes.remove(id) else { return };
+                self.gone.push(b);
+                self.done().removed.push(b);
+            }
+            TextEdit::Add { object } => {
+                self.boxes.insert(object.id, *object);
+                self.done().added.push(object.id);
+            }
+            TextEdit::Move {
+                id,
+                center_m,
+                yaw_rad,
+            } => {
+                let Some(b) = self.boxes.get_mut(id) else { return };
+                let speed = b.velocity_mps.length();
+                b.center_m = *center_m;
+                b.yaw_rad = *yaw_rad;
+                b.velocity_mps = DVec2::from_angle(*yaw_rad) * speed;
+                self.done().changed.push(*id);
+            }
+            TextEdit::Replace { id, object } => {
+                self.boxes.insert(*id, *object);
+                self.done().changed.push(*id);
+            }
+            TextEdit::Label { id, label } => {
+                let Some(b) = self.boxes.get_mut(id) else { return };
+                b.label = *label;
+                self.done().changed.push(*id);
+            }
+            TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => self.done().scene = true,
+            TextEdit::Style { prompt } => {
+                self.prompt.clone_from(prompt);
+                self.done().scene = true;
+            }
+        }
+        self.out.edits.push(edit);
+    }
+
+    pub(super) fn next_id(&self) -> BoxId {
+        let last = self.boxes.keys().next_back();
+        let gone = self.gone.iter().map(|b| b.id).max();
+        BoxId(last.copied().max(gone).map_or(1, |id| id.0.saturating_add(1)))
+    }
+
+    /// The box, or the same a few metres along its course, where it hits nothing.
+    pub(super) fn clear_of_others(&self, b: SceneBox) -> Option<SceneBox> {
+        let ego = crate::generation::text::holds::ego();
+        let hits = |n: &SceneBox| {
+            let other = |o: &SceneBox| o.id != b.id && overlap_m(n, o, 0.2) > 0.0;
+            self.boxes.values().any(other) || overlap_m(n, &ego, 0.2) > 0.0
+        };
+        (0..40)
+            .map(|k| f64::from((k + 1) / 2) * if k % 2 == 0 { 0.5 } else { -0.5 })
+            .map(|step| SceneBox {
+                center_m: b.center_m + (b.heading() * step).extend(0.0),
+                ..b
+            })
+            .find(|tried| !hits(tried) && tried.center_m.truncate().abs().max_element() < 38.0)
+    }
+
+    /// Where a box stands, in words, for a question: `red taxi, 12 m ahead, 3 m left, parked`.
+    pub(super) fn candidate(&self, b: &SceneBox) -> Candidate {
+        let (x, y) = (b.center_m.x, b.center_m.y);
+        let along = if x >= 0.0 { "ahead" } else { "behind" };
+        let across = match y {
+            y if y > 0.5 => format!(", {y:.0} m left"),
+            y if y < -0.5 => format!(", {:.0} m right", -y),
+            _ => String::new(),
+        };
+        let doing = match b.velocity_mps.length() {
+            v if v > 0.5 => ", moving",
+            _ if b.class.is_vehicle() && self.does(b, ObjectState::Parked) => ", parked",
+            _ => ", standing",
+        };
+        let called = match b.label.is_empty() {
+            true => String::new(),
+            false => format!("{}, ", b.called()),
+        };
+        Candidate {
+            id: b.id,
+            class: b.class.name(),
+            place: format!("{called}{:.0} m {along}{across}{doing}", x.abs()),
+        }
+    }
+
+    /// True if a box may be said to move, to wait or to be parked.
+    pub(super) fn does(&self, b: &SceneBox, state: ObjectState) -> bool {
+        let stands = b.velocity_mps.length() < 0.5;
+        let p = b.center_m.truncate();
+        match state {
+            ObjectState::Moving => !stands,
+            ObjectState::Waiting => stands,
+            // Standing, and not in the middle of a lane.
+            ObjectState::Parked => {
+                let off = self.map.nearest(p).map_or(f64::INFINITY, |l| {
+                    l.dir.perp_dot(p - l.p).abs().max(l.p.distance(p) - 1.0)
+                });
+                let edge = || off > 0.3 && in_role(&self.map, LaneRole::Roadside, p);
+                stands && (off > 0.7 || self.map.has(BevLayer::CarparkArea.bit(), p) || edge())
+            }
+        }
+    }
+
+    /// The lane or strip that a box is said to be in.
+    pub(super) fn role(&self, id: BoxId) -> Option<LaneRole> {
+        role_of(&self.map, self.boxes.get(&id)?)
+    }
+
+    /// How fast something of a class goes if it goes, m/s.
+    pub(super) fn pace(class: Class) -> f64 {
+        match class {
+            Class::Pedestrian => 1.4,
+            Class::Bicycle => 4.5,
+            Class::TrafficCone | Class::Barrier => 0.0,
+            _ => 8.0,
+        }
+    }
+}
