@@ -12,7 +12,7 @@ pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
     let mut d = Description::default();
     let mut plan = Plan::default();
     let mut remarks = Vec::new();
-    let mut nobody = |_: &Thing| Ok(Vec::new());
+    let mut nobody = super::plan::Nowhere;
     let mut alone = false;
     for (i, act) in reading.acts.iter().enumerate() {
         match &act.what {

@@ -14,8 +14,25 @@ pub const MOST_OF_ONE: u32 = 400;
 /// Most kinds of things of one reading.
 const MOST_SPECS: usize = 200;
 
-/// Finds the boxes of a scene that an anchor means; `Err` after a question.
-pub(super) type Find<'f> = dyn FnMut(&Thing) -> Result<Vec<SceneBox>, ()> + 'f;
+/// The scene that new things come into.
+pub(super) trait Site {
+    /// The boxes that an anchor means; `Err` after a question.
+    fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()>;
+    /// The lane or strip that a box of it is in.
+    fn role(&self, b: &SceneBox) -> Option<LaneRole>;
+}
+
+/// No scene: all anchors are named in the text.
+pub(super) struct Nowhere;
+
+impl Site for Nowhere {
+    fn find(&mut self, _: &Thing) -> Result<Vec<SceneBox>, ()> {
+        Ok(Vec::new())
+    }
+    fn role(&self, _: &SceneBox) -> Option<LaneRole> {
+        None
+    }
+}
 
 /// What is to be placed, and what stands already.
 #[derive(Default)]
@@ -25,18 +42,20 @@ pub(super) struct Plan {
     /// The boxes of those that stand already.
     pub(super) held: Vec<Option<Vec<SceneBox>>>,
     /// What was named in each.
-    named: Vec<Thing>,
+    pub(super) named: Vec<Thing>,
     /// Something asked back.
     pub(super) asked: bool,
+    /// What is behind a driver follows it, if it can.
+    pub(super) follows: bool,
 }
 
 impl Plan {
     /// Puts new things in, with what they are placed by.
-    pub(super) fn add(&mut self, things: &[Thing], find: &mut Find<'_>) {
+    pub(super) fn add(&mut self, things: &[Thing], site: &mut dyn Site) {
         let first = self.specs.len();
         let mut own = Vec::new();
         for t in things {
-            own.push(self.thing(t, true, find, 0));
+            own.push(self.thing(t, true, site, 0));
         }
         for (k, t) in things.iter().enumerate() {
             let Some(i) = own[k] else { continue };
@@ -50,7 +69,7 @@ impl Plan {
         debug_assert!(self.specs.len() >= first);
     }
 
-    fn thing(&mut self, t: &Thing, new: bool, find: &mut Find<'_>, depth: u8) -> Option<usize> {
+    fn thing(&mut self, t: &Thing, new: bool, site: &mut dyn Site, depth: u8) -> Option<usize> {
         if self.specs.len() >= MOST_SPECS || depth > 4 {
             return None;
         }
@@ -60,13 +79,13 @@ impl Plan {
         self.named.push(t.clone());
         if new {
             for p in &t.places {
-                self.place(i, p, t.state, find, depth);
+                self.place(i, p, t.state, site, depth);
             }
         }
         Some(i)
     }
 
-    fn place(&mut self, i: usize, p: &Place, state: Option<ObjectState>, find: &mut Find<'_>, depth: u8) {
+    fn place(&mut self, i: usize, p: &Place, state: Option<ObjectState>, site: &mut dyn Site, depth: u8) {
         let Some(to) = &p.to else { return };
         if matches!(to, Said::EachOther) {
             return;
@@ -78,8 +97,8 @@ impl Plan {
             (Relation::At, Said::Ego) => Some(RelationKind::InFrontOf),
             // (what shall be on the pavement as she is)
             (Relation::Like, _) => {
-                if let Some(anchor) = self.anchor(to, find, depth) {
-                    self.like(i, anchor);
+                if let Some(anchor) = self.anchor(i, to, site, depth) {
+                    self.like(i, anchor, site);
                 }
                 return;
             }
@@ -89,13 +108,22 @@ impl Plan {
                 Some(RelationKind::OppositeDirection)
             }
             (Relation::Waiting, Said::Lane(_)) => Some(RelationKind::On),
+            (Relation::Crossing, Said::Junction) => {
+                self.state(i, RelationKind::Crossing, Anchor::Lane(LaneRole::Road), None, None);
+                Some(RelationKind::Near)
+            }
+            (Relation::On, Said::Lane(role)) if is_kerb(*role) && class.is_vehicle() && state.is_none() => {
+                // (what is at the kerb stands there)
+                self.specs[i].state = Some(ObjectState::Parked);
+                Some(RelationKind::ParkedOn)
+            }
             (relation, to) => kind_of(relation, to, state),
         };
         let Some(relation) = relation else { return };
-        let Some(anchor) = self.anchor(to, find, depth) else {
+        let Some(anchor) = self.anchor(i, to, site, depth) else {
             return;
         };
-        let mut and = p.and.as_ref().and_then(|a| self.anchor(a, find, depth));
+        let mut and = p.and.as_ref().and_then(|a| self.anchor(i, a, site, depth));
         if relation == RelationKind::Between && and.is_none() {
             and = Some(match anchor {
                 Anchor::Object(j) if self.count_of(j) > 1 => anchor,
@@ -111,7 +139,7 @@ impl Plan {
             .iter()
             .any(|p| matches!(p.to, Some(Said::Lane(_))));
         let relation = match (relation, anchor) {
-            (RelationKind::Behind, Anchor::Object(_)) if drives && !lane && metres.is_none() => {
+            (RelationKind::Behind, Anchor::Object(_)) if self.follows && drives && !lane && metres.is_none() => {
                 RelationKind::Following
             }
             (relation, _) => relation,
@@ -145,24 +173,26 @@ impl Plan {
             .map_or(self.specs[i].count.n as usize, Vec::len)
     }
 
-    /// In the lane or strip of an anchor, or beside it where that is not known yet.
-    fn like(&mut self, i: usize, anchor: Anchor) {
+    /// In the lane or strip of an anchor, or beside it where that is not known.
+    fn like(&mut self, i: usize, anchor: Anchor, site: &dyn Site) {
         let Anchor::Object(j) = anchor else { return };
-        let lanes: Vec<Stated> = self.specs[j]
+        let mut lanes: Vec<(RelationKind, Anchor)> = self.specs[j]
             .relations
             .iter()
             .filter(|r| matches!(r.anchor, Anchor::Lane(_) | Anchor::Crossing) && r.distance_m.is_none())
-            .copied()
+            .map(|r| (r.relation, r.anchor))
             .collect();
+        let held = self.held[j].as_ref().and_then(|b| b.first());
+        lanes.extend(held.and_then(|b| site.role(b)).map(|role| (RelationKind::On, Anchor::Lane(role))));
         if lanes.is_empty() {
             self.state(i, RelationKind::NextTo, anchor, None, None);
         }
-        for r in lanes {
-            self.state(i, r.relation, r.anchor, None, None);
+        for (relation, lane) in lanes {
+            self.state(i, relation, lane, None, None);
         }
     }
 
-    fn anchor(&mut self, a: &Said, find: &mut Find<'_>, depth: u8) -> Option<Anchor> {
+    fn anchor(&mut self, i: usize, a: &Said, site: &mut dyn Site, depth: u8) -> Option<Anchor> {
         Some(match a {
             Said::Ego => Anchor::Ego,
             Said::Crossing => Anchor::Crossing,
@@ -179,19 +209,19 @@ impl Plan {
                 ) && t.pick.is_none()
                     && t.nth.is_none();
                 if is_new {
-                    return self.thing(t, true, find, depth + 1).map(Anchor::Object);
+                    return self.thing(t, true, site, depth + 1).map(Anchor::Object);
                 }
-                if let Some(j) = self.named_before(t) {
+                if let Some(j) = self.named_before(i, t) {
                     return Some(Anchor::Object(j));
                 }
-                let boxes = match find(t) {
+                let boxes = match site.find(t) {
                     Ok(boxes) => boxes,
                     Err(()) => {
                         self.asked = true;
                         return None;
                     }
                 };
-                let j = self.thing(t, boxes.is_empty(), find, depth + 1)?;
+                let j = self.thing(t, boxes.is_empty(), site, depth + 1)?;
                 if !boxes.is_empty() {
                     self.specs[j].count = Count::exactly(boxes.len() as u32);
                     self.held[j] = Some(boxes);
@@ -202,7 +232,7 @@ impl Plan {
     }
 
     /// What was named before by the same noun, the last one: `the bus`, `it`.
-    fn named_before(&self, t: &Thing) -> Option<usize> {
+    fn named_before(&self, of: usize, t: &Thing) -> Option<usize> {
         let fits = |i: &usize| {
             let n = &self.named[*i];
             let noun = match t.noun {
@@ -214,8 +244,7 @@ impl Plan {
             let places = t.places.is_empty() || n.places.iter().any(|p| t.places.contains(p));
             noun && paint && places && self.held[*i].is_none() && !t.other
         };
-        // (not itself: the last one is being placed)
-        (0..self.specs.len().saturating_sub(1)).rev().find(fits)
+        (0..self.specs.len()).rev().filter(|i| *i != of).find(fits)
     }
 
     /// What is said of a group: in a row, side by side, facing each other.
@@ -252,7 +281,9 @@ impl Plan {
         for _ in 1..n {
             let mut next = self.specs[i].clone();
             next.relations.retain(|r| {
-                r.distance_m.is_none() && !matches!(r.anchor, Anchor::Object(_)) && r.relation != relation
+                let beside = matches!(r.relation, RelationKind::NextTo | RelationKind::Near);
+                let far = r.distance_m.is_none() || relation == RelationKind::NextTo;
+                far && (beside || !matches!(r.anchor, Anchor::Object(_))) && r.relation != relation
             });
             self.specs.push(next);
             self.held.push(None);
@@ -265,6 +296,10 @@ impl Plan {
             before = k;
         }
     }
+}
+
+fn is_kerb(role: LaneRole) -> bool {
+    matches!(role, LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside)
 }
 
 /// No words of the text.

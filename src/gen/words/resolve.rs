@@ -308,11 +308,34 @@ impl Stage<'_> {
         for p in &t.places {
             fit.retain(|b| self.stands(b, p, t.state, depth));
         }
-        if depth == 0 {
-            let not: Vec<BoxId> = t.except.iter().flat_map(|e| self.fitting_deep(e, 1)).collect();
-            fit.retain(|b| !not.contains(&b.id));
+        let mut ids: Vec<BoxId> = fit.into_iter().map(|b| b.id).collect();
+        for e in t.except.iter().filter(|_| depth == 0) {
+            let not = self.excepted(e, &ids);
+            ids.retain(|id| !not.contains(id));
         }
-        fit.into_iter().map(|b| b.id).collect()
+        ids
+    }
+
+    /// Those of `among` that are not meant: so many, a picked one, or all that fit.
+    fn excepted(&self, e: &Thing, among: &[BoxId]) -> Vec<BoxId> {
+        let one = matches!(e.noun, Noun::One | Noun::Thing);
+        let mut fit = if one && e.places.is_empty() && e.paint.is_none() && e.state.is_none() {
+            among.to_vec()
+        } else {
+            self.fitting_deep(&Thing { noun: if one { Noun::Thing } else { e.noun }, ..e.clone() }, 1)
+        };
+        fit.retain(|id| among.contains(id));
+        let pick = e.pick.unwrap_or(Pick::Nearest);
+        fit.sort_by(|a, b| rank(&self.boxes[a], pick).total_cmp(&rank(&self.boxes[b], pick)));
+        let n = match (e.quantity, e.pick, e.nth) {
+            (Quantity::N(n), ..) => n as usize,
+            (_, Some(_), _) => 1,
+            (_, _, Some(0)) => return fit.last().copied().into_iter().collect(),
+            (_, _, Some(n)) => return fit.get(n as usize - 1).copied().into_iter().collect(),
+            _ => fit.len(),
+        };
+        fit.truncate(n);
+        fit
     }
 
     /// Boxes of the kind. A special noun means those that are so called; without any, those that are called nothing.

@@ -86,6 +86,8 @@ pub struct Stage<'a> {
     pub(super) map: LaneMap<'a>,
     pub(super) layout: &'a BevLayout,
     pub(super) boxes: BTreeMap<BoxId, SceneBox>,
+    /// Boxes as they were before the first act.
+    pub(super) first: &'a BTreeMap<BoxId, SceneBox>,
     pub(super) prompt: String,
     pub(super) seed: u64,
     pub(super) act: usize,
@@ -103,6 +105,7 @@ impl<'a> Stage<'a> {
             map: LaneMap::new(scene.layout),
             layout: scene.layout,
             boxes: scene.boxes.clone(),
+            first: scene.boxes,
             prompt: scene.prompt.to_owned(),
             seed,
             act: 0,
@@ -235,7 +238,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The lane or strip that a box is said to be in.
-    pub(super) fn role(&self, id: BoxId) -> Option<LaneRole> {
+    pub(super) fn role_of(&self, id: BoxId) -> Option<LaneRole> {
         role_of(&self.map, self.boxes.get(&id)?)
     }
 

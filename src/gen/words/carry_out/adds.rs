@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use super::super::plan::Plan;
+use super::super::plan::{Plan, Site};
 use super::super::reading::{Quantity, Relation, Thing};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
 use crate::generation::text::description::{Anchor, Count, Description, ObjectSpec, Stated};
 use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::{Target, holds};
+use crate::generation::text::holds::{Target, holds, role_of};
 use crate::generation::text::place::{Placement, place_from};
 use crate::generation::text::to_graph::to_graph;
 use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind};
@@ -20,6 +20,22 @@ pub(super) struct Arranged {
     pub(super) new: Vec<SceneBox>,
     pub(super) left_out: Vec<String>,
     pub(super) unmet: Vec<RelationKind>,
+}
+
+impl Site for Stage<'_> {
+    fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()> {
+        let asked = self.out.questions.len();
+        match self.that(t, Spare::Nearest) {
+            Some(ids) => Ok(ids.iter().map(|id| self.boxes[id]).collect()),
+            None if self.out.questions.len() > asked => Err(()),
+            // (what is not there is added, and that is said)
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn role(&self, b: &SceneBox) -> Option<LaneRole> {
+        role_of(&self.map, b)
+    }
 }
 
 impl Stage<'_> {
@@ -60,23 +76,11 @@ impl Stage<'_> {
     }
 
     fn plan(&mut self, things: &[Thing]) -> Plan {
-        let mut plan = Plan::default();
-        let mut find = |t: &Thing| -> Result<Vec<SceneBox>, ()> {
-            let asked = self.out.questions.len();
-            let remarks = self.out.remarks.len();
-            match self.that(t, Spare::Nearest) {
-                Some(ids) => Ok(ids.iter().map(|id| self.boxes[id]).collect()),
-                None if self.out.questions.len() > asked => Err(()),
-                // (what is not there is added, and that is said)
-                None => {
-                    self.out
-                        .remarks
-                        .truncate(remarks.max(self.out.remarks.len().min(remarks + 1)));
-                    Ok(Vec::new())
-                }
-            }
+        let mut plan = Plan {
+            follows: true,
+            ..Plan::default()
         };
-        plan.add(things, &mut find);
+        plan.add(things, self);
         plan
     }
 
@@ -95,7 +99,14 @@ impl Stage<'_> {
             r.relation = RelationKind::Behind;
             any = true;
         }
-        let mut found = self.arrange(&plan.specs, &plan.held, None);
+        let bound = self.in_strips_of_neighbours(&plan);
+        let mut found = match bound {
+            Some(specs) => self.arrange(&specs, &plan.held, None),
+            None => self.arrange(&plan.specs, &plan.held, None),
+        };
+        if !(found.left_out.is_empty() && found.unmet.is_empty()) {
+            found = self.arrange(&plan.specs, &plan.held, None);
+        }
         if any && !(found.left_out.is_empty() && found.unmet.is_empty()) {
             found = self.arrange(&relaxed, &plan.held, None);
         }
@@ -128,6 +139,35 @@ impl Stage<'_> {
                 self.last_noun = Some(super::super::nouns::Noun::of_class(b.class));
             }
         }
+    }
+
+    /// What comes next to boxes that are there stands in their strip, if nothing else was said.
+    fn in_strips_of_neighbours(&self, plan: &Plan) -> Option<Vec<ObjectSpec>> {
+        let mut specs = plan.specs.clone();
+        let mut any = false;
+        for s in &mut specs {
+            let [r] = s.relations.as_slice() else { continue };
+            let (RelationKind::NextTo, Anchor::Object(j)) = (r.relation, r.anchor) else {
+                continue;
+            };
+            let boxes = plan.held.get(j).and_then(Option::as_ref).into_iter().flatten();
+            let roles: Vec<_> = boxes
+                .filter(|b| b.class == s.class)
+                .map(|b| role_of(&self.map, b))
+                .collect();
+            if let Some(Some(role)) = roles.first()
+                && roles.iter().all(|x| *x == Some(*role))
+            {
+                let anchor = Anchor::Lane(*role);
+                s.relations.push(Stated {
+                    relation: RelationKind::On,
+                    anchor,
+                    ..*r
+                });
+                any = true;
+            }
+        }
+        any.then_some(specs)
     }
 
     /// Finds places; `from` is the box that is moved there, which does not stand in its own way.
@@ -223,7 +263,7 @@ impl Stage<'_> {
         if people && others.iter().all(crosses) {
             spec.relations.push(on(RelationKind::On, Anchor::Crossing));
         } else {
-            let roles: Vec<Option<LaneRole>> = others.iter().map(|id| self.role(*id)).collect();
+            let roles: Vec<Option<LaneRole>> = others.iter().map(|id| self.role_of(*id)).collect();
             let same = roles[0].filter(|r| roles.iter().all(|x| *x == Some(*r)));
             let lot = roles
                 .contains(&Some(LaneRole::Carpark))
@@ -250,7 +290,7 @@ impl Stage<'_> {
         let spots = std::mem::take(&mut self.gone);
         if spots.is_empty() {
             let near = self.last.first().copied();
-            match near.and_then(|id| self.role(id)) {
+            match near.and_then(|id| self.role_of(id)) {
                 Some(_) => self.add_like(&t, &near.into_iter().collect::<Vec<_>>()),
                 None => {
                     self.remark(Remark::NoSpot);

@@ -92,13 +92,7 @@ impl Stage<'_> {
         };
         let mut paint = look.paint;
         if let Some(of) = &look.paint_of {
-            let last = self.last.clone();
-            // ("the same colour as the other one")
-            let Some(model) = self.that(of, Spare::Nearest).and_then(|ids| ids.first().copied()) else {
-                return;
-            };
-            self.last = last;
-            paint = self.boxes.get(&model).and_then(|b| b.label.paint);
+            paint = self.paint_of(of);
             if paint.is_none() {
                 self.remark(Remark::Nobody {
                     what: format!("painted {}", words_of(of)),
@@ -109,6 +103,23 @@ impl Stage<'_> {
         for id in ids {
             self.set_one(id, look, paint);
         }
+    }
+
+    /// The paint of a thing that is there, or was before the first act.
+    fn paint_of(&mut self, of: &Thing) -> Option<crate::scene::Paint> {
+        let last = self.last.clone();
+        let now = self.fitting(of);
+        let boxes = match now.is_empty() {
+            true => Some(std::mem::replace(&mut self.boxes, self.first.clone())),
+            false => None,
+        };
+        let model = self.that(of, Spare::Nearest).and_then(|ids| ids.first().copied());
+        let paint = model.and_then(|id| self.boxes.get(&id)).and_then(|b| b.label.paint);
+        if let Some(boxes) = boxes {
+            self.boxes = boxes;
+        }
+        self.last = last;
+        paint
     }
 
     fn set_one(&mut self, id: BoxId, look: &Look, paint: Option<crate::scene::Paint>) {
