@@ -130,7 +130,7 @@ class Speller:
                 for c in self.by_length.get(n, []):
                     if len(c) >= 3 and close(w, c):
                         rank = self.common.get(c, len(self.common))
-                        key = (c[0] != w[0], rank)
+                        key = (c[0] != w[0], rank, c)
                         if best is None or key < best[0]:
                             best = (key, c)
             self.memory[w] = best[1] if best else None

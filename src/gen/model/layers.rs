@@ -168,6 +168,11 @@ impl Linear {
         }
     }
 
+    /// Numbers of a row of the output.
+    pub fn outputs(&self) -> usize {
+        self.weight.outputs()
+    }
+
     /// One vector to one vector.
     pub fn vector(&self, x: &[f32]) -> Vec<f32> {
         let mut out = vec![0.0; self.weight.outputs()];

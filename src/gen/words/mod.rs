@@ -2,15 +2,21 @@
 //! the resolver finds the things that are meant in a scene and asks back; the executor carries out. `README.md` walks one
 //! sentence through.
 
+pub mod account;
+pub mod answer;
+pub mod canonical;
 pub mod carry_out;
 pub mod describe;
+pub mod grammar;
+pub mod hear;
+pub mod lexicon;
 mod named;
 pub mod notation;
 pub mod nouns;
 mod plan;
+pub mod reader;
 pub mod reading;
 pub mod remark;
 mod resolve;
 pub mod stage;
-
-pub use super::text::tokens;
+pub mod tokens;

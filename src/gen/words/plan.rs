@@ -109,7 +109,13 @@ impl Plan {
             }
             (Relation::Waiting, Said::Lane(_)) => Some(RelationKind::On),
             (Relation::Crossing, Said::Junction) => {
-                self.state(i, RelationKind::Crossing, Anchor::Lane(LaneRole::Road), None, None);
+                self.state(
+                    i,
+                    RelationKind::Crossing,
+                    Anchor::Lane(LaneRole::Road),
+                    None,
+                    None,
+                );
                 Some(RelationKind::Near)
             }
             (Relation::On, Said::Lane(role)) if is_kerb(*role) && class.is_vehicle() && state.is_none() => {
@@ -139,7 +145,9 @@ impl Plan {
             .iter()
             .any(|p| matches!(p.to, Some(Said::Lane(_))));
         let relation = match (relation, anchor) {
-            (RelationKind::Behind, Anchor::Object(_)) if self.follows && drives && !lane && metres.is_none() => {
+            (RelationKind::Behind, Anchor::Object(_))
+                if self.follows && drives && !lane && metres.is_none() =>
+            {
                 RelationKind::Following
             }
             (relation, _) => relation,
@@ -183,7 +191,10 @@ impl Plan {
             .map(|r| (r.relation, r.anchor))
             .collect();
         let held = self.held[j].as_ref().and_then(|b| b.first());
-        lanes.extend(held.and_then(|b| site.role(b)).map(|role| (RelationKind::On, Anchor::Lane(role))));
+        lanes.extend(
+            held.and_then(|b| site.role(b))
+                .map(|role| (RelationKind::On, Anchor::Lane(role))),
+        );
         if lanes.is_empty() {
             self.state(i, RelationKind::NextTo, anchor, None, None);
         }
@@ -299,7 +310,10 @@ impl Plan {
 }
 
 fn is_kerb(role: LaneRole) -> bool {
-    matches!(role, LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside)
+    matches!(
+        role,
+        LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
+    )
 }
 
 /// No words of the text.

@@ -322,7 +322,13 @@ impl Stage<'_> {
         let mut fit = if one && e.places.is_empty() && e.paint.is_none() && e.state.is_none() {
             among.to_vec()
         } else {
-            self.fitting_deep(&Thing { noun: if one { Noun::Thing } else { e.noun }, ..e.clone() }, 1)
+            self.fitting_deep(
+                &Thing {
+                    noun: if one { Noun::Thing } else { e.noun },
+                    ..e.clone()
+                },
+                1,
+            )
         };
         fit.retain(|id| among.contains(id));
         let pick = e.pick.unwrap_or(Pick::Nearest);

@@ -20,9 +20,13 @@ use crate::generation::text::edit::read_edit;
 use crate::generation::text::read;
 use crate::generation::words::carry_out::carry_out;
 use crate::generation::words::describe::describe;
+use crate::generation::words::grammar;
+use crate::generation::words::hear::hear;
 use crate::generation::words::notation;
+use crate::generation::words::reader::{LearnedReader, Mode};
 use crate::generation::words::reading::Reading;
 use crate::generation::words::stage::OpenScene;
+use crate::generation::words::tokens::tokens;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
 
 /// Where the sets that are judged lie, in the source tree.
@@ -128,6 +132,8 @@ pub(super) struct Tally {
     wall_s: Vec<f64>,
     slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
+    /// Right cases of which something was said all the same.
+    spoke: usize,
     /// Failed cases of which nothing was said: no note, no question, no word named as not understood.
     silent: usize,
 }
@@ -279,8 +285,10 @@ impl Tally {
         self.overlaps = sum(self.overlaps, judge.overlaps());
         self.drivable = sum(self.drivable, judge.on_drivable());
         self.headings = sum(self.headings, judge.headings());
+        let told = told();
+        self.spoke += usize::from(told.spoke && wrong.is_empty());
         if !wrong.is_empty() {
-            let (after, told) = (in_short(scene), told());
+            let after = in_short(scene);
             self.silent += usize::from(!told.spoke);
             self.failed.push(json!({
                 "text": case.text, "wrong": wrong, "after": after, "silent": !told.spoke, "told": told.details,
@@ -293,6 +301,7 @@ impl Tally {
             "cases": self.cases,
             "wholly_right": share(self.cases - self.failed.len(), self.cases),
             "silently_wrong": share(self.silent, self.cases),
+            "right_with_a_remark": share(self.spoke, self.cases),
             "counts_exact": with_interval(&self.counts),
             "relations_satisfied": with_interval(&self.relations),
             "style_and_road": with_interval(&self.style),
@@ -308,15 +317,79 @@ impl Tally {
     }
 }
 
+/// Who reads the sentences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Who {
+    /// The program as it is.
+    #[default]
+    Program,
+    /// Nobody: the readings that stand beside the sentences are carried out.
+    Given,
+    /// The learned reader alone.
+    Learned,
+    /// The grammar alone: what it does not read to the last word it does not read.
+    Grammar,
+    /// Both readers.
+    Both,
+}
+
+/// A reading with whether anything is said about how it was read.
+struct Read {
+    reading: Reading,
+    doubts: Value,
+    spoke: bool,
+}
+
+impl Who {
+    /// The reading of a case; `None`: the program reads.
+    fn reading(self, case: &Case) -> anyhow::Result<Option<Read>> {
+        let mode = if case.base.is_some() { Mode::Edit } else { Mode::Prompt };
+        let plainly = |reading| Read {
+            reading,
+            doubts: Value::Null,
+            spoke: false,
+        };
+        let reading = match self {
+            Self::Program => return Ok(None),
+            Self::Given => {
+                let line = case.reading.as_ref();
+                let line = line.with_context(|| format!("no reading stands beside {:?}", case.text))?;
+                plainly(notation::parse(line).with_context(|| format!("{:?}", case.text))?)
+            }
+            Self::Learned => plainly(LearnedReader::bundled()?.read(&case.text, mode).reading),
+            Self::Grammar => {
+                let tokens = tokens(&case.text, Some(LearnedReader::bundled()?.speller()));
+                let plain = grammar::read(&tokens, mode);
+                let whole = plain.is_whole();
+                Read {
+                    reading: if whole { plain.reading } else { Reading::default() },
+                    doubts: json!(plain.left_over),
+                    spoke: !whole,
+                }
+            }
+            Self::Both => {
+                let heard = hear(&case.text, mode)?;
+                Read {
+                    spoke: !heard.is_plain(),
+                    doubts: json!({ "by": heard.by, "other": heard.other.as_ref().map(notation::write), "unsure": heard.unsure, "missing": heard.missing }),
+                    reading: heard.reading,
+                }
+            }
+        };
+        Ok(Some(reading))
+    }
+}
+
 /// A prompt by the reading that stands beside it: what its carrying out alone is worth.
-fn given_prompt(tally: &mut Tally, case: &Case, reading: &Reading, seed: u64, how: &How) {
+fn given_prompt(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
     let started = Instant::now();
+    let (reading, doubts) = (&read.reading, &read.doubts);
     let (description, remarks) = describe(reading);
     let (scene, laid) = place_description(&case.text, &description, started, seed, how);
     let short = text::shortfalls(&laid);
     let told = || Told {
-        spoke: !(remarks.is_empty() && short.is_empty()),
-        details: json!({ "reading": notation::write(reading), "remarks": remarks, "shortfalls": short }),
+        spoke: read.spoke || !(remarks.is_empty() && short.is_empty()),
+        details: json!({ "reading": notation::write(reading), "doubts": doubts, "remarks": remarks, "shortfalls": short }),
     };
     tally.add(case, &scene, laid.wall_s, Vec::new(), told);
 }
@@ -326,10 +399,11 @@ fn given_edit(
     tally: &mut Tally,
     case: &Case,
     base: &str,
-    reading: &Reading,
+    read: &Read,
     seed: u64,
     how: &How,
 ) -> anyhow::Result<()> {
+    let (reading, doubts) = (&read.reading, &read.doubts);
     let (scene, _) = place(base, seed, how);
     let started = Instant::now();
     let frame = scene.frame();
@@ -356,8 +430,8 @@ fn given_edit(
         .apply_all("Edit by text", &list)
         .with_context(|| format!("{:?}", case.text))?;
     let told = || Told {
-        spoke: !(outcome.remarks.is_empty() && outcome.questions.is_empty()),
-        details: json!({ "before": before, "reading": notation::write(reading), "remarks": outcome.remarks, "questions": outcome.questions }),
+        spoke: read.spoke || !(outcome.remarks.is_empty() && outcome.questions.is_empty()),
+        details: json!({ "before": before, "reading": notation::write(reading), "doubts": doubts, "remarks": outcome.remarks, "questions": outcome.questions }),
     };
     tally.add(case, document.scene(), wall_s, wrong, told);
     Ok(())
@@ -375,8 +449,7 @@ impl Eval {
         for (i, case) in cases.iter().enumerate() {
             progress.at("layout", i, cases.len());
             let seed = TEST_SEED + case.line;
-            if let Some(line) = case.reading.as_ref().filter(|_| self.given_readings) {
-                let reading = notation::parse(line).with_context(|| format!("{:?}", case.text))?;
+            if let Some(reading) = self.reader.reading(case)? {
                 match &case.base {
                     None => given_prompt(&mut prompts, case, &reading, seed, &how),
                     Some(base) => given_edit(&mut edits, case, base, &reading, seed, &how)?,

@@ -60,9 +60,9 @@ pub struct Eval {
     /// Sentences to judge (layout): a file of one JSON object a line, or a folder of such files; tests/words/dev if none is named.
     #[arg(long, value_name = "FILE")]
     prompts: Option<PathBuf>,
-    /// Carries out the readings that stand beside the sentences, instead of reading the words (layout).
-    #[arg(long)]
-    given_readings: bool,
+    /// Who reads the sentences (layout).
+    #[arg(long, value_enum, default_value_t)]
+    reader: layout::Who,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
     #[arg(long, value_name = "N", default_value_t = 60)]
     placer_prompts: usize,

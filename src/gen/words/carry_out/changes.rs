@@ -114,7 +114,9 @@ impl Stage<'_> {
             false => None,
         };
         let model = self.that(of, Spare::Nearest).and_then(|ids| ids.first().copied());
-        let paint = model.and_then(|id| self.boxes.get(&id)).and_then(|b| b.label.paint);
+        let paint = model
+            .and_then(|id| self.boxes.get(&id))
+            .and_then(|b| b.label.paint);
         if let Some(boxes) = boxes {
             self.boxes = boxes;
         }

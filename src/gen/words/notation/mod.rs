@@ -6,7 +6,7 @@ mod parse;
 mod tests;
 mod write;
 
-pub use parse::{NotationError, parse};
+pub use parse::{NotationError, Prefix, parse, prefix};
 pub use write::{thing, write};
 
 use super::reading::Anchor;
@@ -54,4 +54,9 @@ fn paint(name: &str) -> Option<Paint> {
 /// Names of roads as the notation has them: no hyphens.
 fn plain(name: &str) -> String {
     name.replace('-', "_")
+}
+
+/// The anchor of a name.
+pub(super) fn anchor_of(name: &str) -> Option<Anchor> {
+    anchors().find(|a| a.0 == name).map(|a| a.1)
 }

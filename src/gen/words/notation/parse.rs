@@ -55,6 +55,39 @@ pub fn parse(line: &str) -> Result<Reading, NotationError> {
     Ok(reading)
 }
 
+/// What the beginning of a line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Prefix {
+    /// A valid reading as it stands.
+    pub is_whole: bool,
+    /// It can be continued to a valid reading.
+    pub is_open: bool,
+}
+
+impl Default for Prefix {
+    /// Nothing was said yet.
+    fn default() -> Self {
+        Self {
+            is_whole: false,
+            is_open: true,
+        }
+    }
+}
+
+/// Whether a line is the beginning of a reading.
+pub fn prefix(line: &str) -> Prefix {
+    match parse(line) {
+        Ok(reading) => Prefix {
+            is_whole: !reading.acts.is_empty(),
+            is_open: true,
+        },
+        Err(error) => Prefix {
+            is_whole: false,
+            is_open: error.found.is_empty(),
+        },
+    }
+}
+
 struct Parser<'t> {
     tokens: Vec<&'t str>,
     at: usize,

@@ -1,0 +1,117 @@
+//! Whether every content word of a text is in its reading: what is not is named, never passed over in silence.
+
+use serde::Serialize;
+
+use super::grammar;
+use super::notation;
+use super::nouns::Noun;
+use super::reading::Reading;
+use super::tokens::{Span, Speller, Token};
+
+/// A word that the reading does not hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Why {
+    /// No list has it.
+    Unknown,
+    /// It is understood, and nothing of it is carried out.
+    NotCarriedOut,
+}
+
+/// Where, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Missing {
+    /// Bytes of the text.
+    pub span: Span,
+    /// The words.
+    pub words: String,
+    /// Why.
+    pub why: Why,
+}
+
+/// Words by which numbers are worked out: their numbers need not stand in the reading.
+const ARITHMETIC: [&str; 30] = [
+    "half", "twice", "double", "triple", "halve", "quadruple", "many", "more", "fewer", "less", "each", "total", "altogether",
+    "second", "third", "other", "rest", "both", "apiece", "every", "per", "another", "left", "remain", "remaining", "times", "first",
+    "fourth", "dozen", "couple",
+];
+/// What follows them is what is not meant.
+const NOT: [&str; 10] = ["not", "no", "than", "from", "isnt", "wasnt", "of", "was", "were", "instead"];
+
+/// The words of a text that its reading does not hold.
+pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
+    let line = notation::write(reading);
+    let said: Vec<&str> = line.split(' ').collect();
+    let mut out: Vec<Missing> = Vec::new();
+    let works_out = tokens.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
+    let mut i = 0;
+    while i < tokens.len() {
+        let t = &tokens[i];
+        let mut end = i + 1;
+        while end < tokens.len() && !t.senses.is_empty() && tokens[end].senses == t.senses && t.value.is_none() {
+            end += 1;
+        }
+        let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
+        let why = if let Some(v) = t.value {
+            let there = number_is_said(v, t.is_length, &said);
+            let small = !t.is_length && (v <= 1.0 || works_out);
+            (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
+        } else if !t.senses.is_empty() {
+            let there = t.senses.iter().any(|s| sense_is_said(s.kind, s.symbol, &said));
+            let looks = t.senses.iter().all(|s| !matches!(s.kind, "place" | "ego" | "road" | "group" | "env" | "density"));
+            (!there && looks && !NOT.contains(&before)).then_some(Why::NotCarriedOut)
+        } else if !side_is_said(t, before, &said) {
+            Some(Why::NotCarriedOut)
+        } else {
+            let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
+            (word && !speller.knows(&t.text) && !grammar::knows(&t.text)).then_some(Why::Unknown)
+        };
+        if let Some(why) = why {
+            let span = t.span.to(tokens[end - 1].span);
+            out.push(Missing {
+                span,
+                words: span.of(text).to_owned(),
+                why,
+            });
+        }
+        i = end;
+    }
+    out
+}
+
+fn number_is_said(v: f64, is_length: bool, said: &[&str]) -> bool {
+    said.iter().any(|s| {
+        let length = s.strip_suffix('m').and_then(|n| n.parse::<f64>().ok());
+        let plain = s.trim_start_matches('#').parse::<f64>().ok().filter(|_| !is_length);
+        length.or(plain).is_some_and(|n| (n - v).abs() < 0.06 + 1e-3 * v)
+    })
+}
+
+fn sense_is_said(kind: &str, symbol: &str, said: &[&str]) -> bool {
+    let has = |s: &str| said.contains(&s) || said.contains(&format!("not_{s}").as_str());
+    if has(symbol) {
+        return true;
+    }
+    match kind {
+        // (what is called by a wider or a finer word, or by a pronoun)
+        "noun" => {
+            let Some(noun) = Noun::of(symbol) else { return true };
+            said.iter().filter_map(|s| Noun::of(s)).any(|n| {
+                matches!(n, Noun::It | Noun::One | Noun::Thing) || n.classes().iter().any(|c| noun.classes().contains(c))
+            })
+        }
+        // ("the colour of the bus", "no more rain")
+        "paint" => said.contains(&"paint_of"),
+        "weather" => said.contains(&"weather"),
+        "time" => said.contains(&"time"),
+        _ => false,
+    }
+}
+
+/// "Left" and "right" of a sentence stand in its reading, but where they say that something has left, or is right there.
+fn side_is_said(t: &Token, before: &str, said: &[&str]) -> bool {
+    let side = t.text.as_str();
+    let is_side = matches!(side, "left" | "right");
+    let of = matches!(before, "the" | "my" | "our" | "to" | "on" | "its" | "your" | "his" | "far");
+    !is_side || !of || said.iter().any(|s| s.contains(side) || matches!(*s, "other_side" | "other_lane" | "like"))
+}

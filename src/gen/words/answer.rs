@@ -1,0 +1,343 @@
+//! The answer to a text, in a sentence: "Adds three pedestrians on the crossing; the bus stays; "slowly" has no effect."
+
+use super::account::{Missing, Why};
+use super::nouns::Noun;
+use super::reading::{
+    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading, Relation, Thing, Turn, Way,
+    What,
+};
+use super::resolve::plural;
+use super::stage::Outcome;
+use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+
+/// Longest list of words that are named as having no effect.
+const MOST_WORDS: usize = 6;
+
+/// What a reading does, in a sentence; `outcome` tells what of it came about, in a scene that was there.
+pub fn answer(reading: &Reading, outcome: Option<&Outcome>, missing: &[Missing]) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for (i, act) in reading.acts.iter().enumerate() {
+        let said = sentence(&act.what);
+        let Some(outcome) = outcome else {
+            parts.push(said);
+            continue;
+        };
+        let nothing = outcome.done.get(i).is_none_or(|d| d.is_nothing());
+        let remarks: Vec<String> =
+            outcome.remarks.iter().filter(|(a, _)| *a == i).map(|(_, r)| r.to_string()).collect();
+        let asked = outcome.questions.iter().find(|q| q.act == i);
+        parts.push(match (asked, nothing) {
+            (Some(q), _) => q.text.clone(),
+            (None, true) if !matches!(act.what, What::Leave { .. }) => {
+                format!("not done: {said} ({})", remarks.join("; "))
+            }
+            (None, _) if remarks.is_empty() => said,
+            (None, _) => format!("{said} ({})", remarks.join("; ")),
+        });
+    }
+    if parts.is_empty() {
+        parts.push("nothing was understood".into());
+    }
+    let of = |why: Why| -> Vec<String> {
+        let words = missing.iter().filter(|m| m.why == why).take(MOST_WORDS);
+        words.map(|m| format!("\u{201c}{}\u{201d}", m.words)).collect()
+    };
+    let (idle, unknown) = (of(Why::NotCarriedOut), of(Why::Unknown));
+    if !idle.is_empty() {
+        let has = if idle.len() == 1 { "has" } else { "have" };
+        parts.push(format!("{} {has} no effect", idle.join(", ")));
+    }
+    if !unknown.is_empty() {
+        let was = if unknown.len() == 1 { "was" } else { "were" };
+        parts.push(format!("{} {was} not understood", unknown.join(", ")));
+    }
+    let text = parts.join("; ");
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
+        None => String::new(),
+    }
+}
+
+/// One act in words: `adds two buses`.
+pub fn sentence(what: &What) -> String {
+    match what {
+        What::Add { things } => format!("adds {}", list(things)),
+        What::No { who } => {
+            let who: Vec<String> = who
+                .iter()
+                .map(|t| if t.other { format!("other {}", many(t)) } else { many(t) })
+                .collect();
+            format!("no {}", join(&who, "or"))
+        }
+        What::Remove { who } => format!("removes {}", list(who)),
+        What::Keep { who } => format!("keeps only {}", list(who)),
+        What::Leave { who } if who.is_empty() => "all else stays".into(),
+        What::Leave { who } => format!("{} {}", list(who), verb(who, "stays", "stay")),
+        What::Replace { who, things } => format!("replaces {} with {}", list(who), list(things)),
+        What::Move { who, to } => format!("moves {} {}", list(who), destination(to)),
+        What::Turn { who, turn } => format!("turns {} {}", list(who), turned(turn)),
+        What::Set { who, look } => format!("makes {} {}", list(who), looks(look)),
+        What::Count { who, amount } => {
+            let who: Vec<String> = who.iter().map(many).collect();
+            match amount {
+                Amount::To(a, b) if a == b => format!("makes it {a} {}", join(&who, "and")),
+                Amount::To(a, b) => format!("makes it {a} to {b} {}", join(&who, "and")),
+                Amount::Times(n) => format!("makes it {n} times as many {}", join(&who, "and")),
+            }
+        }
+        What::Swap { one, other } => format!("swaps {} and {}", thing(one), thing(other)),
+        What::Time { what } => format!("time of day: {}", what.name()),
+        What::Weather { what } => format!("weather: {}", what.name()),
+        What::Road { what } => format!("road: {}", what.name()),
+        What::Env { what } => format!("surroundings: {}", what.name()),
+        What::Density { what } => format!("traffic: {}", what.name()),
+        What::Has { what, places } => format!("a {}{}", feature(*what), at_places(places)),
+        What::Lacks { what } => format!("no {}", feature(*what)),
+        What::Lanes { n } => format!("{n} lanes"),
+        What::OneWay => "one-way traffic".into(),
+        What::Narrow => "a narrow road".into(),
+        What::Wide => "a wide road".into(),
+        What::OwnLane { what } => match what {
+            LaneSide::Left => "we drive in the left lane".into(),
+            LaneSide::Right => "we drive in the right lane".into(),
+            LaneSide::Middle => "we drive in the middle lane".into(),
+        },
+    }
+}
+
+fn feature(what: Feature) -> &'static str {
+    match what {
+        Feature::Crossing => "pedestrian crossing",
+        Feature::Sidewalk => "sidewalk",
+    }
+}
+
+fn join(parts: &[String], and: &str) -> String {
+    match parts {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} {and} {last}", first.join(", ")),
+    }
+}
+
+fn list(things: &[Thing]) -> String {
+    let parts: Vec<String> = things.iter().map(thing).collect();
+    join(&parts, "and")
+}
+
+fn verb(who: &[Thing], one: &str, many: &str) -> String {
+    let single = who.len() == 1
+        && (matches!(who[0].quantity, Quantity::The | Quantity::N(1)) || who[0].pick.is_some());
+    if single { one.into() } else { many.into() }
+}
+
+fn bare(t: &Thing, several: bool) -> String {
+    let mut out: Vec<String> = Vec::new();
+    out.extend(t.size.map(|s| match s {
+        SizeHint::Small => "small".to_string(),
+        SizeHint::Large => "large".into(),
+    }));
+    out.extend(t.state.map(|s| match s {
+        ObjectState::Moving => "moving".to_string(),
+        ObjectState::Parked => "parked".into(),
+        ObjectState::Waiting => "standing".into(),
+    }));
+    out.extend(t.paint.map(|p| match p {
+        PaintWish::Is(p) => p.name().to_string(),
+        PaintWish::Not(p) => format!("not {}", p.name()),
+    }));
+    let noun = match t.noun {
+        Noun::Person if !several => "pedestrian".into(),
+        Noun::Person => "pedestrians".into(),
+        Noun::Thing => if several { "objects" } else { "object" }.into(),
+        Noun::One => if several { "ones" } else { "one" }.into(),
+        noun if several => plural(&noun.words()),
+        noun => noun.words(),
+    };
+    out.push(noun);
+    out.join(" ")
+}
+
+fn many(t: &Thing) -> String {
+    format!("{}{}", bare(t, true), tail(t))
+}
+
+fn tail(t: &Thing) -> String {
+    let mut out = at_places(&t.places);
+    if !t.except.is_empty() {
+        out.push_str(&format!(" except {}", list(&t.except)));
+    }
+    out
+}
+
+/// A thing in words: `the two parked red cars on the left`.
+pub fn thing(t: &Thing) -> String {
+    if let Some(id) = t.id {
+        return format!("{} #{id}", bare(t, false));
+    }
+    if t.noun == Noun::It {
+        return if t.quantity == Quantity::All { "them" } else { "it" }.into();
+    }
+    let other = if t.other { "other " } else { "" };
+    let pick = match (t.pick, t.nth) {
+        (Some(p), _) => format!("{} ", p.name()),
+        (_, Some(0)) => "last ".into(),
+        (_, Some(n)) => format!("{} ", ["first", "second", "third", "fourth", "fifth"].get(n as usize - 1).unwrap_or(&"next")),
+        _ => String::new(),
+    };
+    let words = match t.quantity {
+        Quantity::The | Quantity::Unsaid => format!("the {other}{pick}{}", bare(t, false)),
+        Quantity::TheN(n) => format!("the {other}{} {pick}{}", number(n), bare(t, n != 1)),
+        Quantity::All => format!("all {other}{}", bare(t, true)),
+        Quantity::Half => format!("half of the {}", bare(t, true)),
+        Quantity::Some => format!("some {}", bare(t, true)),
+        Quantity::Many => format!("many {}", bare(t, true)),
+        Quantity::N(n) if pick.is_empty() => format!("{} {other}{}", number(n), bare(t, n != 1)),
+        Quantity::N(n) => format!("the {} {pick}{}", number(n), bare(t, n != 1)),
+        Quantity::Range(a, b) => format!("{a} to {b} {}", bare(t, true)),
+    };
+    words + &tail(t)
+}
+
+fn number(n: u32) -> String {
+    const WORDS: [&str; 13] = [
+        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    ];
+    WORDS.get(n as usize).map_or_else(|| n.to_string(), |w| (*w).to_string())
+}
+
+fn at_places(places: &[Place]) -> String {
+    places.iter().map(|p| format!(" {}", place(p))).collect()
+}
+
+fn metres(m: Option<f64>) -> String {
+    m.map_or(String::new(), |m| format!("{m} m "))
+}
+
+fn place(p: &Place) -> String {
+    let far = metres(p.metres);
+    let Some(to) = &p.to else {
+        return match p.relation {
+            Relation::InLine => "in a row".into(),
+            Relation::SideBySide => "side by side".into(),
+            _ => "there".into(),
+        };
+    };
+    let a = anchor(to);
+    match p.relation {
+        Relation::Ahead if *to == Anchor::Ego => format!("{far}ahead"),
+        Relation::Ahead => format!("{far}in front of {a}"),
+        Relation::Behind => format!("{far}behind {a}"),
+        Relation::Left if *to == Anchor::Ego => format!("{far}on the left"),
+        Relation::Right if *to == Anchor::Ego => format!("{far}on the right"),
+        Relation::Left => format!("{far}to the left of {a}"),
+        Relation::Right => format!("{far}to the right of {a}"),
+        Relation::NextTo => format!("next to {a}"),
+        Relation::Near => format!("near {a}"),
+        Relation::Far => format!("far from {a}"),
+        Relation::At => format!("{far}from {a}"),
+        Relation::On => format!("{} {a}", preposition(to)),
+        Relation::Blocking => format!("blocking {a}"),
+        Relation::Crossing => format!("crossing {a}"),
+        Relation::Waiting => format!("waiting at {a}"),
+        Relation::Between => match &p.and {
+            Some(b) => format!("between {a} and {}", anchor(b)),
+            None => format!("between {a}"),
+        },
+        Relation::Following => format!("following {a}"),
+        Relation::Across => format!("across the street from {a}"),
+        Relation::Oncoming => format!("coming towards {a}"),
+        Relation::SameWay => format!("going the same way as {a}"),
+        Relation::Facing => format!("facing {a}"),
+        Relation::FacingAway => format!("facing away from {a}"),
+        Relation::Like => format!("where {a} is"),
+        Relation::There | Relation::InLine | Relation::SideBySide => "there".into(),
+    }
+}
+
+fn preposition(to: &Anchor) -> &'static str {
+    match to {
+        Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming | LaneRole::Cross | LaneRole::Carpark)
+        | Anchor::OtherLane
+        | Anchor::Junction => "in",
+        Anchor::Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside) => "at",
+        _ => "on",
+    }
+}
+
+fn anchor(a: &Anchor) -> String {
+    match a {
+        Anchor::Ego => "us".into(),
+        Anchor::Crossing => "the crossing".into(),
+        Anchor::Junction => "the junction".into(),
+        Anchor::OtherSide => "the other side".into(),
+        Anchor::OtherLane => "the other lane".into(),
+        Anchor::EachOther => "each other".into(),
+        Anchor::Thing(t) => thing(t),
+        Anchor::Lane(role) => match role {
+            LaneRole::Ego => "our lane",
+            LaneRole::Left => "the left lane",
+            LaneRole::Right => "the right lane",
+            LaneRole::Oncoming => "the oncoming lane",
+            LaneRole::Cross => "the cross street",
+            LaneRole::Road => "the road",
+            LaneRole::Roadside => "the roadside",
+            LaneRole::LeftRoadside => "the left kerb",
+            LaneRole::RightRoadside => "the right kerb",
+            LaneRole::Sidewalk => "the sidewalk",
+            LaneRole::LeftSidewalk => "the left sidewalk",
+            LaneRole::RightSidewalk => "the right sidewalk",
+            LaneRole::Carpark => "the car park",
+        }
+        .into(),
+    }
+}
+
+fn destination(to: &Destination) -> String {
+    match to {
+        Destination::To(places) => at_places(places).trim_start().to_owned(),
+        Destination::By { way, metres: m } => {
+            let way = match way {
+                Way::Left => "to the left",
+                Way::Right => "to the right",
+                Way::Forward => "forward",
+                Way::Back => "back",
+                Way::Nearer => "nearer",
+                Way::Away => "farther away",
+            };
+            format!("{}{way}", metres(*m))
+        }
+        Destination::Lanes(n) => {
+            let side = if *n > 0 { "left" } else { "right" };
+            match n.abs() {
+                1 => format!("one lane to the {side}"),
+                n => format!("{n} lanes to the {side}"),
+            }
+        }
+        Destination::Times(n) => format!("to {n} times its distance"),
+    }
+}
+
+fn turned(turn: &Turn) -> String {
+    match turn {
+        Turn::Around => "around".into(),
+        Turn::Along => "along its lane".into(),
+        Turn::Left(d) if *d < 0.0 => format!("{}° to the right", -d),
+        Turn::Left(d) => format!("{d}° to the left"),
+        Turn::To(places) => at_places(places).trim_start().to_owned(),
+    }
+}
+
+fn looks(look: &Look) -> String {
+    let mut out: Vec<String> = Vec::new();
+    out.extend(look.size.map(|s| if s == SizeHint::Large { "larger" } else { "smaller" }.to_string()));
+    out.extend(look.state.map(|s| match s {
+        ObjectState::Moving => "move".to_string(),
+        ObjectState::Parked => "park".into(),
+        ObjectState::Waiting => "stand still".into(),
+    }));
+    out.extend(look.paint.map(|p| p.name().to_string()));
+    out.extend(look.paint_of.as_ref().map(|t| format!("the colour of {}", thing(t))));
+    out.join(" and ")
+}

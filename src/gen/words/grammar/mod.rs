@@ -1,0 +1,129 @@
+//! The compact grammar: plain English sentences to readings. It answers only for what it reads to the last word: a sentence
+//! of which a word is left over is not its own.
+
+mod acts;
+mod places;
+mod table;
+#[cfg(test)]
+mod tests;
+mod things;
+
+use super::reader::Mode;
+use super::reading::{Act, Reading};
+use super::tokens::{Span, Token};
+use table::Table;
+
+/// What the grammar reads of a text.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plain {
+    /// The acts, with their spans.
+    pub reading: Reading,
+    /// Words that fit nowhere.
+    pub left_over: Vec<Span>,
+}
+
+impl Plain {
+    /// True if every word was read.
+    pub fn is_whole(&self) -> bool {
+        self.left_over.is_empty() && !self.reading.acts.is_empty()
+    }
+}
+
+/// Reads tokens.
+pub fn read(tokens: &[Token], mode: Mode) -> Plain {
+    let mut out = Plain::default();
+    let ends = |t: &Token| matches!(t.text.as_str(), "." | ";" | "!" | "?" | ":");
+    let mut spoken = false;
+    for sentence in tokens.split(ends).filter(|s| !s.is_empty()) {
+        let g = Grammar {
+            tokens: sentence,
+            table: Table::bundled(),
+            mode,
+        };
+        g.sentence(&mut out, &mut spoken);
+    }
+    out
+}
+
+/// True if a word stands in any phrase of the grammar.
+pub fn knows(word: &str) -> bool {
+    Table::bundled().has_word(word)
+}
+
+/// One sentence.
+struct Grammar<'t> {
+    tokens: &'t [Token],
+    table: &'static Table,
+    mode: Mode,
+}
+
+impl Grammar<'_> {
+    fn sentence(&self, out: &mut Plain, spoken: &mut bool) {
+        let mut i = 0;
+        while i < self.tokens.len() {
+            i = self.skip(i);
+            if i >= self.tokens.len() {
+                break;
+            }
+            let act = self.act(i, *spoken);
+            match act {
+                Some((what, end)) => {
+                    let span = self.span(i, end);
+                    out.reading.acts.push(Act {
+                        what,
+                        span,
+                        confidence: 1.0,
+                    });
+                    *spoken = true;
+                    i = self.separators(end);
+                }
+                None => {
+                    out.left_over.push(self.tokens[i].span);
+                    i += 1;
+                }
+            }
+        }
+    }
+
+    fn span(&self, from: usize, to: usize) -> Option<Span> {
+        let part = self.tokens.get(from..to)?;
+        part.iter().map(|t| t.span).reduce(Span::to)
+    }
+
+    fn word(&self, i: usize) -> &str {
+        self.tokens.get(i).map_or("", |t| t.text.as_str())
+    }
+
+    /// The token after a phrase of a kind, if one begins here.
+    fn after(&self, kind: &str, i: usize) -> Option<usize> {
+        self.table.at(kind, self.tokens, i).map(|f| f.1)
+    }
+
+    fn symbol(&self, kind: &str, i: usize) -> Option<(&'static str, usize)> {
+        self.table.at(kind, self.tokens, i)
+    }
+
+    /// Passes over what carries nothing.
+    fn skip(&self, mut i: usize) -> usize {
+        loop {
+            let comma = (self.word(i) == ",").then_some(i + 1);
+            match comma.or(self.after("polite", i)).or(self.after("skip", i)) {
+                Some(next) => i = next,
+                None => return i,
+            }
+        }
+    }
+
+    fn separators(&self, mut i: usize) -> usize {
+        while matches!(self.word(i), "," | "and" | "then" | "but" | "&" | "+" | "plus" | "while" | "-" | "–" | "(" | ")") {
+            i += 1;
+        }
+        i
+    }
+
+    /// True where a clause may end.
+    fn is_end(&self, i: usize) -> bool {
+        let i = self.skip(i);
+        i >= self.tokens.len() || self.separators(i) > i
+    }
+}

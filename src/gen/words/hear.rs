@@ -1,0 +1,105 @@
+//! Both readers at once: where they agree a text is read; where they differ, or one is unsure, that is said.
+
+use serde::Serialize;
+
+use super::account::{Missing, missing};
+use super::canonical::canonical;
+use super::grammar;
+use super::notation;
+use super::reader::{LearnedReader, Mode};
+use super::reading::Reading;
+use super::tokens::Span;
+use crate::generation::weights::WeightsError;
+
+/// Below this confidence an act is said to be unsure.
+pub const UNSURE: f64 = 0.6;
+
+/// Who read it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum By {
+    /// Both readers say the same.
+    Both,
+    /// The grammar, to the last word.
+    Grammar,
+    /// The learned reader.
+    Learned,
+}
+
+/// A typing error that was mended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Mended {
+    /// Bytes of the text.
+    pub span: Span,
+    /// The word as it is read.
+    pub to: String,
+}
+
+/// What was heard.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Heard {
+    /// What is carried out.
+    pub reading: Reading,
+    /// Who read it.
+    pub by: By,
+    /// What the other reader says, where it says something else.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<Reading>,
+    /// Indices of acts that the reader is unsure of.
+    pub unsure: Vec<usize>,
+    /// Words that are not in the reading.
+    pub missing: Vec<Missing>,
+    /// Typing errors that were mended.
+    pub mended: Vec<Mended>,
+}
+
+impl Heard {
+    /// True if there is nothing to say about how it was read.
+    pub fn is_plain(&self) -> bool {
+        self.other.is_none() && self.unsure.is_empty() && self.missing.is_empty()
+    }
+}
+
+/// Reads a text with both readers.
+///
+/// # Errors
+///
+/// If the bundled weights are damaged.
+pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
+    let learned = LearnedReader::bundled()?;
+    let said = learned.read(text, mode);
+    let plain = grammar::read(&said.tokens, mode);
+    let same = |a: &Reading, b: &Reading| notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode));
+    let agree = plain.is_whole() && same(&plain.reading, &said.reading);
+    let (by, reading, other) = match (agree, plain.is_whole()) {
+        (true, _) => (By::Both, said.reading, None),
+        // (the network is the better one wherever it is sure)
+        (false, true) if confidence(&said.reading) < UNSURE || said.reading.acts.is_empty() => {
+            (By::Grammar, plain.reading, Some(said.reading))
+        }
+        (false, true) => (By::Learned, said.reading, Some(plain.reading)),
+        (false, false) => (By::Learned, said.reading, None),
+    };
+    let unsure = match by {
+        By::Learned => (0..reading.acts.len()).filter(|i| reading.acts[*i].confidence < UNSURE).collect(),
+        _ => Vec::new(),
+    };
+    let mended = said.tokens.iter().filter_map(|t| {
+        t.typed.as_ref().map(|_| Mended {
+            span: t.span,
+            to: t.text.clone(),
+        })
+    });
+    Ok(Heard {
+        missing: missing(text, &said.tokens, &reading, learned.speller()),
+        mended: mended.collect(),
+        by,
+        unsure,
+        other: other.filter(|o| !o.acts.is_empty()),
+        reading,
+    })
+}
+
+fn confidence(reading: &Reading) -> f64 {
+    reading.acts.iter().map(|a| a.confidence).fold(1.0, f64::min)
+}

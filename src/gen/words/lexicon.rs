@@ -1,0 +1,125 @@
+//! What words mean, from `assets/words/lexicon.txt`: phrases of up to five words to senses. Twin of
+//! `training/words/lexicon.py`.
+
+use std::collections::{BTreeSet, HashMap};
+use std::sync::LazyLock;
+
+/// Most words of a phrase.
+pub const LONGEST_PHRASE: usize = 5;
+
+/// One meaning of a phrase.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Sense {
+    /// `noun`, `group`, `paint`, `time`, `weather`, `env`, `density`, `road`, `place`, `ego`.
+    pub kind: &'static str,
+    /// What: `police_car`, `night`.
+    pub symbol: &'static str,
+    /// A plural.
+    pub many: bool,
+}
+
+/// All phrases.
+pub struct Lexicon {
+    senses: HashMap<String, Vec<Sense>>,
+    units: HashMap<String, f64>,
+    ids: HashMap<Sense, usize>,
+}
+
+static LEXICON: LazyLock<Lexicon> =
+    LazyLock::new(|| Lexicon::new(include_str!("../../../assets/words/lexicon.txt")));
+
+impl Lexicon {
+    /// The one that ships with the program.
+    pub fn bundled() -> &'static Self {
+        &LEXICON
+    }
+
+    fn new(text: &'static str) -> Self {
+        let mut out = Self {
+            senses: HashMap::new(),
+            units: HashMap::new(),
+            ids: HashMap::new(),
+        };
+        let lines = text.lines().filter(|l| !l.starts_with('#'));
+        for (key, words) in lines.filter_map(|l| l.split_once(": ")) {
+            let Some((kind, symbol)) = key.split_once(' ') else {
+                continue;
+            };
+            for word in words.split(", ") {
+                let mut forms = word.split('/');
+                let Some(one) = forms.next() else { continue };
+                if kind == "unit" {
+                    if let Ok(metres) = symbol.parse() {
+                        out.units.insert(one.to_owned(), metres);
+                    }
+                    continue;
+                }
+                let mut add = |form: &str, many: bool| {
+                    let sense = Sense { kind, symbol, many };
+                    out.senses.entry(form.to_owned()).or_default().push(sense);
+                };
+                add(one, false);
+                let mut many: Vec<String> = forms.map(str::to_owned).collect();
+                if many.is_empty() && matches!(kind, "noun" | "group" | "place") {
+                    many.push(plural(one));
+                }
+                many.iter().for_each(|form| add(form, true));
+            }
+        }
+        let all: BTreeSet<Sense> = out.senses.values().flatten().cloned().collect();
+        out.ids = all.into_iter().zip(1..).collect();
+        out
+    }
+
+    /// Senses of a phrase, in the order of the file.
+    pub fn senses(&self, phrase: &str) -> Option<&[Sense]> {
+        self.senses.get(phrase).map(Vec::as_slice)
+    }
+
+    /// Metres of a unit of length.
+    pub fn unit(&self, phrase: &str) -> Option<f64> {
+        self.units.get(phrase).copied()
+    }
+
+    /// Number of a sense, from 1: the reader network's.
+    pub fn id(&self, sense: &Sense) -> usize {
+        self.ids.get(sense).copied().unwrap_or(0)
+    }
+
+    /// How many senses there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Phrases of one word.
+    pub fn single_words(&self) -> impl Iterator<Item = &str> {
+        self.senses
+            .keys()
+            .map(String::as_str)
+            .filter(|w| !w.contains(' '))
+    }
+}
+
+/// The plural of a phrase by rule.
+pub fn plural(phrase: &str) -> String {
+    let (head, last) = phrase.rsplit_once(' ').unwrap_or(("", phrase));
+    let sibilant = ["s", "x", "z", "ch", "sh"].iter().any(|end| last.ends_with(end));
+    let consonant_y = last
+        .strip_suffix('y')
+        .is_some_and(|w| !w.is_empty() && !w.ends_with(['a', 'e', 'i', 'o', 'u']));
+    let last = match (sibilant, consonant_y) {
+        (true, _) => format!("{last}es"),
+        (_, true) => format!("{}ies", &last[..last.len() - 1]),
+        _ => format!("{last}s"),
+    };
+    if head.is_empty() {
+        last
+    } else {
+        format!("{head} {last}")
+    }
+}

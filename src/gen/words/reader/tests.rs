@@ -1,0 +1,85 @@
+use serde::Deserialize;
+
+use super::super::notation;
+use super::{LearnedReader, Mode};
+
+#[derive(Deserialize)]
+struct Row {
+    kind: String,
+    text: String,
+    tokens: Vec<String>,
+    memory: Vec<f32>,
+    first: Vec<(String, f32)>,
+    line: String,
+}
+
+/// Made by `training/words/export_reader.py` with PyTorch from the weights that ship.
+fn golden() -> Vec<Row> {
+    serde_json::from_str(include_str!("../../../../tests/reference/reader_golden.json")).expect("golden")
+}
+
+#[test]
+fn the_network_says_what_its_twin_says() {
+    let reader = LearnedReader::bundled().expect("weights");
+    for row in golden() {
+        let mode = if row.kind == "prompt" {
+            Mode::Prompt
+        } else {
+            Mode::Edit
+        };
+        let said = reader.read(&row.text, mode);
+        let tokens: Vec<&str> = said.tokens.iter().map(|t| t.text.as_str()).collect();
+        assert_eq!(tokens, row.tokens, "{}", row.text);
+        let input = reader.symbols.input(&said.tokens, mode);
+        let memory = reader.net.encode(&input);
+        for (i, (found, truth)) in memory.first_numbers().zip(&row.memory).enumerate() {
+            assert!(
+                (found - truth).abs() < 2e-3,
+                "{} place {i}: {found}, PyTorch {truth}",
+                row.text
+            );
+        }
+        let mut state = reader.net.begin(&memory);
+        let (p, _) = reader.net.next(&mut state, &memory, None, &input);
+        for (symbol, truth) in &row.first {
+            let found = (0..p.len())
+                .find(|i| reader.symbols.name(*i) == symbol)
+                .map_or(0.0, |i| p[i]);
+            assert!(
+                (found - truth).abs() < 2e-3,
+                "{}: {symbol} {found}, PyTorch {truth}",
+                row.text
+            );
+        }
+        if notation::parse(&row.line).is_ok() {
+            assert_eq!(notation::write(&said.reading), row.line, "{}", row.text);
+        }
+    }
+}
+
+#[test]
+fn whatever_is_typed_a_valid_reading_comes_of_it() {
+    let reader = LearnedReader::bundled().expect("weights");
+    let long = "and a bus behind the car ".repeat(400);
+    for text in [
+        "",
+        " ",
+        "🚗🚗",
+        "((((",
+        ";;;;; ### @@",
+        "99999999999999999999999 cars 1e400 m",
+        "#",
+        "\u{0}\u{202e}",
+        &long,
+    ] {
+        for mode in [Mode::Prompt, Mode::Edit] {
+            let said = reader.read(text, mode);
+            let line = notation::write(&said.reading);
+            assert_eq!(
+                notation::parse(&line).expect("valid"),
+                notation::parse(&line).expect("valid")
+            );
+            assert!(said.looked_at.iter().all(|p| p.is_finite()));
+        }
+    }
+}
